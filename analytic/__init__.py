@@ -1,0 +1,1 @@
+"""The reference: exact rocking, its linearizations and the paper's solvers."""

@@ -1,0 +1,67 @@
+"""The block: its dimensions and what follows from them."""
+
+import math
+from dataclasses import dataclass
+
+from analytic.checks import positive
+
+STANDARD_GRAVITY = 9.81
+"""Gravity [m/s2] used throughout the study."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidBlock:
+    """A homogeneous rectangular rigid block, free-standing on a rigid base.
+
+    Parameters
+    ----------
+    width, height : float
+        Full dimensions B and H [m].
+    gravity : float, optional
+        g [m/s2].
+    restitution : float, optional
+        Ratio of the angular velocities after and before an impact, in [0, 1]. The default is
+        Housner's value for an ideally inelastic impact, 1 - 3/2 sin(alpha)^2, or 0 where that is
+        not positive: such a squat block comes to rest at its first impact.
+
+    Raises
+    ------
+    ValueError
+        If a dimension or gravity is not positive and finite, or the restitution is outside [0, 1].
+    """
+
+    width: float
+    height: float
+    gravity: float = STANDARD_GRAVITY
+    restitution: float = math.nan
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height", "gravity"):
+            object.__setattr__(self, name, positive(name, getattr(self, name)))
+        if math.isnan(self.restitution):
+            object.__setattr__(self, "restitution", max(housner_restitution(self.alpha), 0.0))
+        elif not 0.0 <= self.restitution <= 1.0:
+            raise ValueError(f"restitution is {self.restitution!r}; it must be between 0 and 1")
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle atan(B/H) [rad]; also the critical rotation of the block."""
+        return math.atan2(self.width, self.height)
+
+    @property
+    def R(self) -> float:  # noqa: N802
+        """Half of the diagonal [m]."""
+        return 0.5 * math.hypot(self.width, self.height)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter sqrt(3g / 4R) [rad/s]."""
+        return math.sqrt(0.75 * self.gravity / self.R)
+
+
+def housner_restitution(alpha: float) -> float:
+    """Velocity ratio of an ideally inelastic impact, 1 - 3/2 sin(alpha)^2 (Housner 1963).
+
+    Not clipped: it is negative where sin(alpha)^2 > 2/3.
+    """
+    return 1.0 - 1.5 * math.sin(alpha) ** 2

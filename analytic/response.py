@@ -1,0 +1,116 @@
+"""What every source answers: the outcome of a case, its peak, its impacts, what it cost."""
+
+import enum
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Outcome(enum.Enum):
+    """How a response ends."""
+
+    AT_REST = "at rest"
+    ROCKED = "rocked"
+    OVERTURNED = "overturned"
+    FAILED = "failed"
+
+    @property
+    def sentence(self) -> str:
+        """The sentence a reader sees."""
+        return _SENTENCES[self]
+
+
+_SENTENCES = {
+    Outcome.AT_REST: "the block never lifted off the base",
+    Outcome.ROCKED: "the block rocked and survived",
+    Outcome.OVERTURNED: "the block overturned",
+    Outcome.FAILED: "no usable result",
+}
+
+
+class Impact(NamedTuple):
+    """An impact of the block on its base, when the rotation passes through zero.
+
+    time [s]; velocity_before and velocity_after are angular velocities [rad/s] with their signs.
+    """
+
+    time: float
+    velocity_before: float
+    velocity_after: float
+
+    @property
+    def ratio(self) -> float:
+        """Velocity ratio, to be compared with `RigidBlock.restitution`."""
+        return self.velocity_after / self.velocity_before
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """A sampled response: time [s], rotation theta [rad], angular velocity [rad/s], equal lengths.
+
+    A history ends where its response ends, for instance when the block lies on its side.
+    """
+
+    time: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """The response of a block to a base motion, from whichever source.
+
+    Attributes
+    ----------
+    outcome : Outcome
+        At rest, rocked, overturned or failed.
+    peak_ratio : float
+        Largest abs(theta)/alpha; inf when overturned, 0 at rest, nan when failed.
+    crossed : bool
+        Whether abs(theta) exceeded alpha at some time; such a block may still survive.
+    impacts : tuple of Impact
+        Impacts until the peak is decided, or until `duration` where one was asked for. Of the
+        infinitely many impacts before a rest, those that were resolved.
+    uplifts, rests : tuple of float
+        Times [s] at which the block leaves its rest, and comes to rest again.
+    steps : int
+        Steps of the integrator or engine.
+    wall_s : float
+        Seconds spent on the steps; building a scene and compiling are not included.
+    message : str
+        Why a response failed, or what a reader should know about it.
+    history : History or None
+        Present when samples were asked for.
+    min_normal, friction_needed : float
+        Smallest normal force over weight, and largest abs(horizontal)/normal force, that the
+        no-lift-off, no-slip reference needs; nan where a source does not report them.
+    slip_m : float
+        Largest distance [m] that an engine's contact slid; nan for the reference.
+    """
+
+    outcome: Outcome
+    peak_ratio: float
+    crossed: bool = False
+    impacts: tuple[Impact, ...] = ()
+    uplifts: tuple[float, ...] = ()
+    rests: tuple[float, ...] = ()
+    steps: int = 0
+    wall_s: float = 0.0
+    message: str = ""
+    history: History | None = field(default=None, repr=False)
+    min_normal: float = float("nan")
+    friction_needed: float = float("nan")
+    slip_m: float = float("nan")
+
+    @classmethod
+    def failure(cls, message: str, *, steps: int = 0, wall_s: float = 0.0) -> "Response":
+        """Make a failed response with its reason."""
+        return cls(
+            outcome=Outcome.FAILED,
+            peak_ratio=float("nan"),
+            steps=steps,
+            wall_s=wall_s,
+            message=message,
+        )
