@@ -1,1 +1,27 @@
-"""The reference: exact rocking, its linearizations and the paper's solvers."""
+"""The reference: exact rocking of a rigid block, its linearizations and the paper's solvers.
+
+Conventions: SI units and radians; width B and height H are full dimensions; theta > 0 turns the
+block about its corner O, and a positive ground acceleration drives it to theta < 0 first; times
+are ground times, from the start of the base motion.
+"""
+
+from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
+from analytic.models import MODELS
+from analytic.motion import Motion, SinePulse
+from analytic.response import History, Impact, Outcome, Response
+from analytic.simulate import peak_ratios, simulate
+
+__all__ = [
+    "MODELS",
+    "STANDARD_GRAVITY",
+    "History",
+    "Impact",
+    "Motion",
+    "Outcome",
+    "Response",
+    "RigidBlock",
+    "SinePulse",
+    "housner_restitution",
+    "peak_ratios",
+    "simulate",
+]

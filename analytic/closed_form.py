@@ -1,0 +1,126 @@
+"""Closed forms: the linear models on a segment, free rocking, overturning criteria.
+
+In the kernels the rotation is folded to one side, y = s theta > 0, time is in units of 1/p and
+acceleration in g. The public functions take radians and the units they name.
+"""
+
+import math
+
+
+from analytic.compiled import kernel
+from analytic.motion import FloatArray
+
+
+SERIES_BELOW = 1.0
+"""Below this argument the two differences of functions are summed from their series."""
+
+
+@kernel
+def sine_minus_sinh(x: float, u: float) -> float:
+    """Return sin(x)/x - sinh(u)/u without cancellation."""
+    if max(x, u) > SERIES_BELOW:
+        first = math.sin(x) / x if x > 0.0 else 1.0
+        return first - math.sinh(u) / u
+    total = 0.0
+    px, pu, factorial = 1.0, 1.0, 1.0
+    for i in range(1, 11):
+        px *= -x * x
+        pu *= u * u
+        factorial *= 2 * i * (2 * i + 1)
+        total += (px - pu) / factorial
+    return total
+
+
+@kernel
+def cosh_minus_cosine(x: float, u: float) -> float:
+    """Return (cosh(u) - 1)/u^2 - (1 - cos(x))/x^2 without cancellation."""
+    if max(x, u) > SERIES_BELOW:
+        second = 2.0 * (math.sin(0.5 * x) / x) ** 2 if x > 0.0 else 0.5
+        return 2.0 * (math.sinh(0.5 * u) / u) ** 2 - second
+    total = 0.0
+    px, pu, factorial = 1.0, 1.0, 2.0
+    for i in range(1, 11):
+        px *= -x * x
+        pu *= u * u
+        factorial *= (2 * i + 1) * (2 * i + 2)
+        total += (pu - px) / factorial
+    return total
+
+
+@kernel
+def linear_state(
+    k: float,
+    saddle: float,
+    factor: float,
+    segment: FloatArray,
+    side: float,
+    tau: float,
+    lead: int,
+    y: float,
+    v: float,
+    h: float,
+) -> tuple[float, float]:
+    """Advance y'' = -k^2 [saddle - y + side factor a(tau)] from (y, v) at tau by h > 0.
+
+    The paper's equations (6)-(10) and (17)-(21), corrected, with the terms grouped so that short
+    steps lose no digits. `lead` is 3 after a smooth uplift, where y'' starts from zero.
+    """
+    start, _, amplitude, omega, phase, offset, slope = segment
+    psi = omega * (tau - start) + phase
+    F = side * factor * amplitude
+    D = saddle + side * factor * (offset + slope * (tau - start)) + F * math.sin(psi)
+    if lead == 3:
+        D = 0.0
+    rate = side * factor * slope
+    C = F * k * k / (k * k + omega * omega)
+    u, x = k * h, omega * h
+    half_u, half_x = math.sinh(0.5 * u), math.sin(0.5 * x)
+    sinh, cosh_1 = math.sinh(u), 2.0 * half_u * half_u
+    g3 = sine_minus_sinh(x, u)
+    forced = C * x * (x * math.sin(psi) * cosh_minus_cosine(x, u) + math.cos(psi) * g3)
+    end = y * (1.0 + cosh_1) + v / k * sinh - D * cosh_1 + rate * (h - sinh / k) + forced
+    shaken = -C * omega * (x * math.sin(psi) * g3 + math.cos(psi) * (2.0 * half_x**2 + cosh_1))
+    velocity = k * (y - D) * sinh + v * (1.0 + cosh_1) - rate * cosh_1 + shaken
+    return end, velocity
+
+
+@kernel
+def work_to(linear: bool, k: float, saddle: float, alpha: float, y: float) -> float:
+    """Return half the squared velocity a free block loses between rotations 0 and y."""
+    if linear:
+        return 0.5 * k * k * y * (2.0 * saddle - y)
+    return 2.0 * math.sin(alpha - 0.5 * y) * math.sin(0.5 * y)
+
+
+@kernel
+def turning_rotation(linear: bool, k: float, saddle: float, alpha: float, work: float) -> float:
+    """Return the rotation at which a free block has lost `work`; inf if it passes the saddle."""
+    barrier = work_to(linear, k, saddle, alpha, saddle)
+    if work >= barrier:
+        return math.inf
+    if linear:
+        scaled = 2.0 * work / (k * k)
+        return scaled / (saddle + math.sqrt(saddle * saddle - scaled))
+    y = alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - work)))
+    # the difference of two angles loses digits when y is small, where Newton's method is safe
+    if y < 0.5 * alpha:
+        for _ in range(3):
+            y -= (work_to(False, k, saddle, alpha, y) - work) / math.sin(alpha - y)
+    return y
+
+
+@kernel
+def free_peak(
+    linear: bool, k: float, saddle: float, alpha: float, eta: float, y: float, v: float
+) -> float:
+    """Return the largest rotation still to come of a free block, inf when it overturns.
+
+    From (y, v) at the end of the ground motion; an inward motion passes through one impact.
+    """
+    work = 0.5 * v * v + work_to(linear, k, saddle, alpha, y)
+    barrier = work_to(linear, k, saddle, alpha, saddle)
+    if y >= saddle and (v >= 0.0 or work <= barrier):
+        return math.inf
+    if v < 0.0:
+        work *= eta * eta
+    return turning_rotation(linear, k, saddle, alpha, work)

@@ -1,0 +1,258 @@
+"""The reference's two entries: `simulate` for one response, `peak_ratios` for arrays of them."""
+
+import math
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic import excursions
+from analytic.block import RigidBlock, housner_restitution
+from analytic.checks import finite
+from analytic.compiled import kernel
+from analytic.models import find_model
+from analytic.motion import FloatArray, Motion
+from analytic.polynomial import ORDER
+from analytic.response import History, Impact, Outcome, Response
+
+OUTCOMES = {
+    excursions.AT_REST: Outcome.AT_REST,
+    excursions.ROCKED: Outcome.ROCKED,
+    excursions.OVERTURNED: Outcome.OVERTURNED,
+    excursions.FAILED: Outcome.FAILED,
+}
+CHUNK = 4096
+"""Cases that one call of the compiled kernel takes."""
+
+
+def simulate(
+    block: RigidBlock,
+    motion: Motion,
+    model: str = "exact",
+    *,
+    duration: float | None = None,
+    times: ArrayLike | None = None,
+) -> Response:
+    """Solve one response.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    motion : Motion
+        Ground motion, for instance a `SinePulse`.
+    model : {"exact", "housner", "modified", "onset-matched"}
+    duration : float, optional
+        Follow the response until this time [s], at least the duration of the motion. Without it
+        the response is followed to the end of the motion only; outcome and peak of the free
+        rocking after that come from its energy in either case.
+    times : array_like, optional
+        Ground times [s], increasing, at which to sample `Response.history`; it ends with the
+        response.
+
+    Returns
+    -------
+    Response
+        With `min_normal` and `friction_needed` for the exact model.
+
+    Raises
+    ------
+    ValueError
+        If the model is unknown, the duration shorter than the motion or the times not increasing.
+    """
+    declared = find_model(model)
+    until, sampled = check_window(motion, duration, times)
+    arguments = (
+        declared.linear,
+        *(float(constant) for constant in declared.constants(np.float64(block.alpha))),
+        block.alpha,
+        block.restitution,
+        scaled_segments(block, motion),
+        until * block.p,
+        sampled * block.p,
+    )
+    samples = np.empty((2, sampled.size))
+    limits = np.array([math.inf, 0.0]) if not declared.linear else np.empty(0)
+    work = np.empty((excursions.ROWS, ORDER + 1))
+    log = np.empty((64, 4))
+    began = time.perf_counter()
+    code, peak, steps, _, events, end = excursions.march(*arguments, samples, log, limits, work)
+    if events > len(log):
+        log = np.empty((events, 4))
+        code, peak, steps, _, events, end = excursions.march(*arguments, samples, log, limits, work)
+    wall_s = time.perf_counter() - began
+
+    outcome = OUTCOMES[code]
+    if outcome is Outcome.FAILED:
+        return Response.failure(f"more than {excursions.MAX_STEPS} steps", steps=steps)
+    impacts, uplifts, rests = read_log(log[:events], block.p)
+    seen = int(np.searchsorted(sampled, end / block.p, side="right"))
+    history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)
+    return Response(
+        outcome=outcome,
+        peak_ratio=math.inf if outcome is Outcome.OVERTURNED else peak / block.alpha,
+        crossed=outcome is Outcome.OVERTURNED or peak > block.alpha,
+        impacts=impacts,
+        uplifts=uplifts,
+        rests=rests,
+        steps=steps,
+        wall_s=wall_s,
+        history=history if times is not None else None,
+        min_normal=min(float(limits[0]), 1.0) if limits.size else math.nan,
+        friction_needed=float(limits[1]) if limits.size else math.nan,
+    )
+
+
+def peak_ratios(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str = "exact",
+    restitution: ArrayLike | None = None,
+) -> tuple[FloatArray, NDArray[np.object_]]:
+    """Solve many responses to sine pulses, on all cores.
+
+    By similarity a case has no more parameters than these.
+
+    Parameters
+    ----------
+    alpha : array_like
+        Slenderness [rad], in (0, pi/2).
+    amplitude_g : array_like
+        Amplitude of the pulse [g].
+    omega_over_p : array_like
+        Circular frequency of the pulse over the frequency parameter of the block.
+    half_cycles : array_like of int
+        Length of the pulse.
+    model : {"exact", "housner", "modified", "onset-matched"}
+    restitution : array_like, optional
+        Velocity ratio at impacts, in [0, 1]; Housner's value by default.
+
+    Returns
+    -------
+    peak_ratio : ndarray
+        Largest abs(theta)/alpha in the broadcast shape; inf when overturned, 0 at rest.
+    outcome : ndarray of Outcome
+
+    Raises
+    ------
+    ValueError
+        If an argument is outside its range or the shapes do not broadcast.
+    """
+    declared = find_model(model)
+    alpha = np.asarray(alpha, dtype=np.float64)
+    if restitution is None:
+        restitution = np.maximum(np.vectorize(housner_restitution, otypes=[float])(alpha), 0.0)
+    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
+    shape = columns[0].shape
+    cases = np.stack([np.ravel(column).astype(np.float64) for column in columns])
+    check_cases(cases)
+    constants = np.stack(declared.constants(cases[0]))
+    peaks, codes = np.empty(cases.shape[1]), np.empty(cases.shape[1], dtype=np.int8)
+
+    def solve(start: int) -> None:
+        part = slice(start, start + CHUNK)
+        solve_pulses(declared.linear, constants[:, part], cases[:, part], peaks[part], codes[part])
+
+    starts = range(0, cases.shape[1], CHUNK)
+    if len(starts) <= 1:
+        for start in starts:
+            solve(start)
+    else:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(solve, starts))
+    members = np.array([OUTCOMES[code] for code in sorted(OUTCOMES)], dtype=object)
+    return peaks.reshape(shape), members[codes].reshape(shape)
+
+
+@kernel
+def solve_pulses(
+    linear: bool,
+    constants: FloatArray,
+    cases: FloatArray,
+    peaks: FloatArray,
+    codes: NDArray[np.int8],
+) -> None:
+    """Solve a chunk of `peak_ratios`, one case a column."""
+    work = np.empty((excursions.ROWS, ORDER + 1))
+    segments = np.zeros((1, 7))
+    nothing, no_samples, no_log = np.empty(0), np.empty((2, 0)), np.empty((0, 4))
+    for i in range(cases.shape[1]):
+        alpha, amplitude, omega, half_cycles, eta = cases[:, i]
+        segments[0, 1] = half_cycles * math.pi / omega
+        segments[0, 2] = amplitude
+        segments[0, 3] = omega
+        code, peak, _, _, _, _ = excursions.march(
+            linear,
+            constants[0, i],
+            constants[1, i],
+            constants[2, i],
+            alpha,
+            eta,
+            segments,
+            0.0,
+            nothing,
+            no_samples,
+            no_log,
+            nothing,
+            work,
+        )
+        codes[i] = int(code)
+        peaks[i] = peak / alpha
+        if code == excursions.OVERTURNED:
+            peaks[i] = math.inf
+        elif code == excursions.FAILED:
+            peaks[i] = math.nan
+
+
+def scaled_segments(block: RigidBlock, motion: Motion) -> FloatArray:
+    """Return the segments of a motion in units of 1/p and g."""
+    p, g = block.p, block.gravity
+    return motion.segments() * np.array([p, p, 1.0 / g, 1.0 / p, 1.0, 1.0 / g, 1.0 / (g * p)])
+
+
+def check_window(
+    motion: Motion, duration: float | None, times: ArrayLike | None
+) -> tuple[float, FloatArray]:
+    """Return the time to follow a response to [s] and its sample times, checked."""
+    until = motion.duration if duration is None else finite("duration", duration)
+    if until < motion.duration:
+        raise ValueError(
+            f"duration is {duration!r}; it must be at least that of the motion, {motion.duration}"
+        )
+    sampled = np.empty(0) if times is None else np.asarray(times, dtype=np.float64)
+    if sampled.ndim != 1 or np.any(np.diff(sampled) < 0.0) or not np.all(np.isfinite(sampled)):
+        raise ValueError("times must be a list of finite, increasing numbers")
+    return until, sampled
+
+
+def read_log(
+    log: FloatArray, p: float
+) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...]]:
+    """Turn the rows of a log into impacts, uplifts and rests in seconds and radians."""
+    impacts = tuple(
+        Impact(float(t) / p, float(before) * p, float(after) * p)
+        for kind, t, before, after in log
+        if kind == excursions.IMPACT
+    )
+    uplifts = tuple(float(t) / p for kind, t, _, _ in log if kind == excursions.UPLIFT)
+    rests = tuple(float(t) / p for kind, t, _, _ in log if kind == excursions.REST)
+    return impacts, uplifts, rests
+
+
+def check_cases(cases: FloatArray) -> None:
+    """Raise ValueError unless every column of (alpha, amplitude, omega, n, eta) is in range."""
+    alpha, _, omega, half_cycles, eta = cases
+    whole = (half_cycles >= 1.0) & (half_cycles == np.floor(half_cycles))
+    rules = {
+        "alpha": (alpha, (alpha > 0.0) & (alpha < 0.5 * math.pi), "in (0, pi/2)"),
+        "amplitude_g": (cases[1], np.isfinite(cases[1]), "finite"),
+        "omega_over_p": (omega, (omega > 0.0) & np.isfinite(omega), "positive and finite"),
+        "half_cycles": (half_cycles, whole, "a whole number from 1 on"),
+        "restitution": (eta, (eta >= 0.0) & (eta <= 1.0), "between 0 and 1"),
+    }
+    for name, (column, allowed, words) in rules.items():
+        if not np.all(allowed):
+            raise ValueError(f"{name} is {column[~allowed][0]}; it must be {words}")

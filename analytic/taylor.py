@@ -1,0 +1,104 @@
+"""Taylor series of a step of rocking, and how far it can be trusted.
+
+The rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g.
+"""
+
+import math
+
+from analytic.compiled import kernel
+from analytic.motion import FloatArray
+from analytic.polynomial import ORDER
+
+TOLERANCE = 1e-16
+"""Truncation error of a step, relative to the rotation it covers."""
+
+
+@kernel
+def expand_forcing(segment: FloatArray, tau: float, side: float, f: FloatArray) -> None:
+    """Write the Taylor coefficients at `tau` of side x ground acceleration into `f`.
+
+    `segment` is a row of `motion.SEGMENT_COLUMNS`, in units of 1/p and g.
+    """
+    start, _, amplitude, omega, phase, offset, slope = segment
+    angle = omega * (tau - start) + phase
+    f[0] = side * amplitude * math.sin(angle)
+    f[1] = side * amplitude * omega * math.cos(angle)
+    for i in range(2, ORDER + 1):
+        f[i] = -omega * omega * f[i - 2] / (i * (i - 1))
+    f[0] += side * (offset + slope * (tau - start))
+    f[1] += side * slope
+
+
+@kernel
+def expand_exact(
+    alpha: float, f: FloatArray, lead: int, y: FloatArray, sine: FloatArray, cosine: FloatArray
+) -> None:
+    """Extend the series y[0], y[1] by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
+
+    Parameters
+    ----------
+    alpha : float
+        Slenderness [rad].
+    f : ndarray
+        Taylor coefficients of side x ground acceleration [g].
+    lead : int
+        Power with which y is known to start; 3 after a smooth uplift, where the acceleration
+        passes through zero.
+    y : ndarray, shape (ORDER + 1,)
+        Filled from index 2 on.
+    sine, cosine : ndarray
+        Workspace: the series of sin z and cos z.
+    """
+    sine[0] = math.sin(alpha - y[0])
+    cosine[0] = math.cos(alpha - y[0])
+    for i in range(ORDER - 1):
+        if i > 0:
+            s = 0.0
+            c = 0.0
+            for j in range(1, i + 1):
+                rate = j * y[j]
+                s -= rate * cosine[i - j]
+                c += rate * sine[i - j]
+            sine[i] = s / i
+            cosine[i] = c / i
+        forced = 0.0
+        for j in range(i + 1):
+            forced += f[j] * cosine[i - j]
+        y[i + 2] = -(sine[i] + forced) / ((i + 1) * (i + 2))
+        if i == 0 and lead == 3:
+            y[2] = 0.0
+
+
+@kernel
+def expand_linear(
+    k: float, saddle: float, factor: float, f: FloatArray, lead: int, y: FloatArray
+) -> None:
+    """Extend the series y[0], y[1] by a linear model, y'' = -k^2 [saddle - y + factor f]."""
+    for i in range(ORDER - 1):
+        pull = factor * f[i] - y[i]
+        if i == 0:
+            pull += saddle
+        y[i + 2] = -k * k * pull / ((i + 1) * (i + 2))
+        if i == 0 and lead == 3:
+            y[2] = 0.0
+
+
+@kernel
+def trusted_step(y: FloatArray) -> float:
+    """Return the step over which the series y is accurate to TOLERANCE.
+
+    The last two terms are held below TOLERANCE times the largest of the first four, which for a
+    step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
+    """
+    h = 1.0
+    for _ in range(2):
+        size = max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h)
+        last = abs(y[ORDER]) / size
+        before = abs(y[ORDER - 1]) / size
+        bound = 4.0
+        if last > 0.0:
+            bound = min(bound, (TOLERANCE / last) ** (1.0 / ORDER))
+        if before > 0.0:
+            bound = min(bound, (TOLERANCE / before) ** (1.0 / (ORDER - 1)))
+        h = bound
+    return h
