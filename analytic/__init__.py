@@ -10,6 +10,7 @@ from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
+from analytic.steppers import integrate
 
 __all__ = [
     "MODELS",
@@ -22,6 +23,7 @@ __all__ = [
     "RigidBlock",
     "SinePulse",
     "housner_restitution",
+    "integrate",
     "peak_ratios",
     "simulate",
 ]

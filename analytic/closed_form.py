@@ -6,10 +6,9 @@ acceleration in g. The public functions take radians and the units they name.
 
 import math
 
-
 from analytic.compiled import kernel
+from analytic.models import Law
 from analytic.motion import FloatArray
-
 
 SERIES_BELOW = 1.0
 """Below this argument the two differences of functions are summed from their series."""
@@ -49,16 +48,7 @@ def cosh_minus_cosine(x: float, u: float) -> float:
 
 @kernel
 def linear_state(
-    k: float,
-    saddle: float,
-    factor: float,
-    segment: FloatArray,
-    side: float,
-    tau: float,
-    lead: int,
-    y: float,
-    v: float,
-    h: float,
+    law: Law, segment: FloatArray, side: float, tau: float, lead: int, y: float, v: float, h: float
 ) -> tuple[float, float]:
     """Advance y'' = -k^2 [saddle - y + side factor a(tau)] from (y, v) at tau by h > 0.
 
@@ -66,61 +56,59 @@ def linear_state(
     steps lose no digits. `lead` is 3 after a smooth uplift, where y'' starts from zero.
     """
     start, _, amplitude, omega, phase, offset, slope = segment
+    k, force = law.k, side * law.factor
     psi = omega * (tau - start) + phase
-    F = side * factor * amplitude
-    D = saddle + side * factor * (offset + slope * (tau - start)) + F * math.sin(psi)
+    sine, cosine = math.sin(psi), math.cos(psi)
+    D = law.saddle + force * (offset + slope * (tau - start) + amplitude * sine)
     if lead == 3:
         D = 0.0
-    rate = side * factor * slope
-    C = F * k * k / (k * k + omega * omega)
+    rate = force * slope
+    C = force * amplitude * k * k / (k * k + omega * omega)
     u, x = k * h, omega * h
-    half_u, half_x = math.sinh(0.5 * u), math.sin(0.5 * x)
-    sinh, cosh_1 = math.sinh(u), 2.0 * half_u * half_u
+    sinh, cosh_1 = math.sinh(u), 2.0 * math.sinh(0.5 * u) ** 2
     g3 = sine_minus_sinh(x, u)
-    forced = C * x * (x * math.sin(psi) * cosh_minus_cosine(x, u) + math.cos(psi) * g3)
+    forced = C * x * (x * sine * cosh_minus_cosine(x, u) + cosine * g3)
     end = y * (1.0 + cosh_1) + v / k * sinh - D * cosh_1 + rate * (h - sinh / k) + forced
-    shaken = -C * omega * (x * math.sin(psi) * g3 + math.cos(psi) * (2.0 * half_x**2 + cosh_1))
-    velocity = k * (y - D) * sinh + v * (1.0 + cosh_1) - rate * cosh_1 + shaken
+    shaken = C * omega * (x * sine * g3 + cosine * (2.0 * math.sin(0.5 * x) ** 2 + cosh_1))
+    velocity = k * (y - D) * sinh + v * (1.0 + cosh_1) - rate * cosh_1 - shaken
     return end, velocity
 
 
 @kernel
-def work_to(linear: bool, k: float, saddle: float, alpha: float, y: float) -> float:
-    """Return half the squared velocity a free block loses between rotations 0 and y."""
-    if linear:
-        return 0.5 * k * k * y * (2.0 * saddle - y)
-    return 2.0 * math.sin(alpha - 0.5 * y) * math.sin(0.5 * y)
+def work_to(law: Law, y: float) -> float:
+    """Return half the squared velocity that a free block loses between rotations 0 and y."""
+    if law.linear:
+        return 0.5 * law.k * law.k * y * (2.0 * law.saddle - y)
+    return 2.0 * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
 
 
 @kernel
-def turning_rotation(linear: bool, k: float, saddle: float, alpha: float, work: float) -> float:
+def turning_rotation(law: Law, work: float) -> float:
     """Return the rotation at which a free block has lost `work`; inf if it passes the saddle."""
-    barrier = work_to(linear, k, saddle, alpha, saddle)
+    barrier = work_to(law, law.saddle)
     if work >= barrier:
         return math.inf
-    if linear:
-        scaled = 2.0 * work / (k * k)
-        return scaled / (saddle + math.sqrt(saddle * saddle - scaled))
-    y = alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - work)))
+    if law.linear:
+        scaled = 2.0 * work / (law.k * law.k)
+        return scaled / (law.saddle + math.sqrt(law.saddle * law.saddle - scaled))
+    y = law.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - work)))
     # the difference of two angles loses digits when y is small, where Newton's method is safe
-    if y < 0.5 * alpha:
+    if y < 0.5 * law.alpha:
         for _ in range(3):
-            y -= (work_to(False, k, saddle, alpha, y) - work) / math.sin(alpha - y)
+            y -= (work_to(law, y) - work) / math.sin(law.alpha - y)
     return y
 
 
 @kernel
-def free_peak(
-    linear: bool, k: float, saddle: float, alpha: float, eta: float, y: float, v: float
-) -> float:
+def free_peak(law: Law, y: float, v: float) -> float:
     """Return the largest rotation still to come of a free block, inf when it overturns.
 
     From (y, v) at the end of the ground motion; an inward motion passes through one impact.
     """
-    work = 0.5 * v * v + work_to(linear, k, saddle, alpha, y)
-    barrier = work_to(linear, k, saddle, alpha, saddle)
-    if y >= saddle and (v >= 0.0 or work <= barrier):
+    work = 0.5 * v * v + work_to(law, y)
+    barrier = work_to(law, law.saddle)
+    if y >= law.saddle and (v >= 0.0 or work <= barrier):
         return math.inf
     if v < 0.0:
-        work *= eta * eta
-    return turning_rotation(linear, k, saddle, alpha, work)
+        work *= law.eta * law.eta
+    return turning_rotation(law, work)

@@ -1,7 +1,7 @@
 """One decorator for every compiled kernel of the reference."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -13,7 +13,7 @@ def kernel(function: Function) -> Function:
 
     Sums may be reordered and contracted; infinities and NaN keep their meaning.
     """
-    compiled: Function = numba.njit(
+    compile_ = numba.njit(
         cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}
-    )(function)
-    return compiled
+    )
+    return cast(Function, compile_(function))

@@ -15,11 +15,28 @@ the onset, which is c/q for the linear models.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from analytic.motion import FloatArray
+
+
+class Law(NamedTuple):
+    """A model at one slenderness, as the compiled kernels take it.
+
+    linear, k, saddle and factor are those of the module's equations, factor being q; alpha is the
+    slenderness [rad], onset the acceleration [g] that lifts the block, eta the velocity ratio at
+    impacts.
+    """
+
+    linear: bool
+    k: float
+    saddle: float
+    factor: float
+    alpha: float
+    onset: float
+    eta: float
 
 
 def _one(alpha: FloatArray) -> FloatArray:
@@ -57,15 +74,26 @@ class Model:
     frequency: Callable[[FloatArray], FloatArray] = _one
     forcing: Callable[[FloatArray], FloatArray] = _one
 
-    def constants(self, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return frequency, saddle and forcing factor at the slenderness alpha [rad]."""
-        return self.frequency(alpha), self.saddle(alpha), self.forcing(alpha)
-
     def onset(self, alpha: FloatArray) -> FloatArray:
         """Ground acceleration [g] above which a resting block lifts off."""
         if not self.linear:
             return np.tan(alpha)
         return self.saddle(alpha) / self.forcing(alpha)
+
+    def constants(self, alpha: FloatArray) -> tuple[FloatArray, ...]:
+        """Return k, saddle, factor, alpha and onset of a `Law` at the slenderness alpha [rad]."""
+        return (
+            self.frequency(alpha),
+            self.saddle(alpha),
+            self.forcing(alpha),
+            alpha,
+            self.onset(alpha),
+        )
+
+    def law(self, alpha: float, eta: float) -> Law:
+        """Return the model at one slenderness alpha [rad] and velocity ratio eta."""
+        k, saddle, factor, _, onset = map(float, self.constants(np.array(alpha)))
+        return Law(self.linear, k, saddle, factor, alpha, onset, eta)
 
 
 EXACT = Model(name="exact", title="Exact", linear=False, saddle=_same)

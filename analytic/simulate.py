@@ -3,26 +3,32 @@
 import math
 import os
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic import excursions
 from analytic.block import RigidBlock, housner_restitution
 from analytic.checks import finite
 from analytic.compiled import kernel
-from analytic.models import find_model
+from analytic.excursions import (
+    FAILED,
+    IMPACT,
+    OVERTURNED,
+    REST,
+    UPLIFT,
+    End,
+    Record,
+    march,
+    workspace,
+)
+from analytic.models import Law, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.polynomial import ORDER
 from analytic.response import History, Impact, Outcome, Response
 
-OUTCOMES = {
-    excursions.AT_REST: Outcome.AT_REST,
-    excursions.ROCKED: Outcome.ROCKED,
-    excursions.OVERTURNED: Outcome.OVERTURNED,
-    excursions.FAILED: Outcome.FAILED,
-}
+OUTCOMES = (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED, Outcome.FAILED)
+"""In the order of the codes in `analytic.excursions`."""
 CHUNK = 4096
 """Cases that one call of the compiled kernel takes."""
 
@@ -61,46 +67,65 @@ def simulate(
     ValueError
         If the model is unknown, the duration shorter than the motion or the times not increasing.
     """
-    declared = find_model(model)
+    law = find_model(model).law(block.alpha, block.restitution)
     until, sampled = check_window(motion, duration, times)
-    arguments = (
-        declared.linear,
-        *(float(constant) for constant in declared.constants(np.float64(block.alpha))),
-        block.alpha,
-        block.restitution,
-        scaled_segments(block, motion),
-        until * block.p,
-        sampled * block.p,
-    )
+    segments = scaled_segments(block, motion)
+
+    def solve(record: Record) -> End:
+        return march(law, segments, until * block.p, record, workspace())
+
+    return respond(block, solve, sampled, times is not None, watched=not law.linear)
+
+
+def respond(
+    block: RigidBlock,
+    solve: Callable[[Record], End],
+    sampled: FloatArray,
+    recorded: bool,
+    watched: bool,
+) -> Response:
+    """Run a compiled march and turn what it records into a response in seconds.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    solve : callable
+        The march, given where to record.
+    sampled : ndarray
+        Times [s] of the history; kept in the response if `recorded`.
+    recorded, watched : bool
+        Whether the response has a history, and limits of the contact forces.
+    """
     samples = np.empty((2, sampled.size))
-    limits = np.array([math.inf, 0.0]) if not declared.linear else np.empty(0)
-    work = np.empty((excursions.ROWS, ORDER + 1))
     log = np.empty((64, 4))
     began = time.perf_counter()
-    code, peak, steps, _, events, end = excursions.march(*arguments, samples, log, limits, work)
-    if events > len(log):
-        log = np.empty((events, 4))
-        code, peak, steps, _, events, end = excursions.march(*arguments, samples, log, limits, work)
+    while True:
+        limits = np.array([1.0, 0.0]) if watched else np.empty(0)
+        record = Record(sampled * block.p, samples, log, limits)
+        end = solve(record)
+        if end.events <= len(log):
+            break
+        log = np.empty((end.events, 4))
     wall_s = time.perf_counter() - began
 
-    outcome = OUTCOMES[code]
+    outcome = OUTCOMES[end.outcome]
     if outcome is Outcome.FAILED:
-        return Response.failure(f"more than {excursions.MAX_STEPS} steps", steps=steps)
-    impacts, uplifts, rests = read_log(log[:events], block.p)
-    seen = int(np.searchsorted(sampled, end / block.p, side="right"))
+        return Response.failure("too many steps", steps=end.steps, wall_s=wall_s)
+    impacts, uplifts, rests = read_log(log[: end.events], block.p)
+    seen = int(np.searchsorted(record.times, end.time, side="right"))
     history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)
     return Response(
         outcome=outcome,
-        peak_ratio=math.inf if outcome is Outcome.OVERTURNED else peak / block.alpha,
-        crossed=outcome is Outcome.OVERTURNED or peak > block.alpha,
+        peak_ratio=math.inf if outcome is Outcome.OVERTURNED else end.peak / block.alpha,
+        crossed=outcome is Outcome.OVERTURNED or end.peak > block.alpha,
         impacts=impacts,
         uplifts=uplifts,
         rests=rests,
-        steps=steps,
+        steps=end.steps,
         wall_s=wall_s,
-        history=history if times is not None else None,
-        min_normal=min(float(limits[0]), 1.0) if limits.size else math.nan,
-        friction_needed=float(limits[1]) if limits.size else math.nan,
+        history=history if recorded else None,
+        min_normal=float(limits[0]) if watched else math.nan,
+        friction_needed=float(limits[1]) if watched else math.nan,
     )
 
 
@@ -163,8 +188,7 @@ def peak_ratios(
     else:
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(solve, starts))
-    members = np.array([OUTCOMES[code] for code in sorted(OUTCOMES)], dtype=object)
-    return peaks.reshape(shape), members[codes].reshape(shape)
+    return peaks.reshape(shape), np.array(OUTCOMES, dtype=object)[codes].reshape(shape)
 
 
 @kernel
@@ -176,34 +200,22 @@ def solve_pulses(
     codes: NDArray[np.int8],
 ) -> None:
     """Solve a chunk of `peak_ratios`, one case a column."""
-    work = np.empty((excursions.ROWS, ORDER + 1))
+    work = workspace()
     segments = np.zeros((1, 7))
-    nothing, no_samples, no_log = np.empty(0), np.empty((2, 0)), np.empty((0, 4))
+    record = Record(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
     for i in range(cases.shape[1]):
-        alpha, amplitude, omega, half_cycles, eta = cases[:, i]
+        k, saddle, factor, alpha, onset = constants[:, i]
+        _, amplitude, omega, half_cycles, eta = cases[:, i]
         segments[0, 1] = half_cycles * math.pi / omega
         segments[0, 2] = amplitude
         segments[0, 3] = omega
-        code, peak, _, _, _, _ = excursions.march(
-            linear,
-            constants[0, i],
-            constants[1, i],
-            constants[2, i],
-            alpha,
-            eta,
-            segments,
-            0.0,
-            nothing,
-            no_samples,
-            no_log,
-            nothing,
-            work,
-        )
-        codes[i] = int(code)
-        peaks[i] = peak / alpha
-        if code == excursions.OVERTURNED:
+        law = Law(linear, k, saddle, factor, alpha, onset, eta)
+        end = march(law, segments, 0.0, record, work)
+        codes[i] = end.outcome
+        peaks[i] = end.peak / alpha
+        if end.outcome == OVERTURNED:
             peaks[i] = math.inf
-        elif code == excursions.FAILED:
+        elif end.outcome == FAILED:
             peaks[i] = math.nan
 
 
@@ -235,10 +247,10 @@ def read_log(
     impacts = tuple(
         Impact(float(t) / p, float(before) * p, float(after) * p)
         for kind, t, before, after in log
-        if kind == excursions.IMPACT
+        if kind == IMPACT
     )
-    uplifts = tuple(float(t) / p for kind, t, _, _ in log if kind == excursions.UPLIFT)
-    rests = tuple(float(t) / p for kind, t, _, _ in log if kind == excursions.REST)
+    uplifts = tuple(float(t) / p for kind, t, _, _ in log if kind == UPLIFT)
+    rests = tuple(float(t) / p for kind, t, _, _ in log if kind == REST)
     return impacts, uplifts, rests
 
 

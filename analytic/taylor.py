@@ -6,6 +6,7 @@ The rotation is folded to one side, y = s theta > 0; time is in units of 1/p, ac
 import math
 
 from analytic.compiled import kernel
+from analytic.models import Law
 from analytic.motion import FloatArray
 from analytic.polynomial import ORDER
 
@@ -31,56 +32,41 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, f: FloatArray) 
 
 @kernel
 def expand_exact(
-    alpha: float, f: FloatArray, lead: int, y: FloatArray, sine: FloatArray, cosine: FloatArray
+    law: Law, f: FloatArray, y: FloatArray, sine: FloatArray, cosine: FloatArray
 ) -> None:
-    """Extend the series y[0], y[1] by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
+    """Extend the series y[0], y[1], y[2] by the exact equation, y'' = -[sin z + f cos z].
 
     Parameters
     ----------
-    alpha : float
-        Slenderness [rad].
-    f : ndarray
+    law : Law
+        Of which alpha is used: z = alpha - y.
+    f : ndarray, shape (ORDER + 1,)
         Taylor coefficients of side x ground acceleration [g].
-    lead : int
-        Power with which y is known to start; 3 after a smooth uplift, where the acceleration
-        passes through zero.
     y : ndarray, shape (ORDER + 1,)
-        Filled from index 2 on.
-    sine, cosine : ndarray
+        Filled from index 3 on.
+    sine, cosine : ndarray, shape (ORDER + 1,)
         Workspace: the series of sin z and cos z.
     """
-    sine[0] = math.sin(alpha - y[0])
-    cosine[0] = math.cos(alpha - y[0])
-    for i in range(ORDER - 1):
-        if i > 0:
-            s = 0.0
-            c = 0.0
-            for j in range(1, i + 1):
-                rate = j * y[j]
-                s -= rate * cosine[i - j]
-                c += rate * sine[i - j]
-            sine[i] = s / i
-            cosine[i] = c / i
-        forced = 0.0
+    sine[0] = math.sin(law.alpha - y[0])
+    cosine[0] = math.cos(law.alpha - y[0])
+    for i in range(1, ORDER - 1):
+        s = c = forced = 0.0
+        for j in range(1, i + 1):
+            rate = j * y[j]
+            s -= rate * cosine[i - j]
+            c += rate * sine[i - j]
+        sine[i] = s / i
+        cosine[i] = c / i
         for j in range(i + 1):
             forced += f[j] * cosine[i - j]
         y[i + 2] = -(sine[i] + forced) / ((i + 1) * (i + 2))
-        if i == 0 and lead == 3:
-            y[2] = 0.0
 
 
 @kernel
-def expand_linear(
-    k: float, saddle: float, factor: float, f: FloatArray, lead: int, y: FloatArray
-) -> None:
-    """Extend the series y[0], y[1] by a linear model, y'' = -k^2 [saddle - y + factor f]."""
-    for i in range(ORDER - 1):
-        pull = factor * f[i] - y[i]
-        if i == 0:
-            pull += saddle
-        y[i + 2] = -k * k * pull / ((i + 1) * (i + 2))
-        if i == 0 and lead == 3:
-            y[2] = 0.0
+def expand_linear(law: Law, f: FloatArray, y: FloatArray) -> None:
+    """Extend the series y[0], y[1], y[2] by a linear model, y'' = -k^2 [saddle - y + q f]."""
+    for i in range(1, ORDER - 1):
+        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) / ((i + 1) * (i + 2))
 
 
 @kernel
