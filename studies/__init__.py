@@ -1,0 +1,49 @@
+"""The questions asked of the reference and the engines; each module is one question."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from analytic.block import RigidBlock
+    from analytic.motion import FloatArray, Motion
+    from analytic.response import Response
+
+__all__ = ["respond"]
+
+
+def respond(
+    source: str,
+    block: RigidBlock,
+    motion: Motion,
+    *,
+    duration: float | None = None,
+    times: FloatArray | None = None,
+    **options: Any,
+) -> Response:
+    """Ask any source, by its name, for the response of a block to a base motion.
+
+    Parameters
+    ----------
+    source : str
+        A name of `studies.sources.SOURCES`; an engine takes a preset after a colon, as in
+        ``"mujoco:fixed"``.
+    block : RigidBlock
+    motion : Motion
+        For instance a `SinePulse`.
+    duration : float, optional
+        Observe until this time [s], not before the motion ends. By default the response is
+        followed until its peak is decided, and no longer.
+    times : array, optional
+        Ground times [s] at which `Response.history` is sampled.
+    **options
+        Passed on to the source: `step` of the solvers, any setting of an engine's `Scene`.
+
+    Raises
+    ------
+    studies.sources.UnknownSourceError
+        If there is no such source or preset.
+    """
+    from studies.sources import resolve
+
+    return resolve(source).call(block, motion, duration=duration, times=times, **options)

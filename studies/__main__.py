@@ -1,0 +1,87 @@
+"""The command line: `rocking`, and `python -m studies`."""
+
+import os
+import signal
+import sys
+
+from cyclopts import App, CycloptsError, Parameter
+
+from studies.arguments import BadInputError
+from studies.journal import FolderError
+
+COMMANDS = {
+    "compare": """One block and one pulse through every source, side by side.
+
+For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), its
+relative difference from the exact solution, the impacts and their velocity ratio beside Housner's
+η, the steps and the run time. All sources observe the same window of time.""",
+    "histories": """The paper's time histories, figures 2, 4 and 5.
+
+Writes for each figure its samples (CSV), its drawing (PNG) and what was found (text).""",
+    "sweep": """The paper's sensitivity analysis, figures 6 to 9.
+
+240 cases a figure through every named source. Writes sweep.csv (a row for each case and source), a
+PNG for each figure, summary.csv, findings.txt and provenance.json. Finished cases are stored at
+once: a run that was interrupted goes on where it stopped when the same command is given again.""",
+    "redraw": "Draw a results folder again, from its CSVs alone.",
+}
+"""Each is the function `command` of the module of that name, loaded when it is asked for."""
+
+
+def make_app() -> App:
+    """Return the command line."""
+    app = App(
+        name="rocking",
+        help="A rocking block: the exact solution, its linearizations, PyBullet and MuJoCo.",
+        help_format="markdown",
+        help_formatter="default",
+        version=_version,
+        default_parameter=Parameter(negative=()),
+        suppress_keyboard_interrupt=False,
+    )
+    for name, help_text in COMMANDS.items():
+        app.command(f"studies.{name}:command", name=name, help=help_text)
+    return app
+
+
+def _version() -> str:
+    from studies.provenance import project_version
+
+    return project_version()
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
+    try:
+        code = make_app()(
+            arguments,
+            exit_on_error=False,
+            print_error=False,
+            verbose=False,
+            result_action="return_value",
+        )
+        sys.stdout.flush()
+    except (CycloptsError, BadInputError, FolderError) as error:
+        return _refuse(str(error))
+    except KeyboardInterrupt as stop:
+        print(f"rocking: interrupted; {stop}".rstrip("; "), file=sys.stderr)
+        return 128 + signal.SIGINT
+    except BrokenPipeError:
+        # whoever read the output has gone: nothing more can be said there, not even on exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE
+    return code if isinstance(code, int) else 0
+
+
+def _refuse(message: str) -> int:
+    print(f"rocking: {' '.join(message.split())}", file=sys.stderr)
+    return 2
+
+
+def main() -> None:
+    """Run the command that the arguments name, and exit."""
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,275 @@
+"""One block, one pulse, every named source side by side."""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import pandas as pd
+
+from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.motion import FloatArray, Motion, SinePulse
+from analytic.response import Outcome, Response
+from studies import provenance
+from studies.arguments import (
+    BadInputError,
+    Count,
+    Positive,
+    check_plot,
+    check_sources,
+    several,
+)
+from studies.cases import PULSES, free_rocking_window
+from studies.differences import scientific
+from studies.figures import draw_histories, save
+from studies.journal import Row
+from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
+
+DEFAULT_SOURCES = ("exact", "housner", "modified", "pybullet", "mujoco")
+
+
+def command(
+    *,
+    width: Positive,
+    height: Positive,
+    amplitude: Positive,
+    omega: Positive,
+    pulse: Literal["half-sine", "full-sine"] | None = None,
+    half_cycles: Count | None = None,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    duration: Positive | None = None,
+    step: Positive | None = None,
+    plot: Path | None = None,
+    json: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Compare the sources on one block and one pulse.
+
+    Parameters
+    ----------
+    width
+        Full width B of the block [m].
+    height
+        Full height H of the block [m].
+    amplitude
+        Amplitude of the ground acceleration [g], positive: the mirror image of a pulse has the
+        mirror image of its response.
+    omega
+        Circular frequency of the pulse [rad/s].
+    pulse
+        half-sine or full-sine; full-sine unless --half-cycles is given.
+    half_cycles
+        Number of half cycles, instead of --pulse.
+    sources
+        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco; an engine
+        takes a preset after a colon, as in pybullet:naive.
+    duration
+        Observe until this time [s], at least the length of the pulse; by default the pulse and
+        8/p of free rocking.
+    step
+        p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
+    plot
+        Draw the time histories over each other into this file (.png, .pdf or .svg).
+    json
+        Print one JSON object for each source, one a line, instead of the table.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine is given up.
+    """
+    check_sources(sources)
+    check_plot(plot)
+    block, motion = _posed(width, height, amplitude, omega, _half_cycles(pulse, half_cycles))
+    window = _window(block, motion, duration)
+    times = np.linspace(0.0, window, 1501) if plot else None
+    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    rows = compare(block, motion, sources, window, times=times, step=step, executor=executor)
+    print(json_lines(rows) if json else table_text(block, motion, window, rows))
+    if plot:
+        draw(rows, block, motion, plot)
+    return exit_code(rows)
+
+
+def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
+    if pulse and half_cycles:
+        raise BadInputError(
+            f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
+        )
+    return half_cycles or PULSES[pulse or "full-sine"]
+
+
+def _posed(
+    width: float, height: float, amplitude: float, omega: float, half_cycles: int
+) -> tuple[RigidBlock, SinePulse]:
+    try:
+        block = RigidBlock(width=width, height=height)
+        motion = SinePulse(
+            amplitude=amplitude * STANDARD_GRAVITY, omega=omega, half_cycles=half_cycles
+        )
+    except ValueError as error:
+        raise BadInputError(f"--{error}") from error
+    return block, motion
+
+
+def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
+    if duration is None:
+        return free_rocking_window(block, motion)
+    if duration < motion.duration:
+        raise BadInputError(
+            f"--duration is {duration:g}; it must be at least the length of the pulse, "
+            f"{motion.duration:.6g} s"
+        )
+    return duration
+
+
+def compare(
+    block: RigidBlock,
+    motion: Motion,
+    sources: Sequence[str],
+    window: float,
+    *,
+    executor: Executor,
+    times: FloatArray | None = None,
+    step: float | None = None,
+) -> list[Row]:
+    """Ask every source; return a row for each, with its response and its distance from exact.
+
+    Returns
+    -------
+    list of dict
+        Columns source, outcome, peak_ratio, impacts, steps, wall_s, message, response,
+        difference (relative; nan where not both survived) and velocity_ratio (the median).
+    """
+    from studies.sources import resolve
+
+    asked = list(dict.fromkeys(["exact", *sources]))
+    jobs = [
+        Job(
+            labels={},
+            block=block,
+            motion=motion,
+            source=name,
+            duration=window,
+            times=times,
+            options={"step": step} if step and resolve(name).kind != "model" else {},
+        )
+        for name in asked
+    ]
+    rows = run_jobs(jobs, executor=executor, reduce=_reduce)
+    exact = next(row["peak_ratio"] for row in rows if row["source"] == "exact")
+    for row in rows:
+        row["difference"] = row["peak_ratio"] / exact - 1.0 if exact else math.nan
+    by_source = {row["source"]: row for row in rows}
+    return [by_source[name] for name in sources]
+
+
+def _reduce(response: Response) -> Row:
+    ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
+    return {
+        **summary(response),
+        "velocity_ratio": median(ratios) if ratios else math.nan,
+        "response": response,
+    }
+
+
+def json_lines(rows: list[Row]) -> str:
+    """Return one JSON object a line; a peak that is not finite is null."""
+    names = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
+    objects: list[dict[str, Any]] = [{name: row[name] for name in names} for row in rows]
+    for item in objects:
+        if not math.isfinite(item["peak_ratio"]):
+            item["peak_ratio"] = None
+    return "\n".join(json.dumps(item, allow_nan=False) for item in objects)
+
+
+def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[Row]) -> str:
+    """Return the table with its head, and the messages under it."""
+    table = pd.DataFrame(
+        {
+            "source": [row["source"] for row in rows],
+            "outcome": [row["outcome"] for row in rows],
+            "θmax/θcr": [_peak(row) for row in rows],
+            "vs exact": [_difference(row) for row in rows],
+            "impacts": [row["impacts"] for row in rows],
+            "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
+            "steps": [row["steps"] for row in rows],
+            "time": [_duration(row["wall_s"]) for row in rows],
+        }
+    )
+    notes = [f"{row['source']}: {row['message']}" for row in rows if row["message"]]
+    return "\n".join(
+        [
+            f"block   B = {block.width:g} m, H = {block.height:g} m: "
+            f"α = θcr = {block.alpha:.5g} rad, p = {block.p:.5g} rad/s",
+            f"ground  {_pulse_name(motion.half_cycles)}, {motion.amplitude / block.gravity:g} g, "
+            f"{motion.omega:g} rad/s, {motion.duration:.4g} s; observed for {window:.4g} s",
+            f"ratio   velocity after over before an impact, the median; Housner's η = "
+            f"{block.restitution:.6g}",
+            "",
+            table.to_string(index=False),
+            *notes,
+        ]
+    )
+
+
+def _pulse_name(half_cycles: int) -> str:
+    names = {number: f"{name} pulse" for name, number in PULSES.items()}
+    return names.get(half_cycles, f"{half_cycles} half cycles")
+
+
+def _peak(row: Row) -> str:
+    return f"{row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
+
+
+def _difference(row: Row) -> str:
+    value = row["difference"]
+    return ("" if value < 0 else "+") + scientific(value) if math.isfinite(value) else "-"
+
+
+def _fixed(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.6f}"
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds * 1e6:.0f} µs" if seconds < 1e-3 else f"{seconds * 1e3:.1f} ms"
+
+
+def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> None:
+    """Draw the histories of the rows over each other."""
+    labels = {
+        "panel": "",
+        "pulse": _pulse_name(motion.half_cycles),
+        "width_m": block.width,
+        "height_m": block.height,
+        "amplitude_g": motion.amplitude / block.gravity,
+    }
+    parts = [
+        samples(row["response"], block, motion, {**labels, "source": row["source"]})
+        for row in rows
+        if row["outcome"] != Outcome.FAILED.value
+    ]
+    if parts:
+        save(draw_histories(pd.concat(parts), "The same block, the same shaking"), path)
+
+
+def samples(
+    response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
+) -> pd.DataFrame:
+    """Return the history of a response as a tidy table, with the ground acceleration."""
+    history = response.history
+    if history is None:
+        return pd.DataFrame()
+    return pd.DataFrame(
+        {
+            **labels,
+            "outcome": response.outcome.value,
+            "time_s": history.time,
+            "ground_g": motion.acceleration(history.time) / block.gravity,
+            "theta_ratio": history.theta / block.alpha,
+            "velocity_rad_s": history.velocity,
+        }
+    )

@@ -1,0 +1,197 @@
+"""The paper's time histories, figures 2, 4 and 5, and what it says about them."""
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import pandas as pd
+
+from studies import provenance
+from studies.arguments import Count, Positive, check_sources, refuse_repeats, several
+from studies.cases import HISTORIES, HistoryCase, free_rocking_window
+from studies.compare import samples
+from studies.figures import draw_histories, save
+from studies.findings import Finding, findings_text
+from studies.journal import Row, open_journal
+from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
+
+DEFAULT_SOURCES = {
+    2: ("exact", "rk4", "average-acceleration"),
+    4: ("exact", "housner", "modified"),
+    5: ("exact", "housner", "modified"),
+}
+"""What the paper draws; its numerical solution is the exact model's."""
+
+TITLES = {
+    2: "Figure 2: fourth-order Runge–Kutta and average acceleration",
+    4: "Figure 4: half-sine pulse",
+    5: "Figure 5: full-sine pulse",
+}
+
+
+def command(
+    *,
+    out: Path,
+    figure: Annotated[tuple[Literal[2, 4, 5], ...], several] = (2, 4, 5),
+    sources: Annotated[tuple[str, ...] | None, several] = None,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Draw the paper's time histories and test what it says about them.
+
+    Writes, for each figure, its samples (CSV), its drawing (PNG) and the findings (text).
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    figure
+        Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default.
+    sources
+        By default what the paper draws: exact, rk4 and average-acceleration in figure 2; exact,
+        housner and modified in 4 and 5. Any other source may be named.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    """
+    refuse_repeats("--figure", figure)
+    if sources is not None:
+        check_sources(sources)
+    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    began = time.perf_counter()
+    identity = provenance.identity("histories", sources=sources)
+    products = [f"figure-{number}.csv" for number in HISTORIES]
+    rows: list[Row] = []
+    with open_journal(out, identity, products):
+        path = out / "provenance.json"
+        record = provenance.begin(path, identity, {"figures": list(figure)})
+        for number in figure:
+            rows += one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
+        provenance.finish(path, record, began, len(rows))
+    return exit_code(rows)
+
+
+def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Executor) -> list[Row]:
+    """Run, store, draw and judge one figure; return its rows."""
+    cases = HISTORIES[figure]
+    rows = run_jobs(
+        [history_job(case, source) for case in cases for source in sources],
+        executor=executor,
+        reduce=lambda response: {**summary(response), "response": response},
+    )
+    table = tidy(cases, rows)
+    provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
+    redraw(folder, figure)
+    text = report(figure, rows, table)
+    provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
+    print(text, end="\n\n")
+    return rows
+
+
+def history_job(case: HistoryCase, source: str) -> Job:
+    """Return the job of one line in one panel."""
+    window = free_rocking_window(case.block, case.motion)
+    return Job(
+        labels={"figure": case.figure, "panel": case.panel},
+        block=case.block,
+        motion=case.motion,
+        source=source,
+        duration=window,
+        times=np.linspace(0.0, window, 1501),
+    )
+
+
+def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
+    """Return the samples of every row under each other."""
+    by_panel = {case.panel: case for case in cases}
+    parts = []
+    for row in rows:
+        case = by_panel[row["panel"]]
+        labels = {
+            "figure": case.figure,
+            "panel": case.panel,
+            "pulse": case.pulse,
+            "width_m": case.width_m,
+            "height_m": case.height_m,
+            "amplitude_g": case.amplitude_g,
+            "source": row["source"],
+        }
+        parts.append(samples(row["response"], case.block, case.motion, labels))
+    return pd.concat(parts, ignore_index=True)
+
+
+def redraw(folder: Path, figure: int) -> Path:
+    """Draw a figure from its CSV alone."""
+    path = folder / f"figure-{figure}.png"
+    save(draw_histories(pd.read_csv(path.with_suffix(".csv")), TITLES[figure]), path)
+    return path
+
+
+def report(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> str:
+    """Return the peaks of a figure as a table, and its findings."""
+    peaks = pd.DataFrame(rows).assign(
+        shown=lambda f: (
+            f["peak_ratio"].map("{:.4f}".format).where(f["outcome"] == "rocked", f["outcome"])
+        )
+    )
+    shown = peaks.pivot(index="panel", columns="source", values="shown")
+    shown = shown[list(dict.fromkeys(row["source"] for row in rows))]
+    shown.index = [f"{figure}-{panel}" for panel in shown.index]
+    shown.columns.name = "θmax/θcr"
+    return f"{TITLES[figure]}\n{shown.to_string()}\n{findings_text(judge(figure, rows, table))}"
+
+
+def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> list[Finding]:
+    """Test what the paper says about a figure."""
+    checks = {2: solvers_coincide, 4: housner_strays, 5: housner_overturns}
+    needed = {2: {"rk4", "average-acceleration"}}.get(figure, {"exact", "housner", "modified"})
+    check = checks[figure]
+    statement = str(check.__doc__).splitlines()[0].rstrip(".")
+    if not needed.issubset(row["source"] for row in rows):
+        return [Finding(statement, None, f"needs the sources {', '.join(sorted(needed))}")]
+    holds, numbers = check(rows, table)
+    return [Finding(statement, holds, numbers)]
+
+
+def solvers_coincide(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """Runge–Kutta and average acceleration coincide (within 0.001 of θcr)."""
+    lines = table.pivot(index=["panel", "time_s"], columns="source", values="theta_ratio")
+    apart = (lines["rk4"] - lines["average-acceleration"]).abs().groupby("panel").max()
+    words = ", ".join(f"2-{panel} {value:.1e}" for panel, value in apart.items())
+    return bool((apart < 1e-3).all()), f"largest difference of θ/θcr: {words}"
+
+
+def housner_strays(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """Housner's error grows as H/B falls, and the modified linearization's stays smaller."""
+    peak = {(row["panel"], row["source"]): row["peak_ratio"] for row in rows}
+    errors = {
+        name: [peak[panel, name] / peak[panel, "exact"] - 1.0 for panel in "abc"]
+        for name in ("housner", "modified")
+    }
+    far, near = errors["housner"], errors["modified"]
+    holds = abs(far[0]) < abs(far[1]) < abs(far[2]) and all(
+        abs(m) < abs(h) for h, m in zip(far, near, strict=True)
+    )
+    words = (
+        f"{name} " + ", ".join(f"{value:+.1%}" for value in values)
+        for name, values in errors.items()
+    )
+    return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
+
+
+def housner_overturns(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """In 5-b and 5-c the block overturns by Housner alone, and survives otherwise."""
+    outcome = {(row["panel"], row["source"]): row["outcome"] for row in rows}
+    holds = all(
+        outcome[panel, "housner"] == "overturned"
+        and outcome[panel, "exact"] == outcome[panel, "modified"] == "rocked"
+        for panel in "bc"
+    )
+    words = (
+        f"5-{panel}: " + ", ".join(f"{name} {outcome[panel, name]}" for name in DEFAULT_SOURCES[5])
+        for panel in "bc"
+    )
+    return holds, "; ".join(words)

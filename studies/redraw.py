@@ -1,0 +1,29 @@
+"""Draw a results folder again, from its CSVs alone."""
+
+from pathlib import Path
+
+from studies import histories, sweep
+from studies.arguments import BadInputError
+from studies.cases import HISTORIES
+
+
+def command(folder: Path, /) -> int:
+    """Draw the figures of a results folder again, from its CSVs alone.
+
+    Parameters
+    ----------
+    folder
+        Results of `rocking sweep` or `rocking histories`.
+    """
+    drawn = sweep.redraw(folder) if (folder / "sweep.csv").is_file() else []
+    drawn += [
+        histories.redraw(folder, figure)
+        for figure in HISTORIES
+        if (folder / f"figure-{figure}.csv").is_file()
+    ]
+    if not drawn:
+        raise BadInputError(
+            f"FOLDER is {str(folder)!r}; it must hold a sweep.csv or the CSV of a figure"
+        )
+    print("\n".join(str(path) for path in drawn))
+    return 0

@@ -1,0 +1,106 @@
+"""Who answers: the models, the paper's solvers and the engines, each by its name."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Literal
+
+from analytic import MODELS, integrate, simulate
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from analytic.response import Response
+from engines import ENGINES, PRESETS
+
+Kind = Literal["model", "solver", "engine"]
+"""Models and solvers take microseconds and cannot crash; an engine may do either."""
+
+
+class UnknownSourceError(ValueError):
+    """A source or preset that does not exist."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
+
+    It can be sent to another process or machine. `preset` is an engine's, by default the best
+    there is.
+    """
+
+    kind: Kind
+    call: Callable[..., Response]
+    preset: str = ""
+
+
+def run_engine(
+    block: RigidBlock,
+    motion: Motion,
+    *,
+    engine: str,
+    preset: str,
+    duration: float | None = None,
+    times: FloatArray | None = None,
+    **options: Any,
+) -> Response:
+    """Build the scene and let the engine run it; `options` are settings of the `Scene`."""
+    from engines import run
+    from engines.scene import Scene
+
+    scene = Scene(
+        block=block,
+        motion=motion,
+        preset=preset,
+        duration=duration,
+        times=None if times is None else times.tolist(),
+        **options,
+    )
+    return run(engine, scene)
+
+
+def _engine(name: str, preset: str) -> Source:
+    return Source("engine", partial(run_engine, engine=name, preset=preset), preset)
+
+
+BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"
+"""The preset that an engine's plain name stands for."""
+
+SOURCES: dict[str, Source] = {
+    **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
+    "rk4": Source("solver", partial(integrate, method="rk4")),
+    "average-acceleration": Source("solver", partial(integrate, method="average-acceleration")),
+    **{name: _engine(name, BEST_PRESET) for name in ENGINES},
+}
+"""Every source; a new model or engine appears here by being registered in its own storey."""
+
+
+def resolve(name: str) -> Source:
+    """Return the source called `name`, which may be an engine with a preset after a colon.
+
+    Raises
+    ------
+    UnknownSourceError
+        If there is no such source or preset; the message lists what there is.
+    """
+    plain, colon, preset = name.partition(":")
+    source = SOURCES.get(plain)
+    if source is None or (colon and (source.kind != "engine" or preset not in PRESETS)):
+        raise UnknownSourceError(f"source is {name!r}; it must be one of {allowed()}")
+    if not colon:
+        return source
+    return replace(source, call=partial(source.call, preset=preset), preset=preset)
+
+
+def allowed() -> str:
+    """Return the sentence that lists the sources and presets."""
+    names = ", ".join(SOURCES)
+    return f"{names}; an engine takes a preset after a colon: {', '.join(PRESETS)}"
+
+
+def check_sources(names: Iterable[str]) -> None:
+    """Raise ValueError if a source is unknown or named twice."""
+    seen: set[str] = set()
+    for name in names:
+        resolve(name)
+        if name in seen:
+            raise ValueError(f"source {name!r} is named twice; name each source once")
+        seen.add(name)
