@@ -15,7 +15,7 @@ from analytic.compiled import kernel
 from analytic.forces import POINTS, watch, watch_free
 from analytic.models import Law
 from analytic.motion import FloatArray
-from analytic.polynomial import MAX_DEPTH, ORDER, next_root, slope, to_bernstein, value
+from analytic.polynomial import MAX_DEPTH, ORDER, next_root, slope, value
 from analytic.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.taylor import expand_exact, expand_forcing, expand_linear, trusted_step
 
@@ -104,22 +104,26 @@ def first_crossing(d: FloatArray, lead: int, level: float, work: FloatArray) -> 
 @kernel
 def highest(d: FloatArray, lead: int, end: float, above: float, work: FloatArray) -> float:
     """Return the maximum of sum d[i] x^i on [0, end] if it exceeds `above`, else `above`."""
-    b, rate = work[0], work[1]
-    to_bernstein(d, ORDER, b)
-    bound = b[0]
+    bound = d[0]
     for i in range(1, ORDER + 1):
-        bound = max(bound, b[i])
+        bound += max(d[i], 0.0)
     if bound <= above:
         return above
     top = max(above, value(d, ORDER, end))
+    rate = work[0]
     shift = max(lead, 1)
     degree = ORDER - shift
+    least = most = 0.0
     for i in range(degree + 1):
         rate[i] = (i + shift) * d[i + shift]
-    x = next_root(rate, degree, 0.0, work[2:])
+        least += min(rate[i], 0.0) if i > 0 else rate[i]
+        most += max(rate[i], 0.0) if i > 0 else rate[i]
+    if least > 0.0 or most < 0.0:
+        return top
+    x = next_root(rate, degree, 0.0, work[1:])
     while x < end:
         top = max(top, value(d, ORDER, x))
-        x = next_root(rate, degree, x, work[2:])
+        x = next_root(rate, degree, x, work[1:])
     return top
 
 
@@ -254,7 +258,9 @@ def march(law: Law, segments: FloatArray, until: float, record: Record, work: Fl
             y, v = linear_state(law, segment, side, tau, lead, y, v, x * h)
         else:
             y, v = value(d, ORDER, x), slope(d, ORDER, x) / h
-        tau = boundary if landed and not hit else tau + x * h
+        # a root within rounding of the step's end may escape the polynomial, not the state
+        hit = hit or y <= 0.0
+        tau = boundary if landed and x == 1.0 else tau + x * h
         lead = 0
         if not hit:
             continue

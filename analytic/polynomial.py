@@ -18,6 +18,9 @@ ORDER = 24
 MAX_DEPTH = 45
 """Halvings after which two roots count as a touching point, not as two crossings."""
 
+NEWTON_DONE = 1e-9
+"""Relative length of the last Newton step of a root."""
+
 INVERSE_BINOMIALS = np.array(
     [[1.0 / math.comb(n, i) if i <= n else 0.0 for i in range(ORDER + 1)] for n in range(ORDER + 1)]
 )
@@ -89,10 +92,14 @@ def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float
             low = x
         gradient = slope(a, degree, x)
         new = x - f / gradient if gradient != 0.0 else low
-        if not low < new < high:
+        if low < new < high:
+            # the error of a Newton step is of the order of its square
+            if abs(new - x) <= NEWTON_DONE * x:
+                return new
+        else:
             new = 0.5 * (low + high)
-        if abs(new - x) <= 2e-16 * abs(x):
-            return new
+            if not low < new < high:
+                return new
         x = new
     return x
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
 from analytic.checks import positive
+from analytic.closed_form import free_peak
 from analytic.compiled import kernel
 from analytic.excursions import (
     AT_REST,
@@ -188,7 +189,9 @@ def tread(
         while j < len(segments) and tau >= segments[j, 1]:
             j += 1
         if until > moving and tau >= until:
-            return End(ROCKED, peak, steps, impacts, events, tau)
+            ahead = free_peak(law, y, v)
+            outcome = OVERTURNED if ahead == math.inf else ROCKED
+            return End(outcome, max(peak, ahead), steps, impacts, events, tau)
         if steps == MAX_STEPS:
             return End(FAILED, peak, steps, impacts, events, tau)
 
@@ -215,9 +218,10 @@ def tread(
         turned = v > 0.0 and rate <= 0.0 and end < law.saddle
         tau = boundary if landed else tau + length
         y, v = end, rate
-        if y >= LYING or (tau > moving and y > law.saddle and v >= 0.0):
+        decided = until <= moving < tau
+        if y >= LYING or (decided and y > law.saddle and v >= 0.0):
             return End(OVERTURNED, peak, steps, impacts, events, tau)
-        if until <= moving and tau > moving and turned:
+        if decided and turned:
             return End(ROCKED, peak, steps, impacts, events, tau)
         if not (y <= tolerance and v < 0.0):
             h = step if v > 0.0 else h

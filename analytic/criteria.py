@@ -1,0 +1,87 @@
+"""Closed-form criteria: free rocking, and the ground motions that overturn a block.
+
+They use nothing of the solvers, and so are checks on them.
+"""
+
+import math
+from collections.abc import Callable
+
+from scipy.optimize import brentq
+from scipy.special import ellipk, ellipkinc
+
+from analytic.block import RigidBlock
+from analytic.models import find_model
+
+
+def quarter_period(block: RigidBlock, theta: float, model: str = "exact") -> float:
+    """Return the time [s] that a block released at rest at `theta` [rad] takes to its impact.
+
+    Linear models: acosh(c/(c - theta))/k, the exact one by elliptic integrals (Housner 1963 gives
+    the first; Yim, Chopra and Penzien 1980 the second in another form).
+
+    Raises
+    ------
+    ValueError
+        If theta is not between 0 and the rotation at which the model's block overturns.
+    """
+    law = find_model(model).law(block.alpha, block.restitution)
+    if not 0.0 < theta < law.saddle:
+        raise ValueError(f"theta is {theta!r}; it must be between 0 and {law.saddle}")
+    if law.linear:
+        return math.acosh(law.saddle / (law.saddle - theta)) / (law.k * block.p)
+    modulus = math.cos(0.5 * (block.alpha - theta))
+    angle = math.asin(math.cos(0.5 * block.alpha) / modulus)
+    return float(ellipk(modulus**2) - ellipkinc(angle, modulus**2)) / block.p
+
+
+def free_amplitude(block: RigidBlock, theta: float, impacts: int) -> float:
+    """Return the rotation [rad] a block released at `theta` reaches after a number of impacts.
+
+    The exact model's energy: cos(alpha - theta_n) = cos alpha + eta^2n [cos(alpha - theta) - cos
+    alpha], in a form that keeps the digits of small rotations.
+    """
+    lift = 2.0 * math.sin(block.alpha - 0.5 * theta) * math.sin(0.5 * theta)
+    left = block.restitution ** (2 * impacts) * lift
+    barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
+    return block.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - left)))
+
+
+def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
+    """Return the least amplitude, over the onset, that overturns without an impact.
+
+    For Housner's linearization, omega over p; for the modified one, omega over p'. Half-sine:
+    (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)); full-sine: cos psi - (omega/p) sin psi
+    = exp(-(p/omega)(2 pi - psi)); sin psi = onset/amplitude. Housner (1963) drops the
+    exponential, which is not on the safe side.
+
+    Raises
+    ------
+    ValueError
+        If half_cycles is not 1 or 2, or no amplitude below 1e9 onsets overturns the block so.
+    """
+    if half_cycles not in (1, 2):
+        raise ValueError(f"half_cycles is {half_cycles!r}; it must be 1 or 2")
+    sign = 1.0 if half_cycles == 1 else -1.0
+
+    def excess(log_amplitude: float) -> float:
+        psi = math.asin(math.exp(-log_amplitude))
+        wave = omega_over_p * math.sin(psi) - math.cos(psi)
+        return sign * wave - math.exp(-(half_cycles * math.pi - psi) / omega_over_p)
+
+    return math.exp(first_root(excess, 1e-12, math.log(1e9)))
+
+
+def first_root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return a bracketed root to full precision; raise ValueError where there is none."""
+    if function(low) * function(high) > 0.0:
+        raise ValueError(f"no root between {low} and {high}")
+    return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
+
+
+def overturning_velocity(block: RigidBlock) -> float:
+    """Return the sudden ground velocity [m/s] that just overturns a block at rest (exact).
+
+    4 R p sqrt(2 (1 - cos alpha)) / (3 cos alpha), from the angular momentum about the pivot.
+    """
+    barrier = math.sqrt(2.0 * (1.0 - math.cos(block.alpha)))
+    return 4.0 * block.R * block.p * barrier / (3.0 * math.cos(block.alpha))

@@ -1,0 +1,92 @@
+"""The paper's solvers: their orders through impacts, and what the event tolerance costs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import MODELS, Outcome, RigidBlock, SinePulse, integrate, simulate
+from analytic.steppers import METHODS
+
+G = 9.81
+BLOCK = RigidBlock(width=0.5, height=1.0)
+PULSE = SinePulse(amplitude=0.6 * G, omega=2 * math.pi, half_cycles=2)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("average-acceleration", 2)])
+def test_order_along_a_response_with_impacts(method, order, model):
+    onset = MODELS[model].law(BLOCK.alpha, 0.0).onset
+    pulse = SinePulse(amplitude=1.08 * onset * G, omega=2 * math.pi, half_cycles=3)
+    duration = pulse.duration + 1.0
+    times = np.linspace(0.1, duration, 41)
+    exact = simulate(BLOCK, pulse, model, times=times, duration=duration)
+    assert len(exact.impacts) >= 2
+    steps = 0.04 * 0.5 ** np.arange(4)
+    errors = []
+    for step in steps:
+        tested = integrate(
+            BLOCK, pulse, model, method=method, step=step,
+            event_tolerance=1e-14, times=times, duration=duration,
+        )  # fmt: skip
+        assert len(tested.impacts) == len(exact.impacts)
+        errors.append(np.sqrt(np.mean((tested.history.theta - exact.history.theta) ** 2)))
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(order, abs=0.3)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("model", MODELS)
+def test_default_settings_keep_the_papers_outcomes(method, model):
+    reference = simulate(BLOCK, PULSE, model)
+    response = integrate(BLOCK, PULSE, model, method=method)
+    assert response.outcome is reference.outcome
+    if response.outcome is Outcome.ROCKED:
+        # the event tolerance 1e-6 rad ends an excursion up to 1e-6/velocity late
+        assert response.peak_ratio == pytest.approx(reference.peak_ratio, rel=3e-4)
+        assert len(response.impacts) == len(
+            [i for i in reference.impacts if i.time < PULSE.duration]
+        )
+
+
+def test_the_event_tolerance_is_the_error_that_is_left():
+    exact = simulate(BLOCK, PULSE).peak_ratio
+    errors = [
+        abs(integrate(BLOCK, PULSE, event_tolerance=tolerance).peak_ratio / exact - 1)
+        for tolerance in (1e-4, 1e-8, 1e-12)
+    ]
+    assert errors[0] > 10 * errors[1] > 10 * errors[2]
+    assert errors[2] < 1e-10
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_rest_and_uplift_again(method):
+    block = RigidBlock(width=1.0, height=1.05)
+    amplitude = 1.05 * G * math.tan(block.alpha)
+    pulse = SinePulse(amplitude=amplitude, omega=0.9 * block.p, half_cycles=3)
+    exact = simulate(block, pulse)
+    response = integrate(block, pulse, method=method)
+    assert response.uplifts == pytest.approx(exact.uplifts, rel=1e-9)
+    assert len(response.rests) >= 2
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_at_rest_and_overturned(method):
+    quiet = SinePulse(amplitude=0.49 * G, omega=6.0, half_cycles=2)
+    assert integrate(BLOCK, quiet, method=method).outcome is Outcome.AT_REST
+    violent = SinePulse(amplitude=2 * G, omega=2.0, half_cycles=2)
+    assert integrate(BLOCK, violent, method=method).peak_ratio == math.inf
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"method": "euler"}, "method is 'euler'; it must be one of rk4"),
+        ({"step": 0.0}, "step is 0.0"),
+        ({"event_tolerance": -1.0}, "event_tolerance is -1.0"),
+        ({"model": "none"}, "model is 'none'"),
+    ],
+)
+def test_bad_arguments(change, words):
+    with pytest.raises(ValueError, match=words):
+        integrate(BLOCK, PULSE, **change)
