@@ -70,6 +70,8 @@ def run(arguments: list[str]) -> int:
         # whoever read the output has gone: nothing more can be said there, not even on exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 128 + signal.SIGPIPE
+    except OSError as error:
+        return _refuse(str(error))
     return code if isinstance(code, int) else 0
 
 

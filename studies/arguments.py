@@ -32,9 +32,27 @@ Positive = Annotated[float, _number("a positive finite number", lambda value: va
 Count = Annotated[int, _number("a positive whole number", lambda value: value > 0)]
 """A positive whole number."""
 
-several = Parameter(
-    consume_multiple=True, show_default=lambda values: " ".join(str(value) for value in values)
-)
+
+def figures(*allowed: int) -> Parameter:
+    """Return what makes an argument take some of the paper's figures, separated by spaces."""
+
+    def convert(type_: type, tokens: Sequence[Token]) -> tuple[int, ...]:
+        for token in tokens:
+            if token.value not in map(str, allowed):
+                words = ", ".join(map(str, allowed))
+                raise BadInputError(f"{token.keyword} is {token.value!r}; it must be among {words}")
+        return tuple(int(token.value) for token in tokens)
+
+    return Parameter(
+        converter=convert, consume_multiple=True, metavar="INT...", show_default=_spaced
+    )
+
+
+def _spaced(values: Iterable[Any]) -> str:
+    return " ".join(str(value) for value in values)
+
+
+several = Parameter(consume_multiple=True, show_default=_spaced)
 """Values separated by spaces."""
 
 

@@ -24,7 +24,6 @@ from studies.arguments import (
 )
 from studies.cases import PULSES, free_rocking_window
 from studies.differences import scientific
-from studies.figures import draw_histories, save
 from studies.journal import Row
 from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
 
@@ -240,6 +239,8 @@ def _duration(seconds: float) -> str:
 
 def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> None:
     """Draw the histories of the rows over each other."""
+    from studies.figures import draw_histories, save
+
     labels = {
         "panel": "",
         "pulse": _pulse_name(motion.half_cycles),

@@ -3,16 +3,15 @@
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
 
 from studies import provenance
-from studies.arguments import Count, Positive, check_sources, refuse_repeats, several
+from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import HISTORIES, HistoryCase, free_rocking_window
 from studies.compare import samples
-from studies.figures import draw_histories, save
 from studies.findings import Finding, findings_text
 from studies.journal import Row, open_journal
 from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
@@ -34,7 +33,7 @@ TITLES = {
 def command(
     *,
     out: Path,
-    figure: Annotated[tuple[Literal[2, 4, 5], ...], several] = (2, 4, 5),
+    figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
     sources: Annotated[tuple[str, ...] | None, several] = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
@@ -125,6 +124,8 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
 
 def redraw(folder: Path, figure: int) -> Path:
     """Draw a figure from its CSV alone."""
+    from studies.figures import draw_histories, save
+
     path = folder / f"figure-{figure}.png"
     save(draw_histories(pd.read_csv(path.with_suffix(".csv")), TITLES[figure]), path)
     return path

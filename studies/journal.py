@@ -4,7 +4,7 @@ import fcntl
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -68,20 +68,19 @@ def open_journal(
     """
     path = folder / "journal.jsonl"
     header = {"journal": FORMAT, **identity}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with _locked(folder):
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(_locked(folder))
             _check_new_or_ours(folder, path, header, products)
             journal = Journal(path, _finished(path))
-            try:
-                yield journal
-            finally:
-                journal.close()
-    except (FileExistsError, NotADirectoryError) as error:
-        raise FolderError(folder, "it must be a folder, not a file") from error
-    except OSError as error:
-        problem = f"it must be a folder that can be written ({error.strerror or error})"
-        raise FolderError(folder, problem) from error
+        except (FileExistsError, NotADirectoryError) as error:
+            raise FolderError(folder, "it must be a folder, not a file") from error
+        except OSError as error:
+            problem = f"it must be a folder that can be written ({error.strerror or error})"
+            raise FolderError(folder, problem) from error
+        stack.callback(journal.close)
+        yield journal
 
 
 @contextmanager

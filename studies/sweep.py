@@ -4,15 +4,14 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import pandas as pd
 
 from studies import provenance
-from studies.arguments import Count, Positive, check_sources, refuse_repeats, several
+from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import sweep_cases
 from studies.differences import CASE_COLUMNS, summarize, summary_text, with_reference
-from studies.figures import draw_sweep, save
 from studies.findings import findings, findings_text
 from studies.journal import FolderError, Row, open_journal
 from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
@@ -39,7 +38,7 @@ DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", 
 def command(
     *,
     out: Path,
-    figure: Annotated[tuple[Literal[6, 7, 8, 9], ...], several] = (6, 7, 8, 9),
+    figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     step: Positive | None = None,
     jobs: Count | None = None,
@@ -72,7 +71,7 @@ def command(
 
 
 def sweep(
-    figures: Sequence[int],
+    numbers: Sequence[int],
     sources: Sequence[str],
     folder: Path,
     *,
@@ -83,8 +82,8 @@ def sweep(
 
     Parameters
     ----------
-    figures : sequence of int
-        Of 6, 7, 8, 9.
+    numbers : sequence of int
+        Figures, of 6, 7, 8, 9.
     sources : sequence of str
     folder : Path
         Results of another version, with other settings, or of figures and sources that are not
@@ -104,12 +103,12 @@ def sweep(
         If the folder cannot be used.
     """
     began = time.perf_counter()
-    jobs = sweep_jobs(figures, sources, step)
+    jobs = sweep_jobs(numbers, sources, step)
     identity = provenance.identity("sweep", step=step)
     with open_journal(folder, identity, PRODUCTS) as journal:
-        _refuse_a_part(folder, journal.rows.values(), figures, sources)
+        _refuse_a_part(folder, journal.rows.values(), numbers, sources)
         path = folder / "provenance.json"
-        asked = {"figures": list(figures), "sources": list(sources)}
+        asked = {"figures": list(numbers), "sources": list(sources)}
         record = provenance.begin(path, identity, asked)
         try:
             rows = run_jobs(jobs, executor=executor, reduce=summary, journal=journal)
@@ -122,7 +121,7 @@ def sweep(
     return rows
 
 
-def sweep_jobs(figures: Sequence[int], sources: Sequence[str], step: float | None) -> list[Job]:
+def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], step: float | None) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
     stepping = {name: resolve(name).kind != "model" for name in sources}
     options: dict[str, Any] = {} if step is None else {"step": step}
@@ -134,15 +133,15 @@ def sweep_jobs(figures: Sequence[int], sources: Sequence[str], step: float | Non
             source=source,
             options=options if stepping[source] else {},
         )
-        for case in sweep_cases(figures)
+        for case in sweep_cases(numbers)
         for source in sources
     ]
 
 
-def _refuse_a_part(folder: Path, rows: Any, figures: Sequence[int], sources: Sequence[str]) -> None:
+def _refuse_a_part(folder: Path, rows: Any, numbers: Sequence[int], sources: Sequence[str]) -> None:
     left_out = [
         f"{column} {', '.join(map(str, names))}"
-        for column, named in (("figure", figures), ("source", sources))
+        for column, named in (("figure", numbers), ("source", sources))
         if (names := sorted({row[column] for row in rows} - set(named)))
     ]
     if left_out:
@@ -165,6 +164,8 @@ def report(folder: Path) -> str:
 
 def redraw(folder: Path) -> list[Path]:
     """Draw every figure of a folder from its sweep.csv alone; return the files."""
+    from studies.figures import draw_sweep, save
+
     rows = read(folder)
     paths = []
     for figure in rows["figure"].unique():
