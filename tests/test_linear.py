@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from analytic import MODELS, Outcome, RigidBlock, SinePulse, peak_ratios
+from analytic import MODELS, Outcome, RigidBlock, peak_ratios
 from analytic.closed_form import linear_state
 from analytic.criteria import overturning_amplitude, quarter_period
 
@@ -121,11 +121,3 @@ def test_onset_matched_is_housner_with_a_smaller_amplitude():
     matched, _ = peak_ratios(alpha, 0.6, omega, 2, "onset-matched")
     scaled, _ = peak_ratios(alpha, 0.6 * alpha / math.tan(alpha), omega, 2, "housner")
     np.testing.assert_allclose(matched, scaled, rtol=1e-12)
-
-
-def test_importing_the_reference_compiles_nothing_and_pulse_sign_is_kept():
-    from analytic.excursions import march
-
-    pulse = SinePulse(amplitude=-1.0, omega=2.0)
-    assert pulse.acceleration(0.1) < 0
-    assert hasattr(march, "signatures")
