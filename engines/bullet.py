@@ -1,0 +1,268 @@
+"""PyBullet: how a scene is built, set, read back and stepped."""
+
+import contextlib
+import math
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from engines.scene import GEOMETRIES, Pose, Scene, disagreement, one_of
+
+LIBRARY_STEP_S = 1.0 / 240.0
+"""The library's own time step [s]."""
+
+LARGEST_FRICTION = 10.0
+"""The library clamps the coefficient of a pair, the product of the two bodies', to this."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BulletSettings:
+    """Settings of PyBullet; None leaves the library's default.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": small spheres where the corners at the base are.
+    planar : bool
+        Put two corner spheres into the middle plane instead of four at the edges; a box has its
+        four corners either way.
+    multibody : bool
+        Build the block in reduced coordinates, as the library does by default.
+    friction : float
+        Coefficient between block and base, at most 10.
+    step : float or None
+        p dt.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    exact_inertia : bool
+        Set the moments of inertia of the homogeneous block instead of those the library derives
+        from the collision shape.
+    damping : float or None
+        Linear and angular damping of the block.
+    iterations, residual : int, float or None
+        Of the contact solver: how many, and the squared velocity [m2/s2] at which they end.
+    contact_erp, friction_erp : float or None
+        Part of a position error that a step corrects.
+    friction_anchor : bool
+        Hold the point of contact by its position, too.
+    contact_slop : float or None
+        Penetration [m] that is left alone.
+    breaking_threshold : float or None
+        Gap below which a contact is kept. The library holds it once for the whole process.
+    """
+
+    geometry: str = "corners"
+    planar: bool = True
+    multibody: bool = False
+    friction: float = LARGEST_FRICTION
+    step: float | None = 5e-4
+    corner_radius: float = 1e-6
+    exact_inertia: bool = True
+    damping: float | None = 0.0
+    iterations: int | None = 1000
+    residual: float | None = 1e-20
+    contact_erp: float | None = 1.0
+    friction_erp: float | None = 0.0
+    friction_anchor: bool = False
+    contact_slop: float | None = 0.0
+    breaking_threshold: float | None = 0.02
+
+    def __post_init__(self) -> None:
+        one_of("geometry", self.geometry, GEOMETRIES)
+        if self.friction > LARGEST_FRICTION:
+            raise ValueError(
+                f"friction is {self.friction!r}; PyBullet allows at most {LARGEST_FRICTION:g}"
+            )
+
+
+PRESETS: Mapping[str, BulletSettings] = {
+    "naive": BulletSettings(
+        geometry="box",
+        planar=False,
+        multibody=True,
+        friction=1.0,
+        step=None,
+        exact_inertia=False,
+        damping=None,
+        iterations=None,
+        residual=None,
+        contact_erp=None,
+        friction_erp=None,
+        contact_slop=None,
+        breaking_threshold=None,
+    ),
+    "fixed": BulletSettings(),
+}
+
+
+class BulletWorld:
+    """A block on a plane in a PyBullet client of its own.
+
+    The plane is a static rigid body, or where it moves a multibody without mass: of the bases
+    PyBullet offers, the only one whose velocity friction feels.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.settings = scene.choose(PRESETS[scene.preset])
+        step = self.settings.step
+        self.default_step_s = LIBRARY_STEP_S if step is None else step / scene.block.p
+        self._p = _library()
+        self._client = self._p.connect(self._p.DIRECT)
+        self._gravity = scene.block.gravity
+        self._moving = scene.frame == "world"
+        self._velocity = self._dt = 0.0
+        self._set_engine()
+        self._base = self._add(0.0, self._plane(), not self._moving, (0.0, 0.0, 0.0))
+        centre = (0.0, 0.0, 0.5 * scene.block.height)
+        self._body = self._add(scene.mass, self._shape(scene), not self.settings.multibody, centre)
+        self._fault = self._set_bodies(scene)
+
+    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
+        """Advance by `dt_s` [s]; see `engines.scene.World`."""
+        p, client = self._p, self._client
+        if dt_s != self._dt:
+            p.setTimeStep(dt_s, physicsClientId=client)
+            self._dt = dt_s
+        pull = -self._gravity * kick_s / dt_s
+        if self._moving:
+            self._velocity += base_kick
+            p.resetBaseVelocity(self._base, (self._velocity, 0.0, 0.0), physicsClientId=client)
+            p.setGravity(0.0, 0.0, pull, physicsClientId=client)
+        else:
+            p.setGravity(-base_kick / dt_s, 0.0, pull, physicsClientId=client)
+        p.stepSimulation(physicsClientId=client)
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        p, client = self._p, self._client
+        (x, _, z), q = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
+        rate = p.getBaseVelocity(self._body, physicsClientId=client)[1][1]
+        if self._moving:
+            x -= p.getBasePositionAndOrientation(self._base, physicsClientId=client)[0][0]
+        return Pose(x, z, 2.0 * math.atan2(q[1], q[3]), rate)
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that the step is not the one that was set."""
+        engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
+        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
+
+    def close(self) -> None:
+        """Disconnect the client."""
+        self._p.disconnect(self._client)
+
+    def _set_engine(self) -> None:
+        s = self.settings
+        wanted = {
+            "numSolverIterations": s.iterations,
+            "solverResidualThreshold": s.residual,
+            "contactERP": s.contact_erp,
+            "frictionERP": s.friction_erp,
+            "contactSlop": s.contact_slop,
+            "contactBreakingThreshold": s.breaking_threshold,
+        }
+        self._p.setPhysicsEngineParameter(**_given(wanted), physicsClientId=self._client)
+
+    def _plane(self) -> int:
+        return int(
+            self._p.createCollisionShape(
+                self._p.GEOM_PLANE, planeNormal=(0.0, 0.0, 1.0), physicsClientId=self._client
+            )
+        )
+
+    def _shape(self, scene: Scene) -> int:
+        p, s = self._p, self.settings
+        half = (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
+        if s.geometry == "box":
+            box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=self._client)
+            return int(box)
+        radius = s.corner_radius * scene.block.width
+        depths = (0.0,) if s.planar else (-half[1], half[1])
+        corners = [(x, y, radius - half[2]) for x in (-half[0], half[0]) for y in depths]
+        spheres = p.createCollisionShapeArray(
+            shapeTypes=[p.GEOM_SPHERE] * len(corners),
+            radii=[radius] * len(corners),
+            collisionFramePositions=corners,
+            physicsClientId=self._client,
+        )
+        return int(spheres)
+
+    def _add(self, mass: float, shape: int, rigid: bool, position: tuple[float, ...]) -> int:
+        body = self._p.createMultiBody(
+            baseMass=mass,
+            baseCollisionShapeIndex=shape,
+            basePosition=position,
+            useMaximalCoordinates=rigid,
+            physicsClientId=self._client,
+        )
+        return int(body)
+
+    def _set_bodies(self, scene: Scene) -> str:
+        """Set the bodies' dynamics and say where reading them back disagrees."""
+        s = self.settings
+        wanted = {
+            # without its mass in the same call, a block in maximal coordinates becomes NaN
+            "mass": scene.mass,
+            "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
+            "linearDamping": s.damping,
+            "angularDamping": s.damping,
+        }
+        self._change(self._body, lateralFriction=s.friction, **_given(wanted))
+        self._change(self._base, lateralFriction=1.0)
+        block, base = self._dynamics(self._body), self._dynamics(self._base)
+        pairs = {
+            "mass": (scene.mass, block[0]),
+            "friction of the block": (s.friction, block[1]),
+            "friction of the base": (1.0, base[1]),
+        }
+        if s.exact_inertia:
+            pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}
+        if s.iterations is not None:
+            engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
+            pairs["numSolverIterations"] = (s.iterations, engine["numSolverIterations"])
+        return disagreement(pairs)
+
+    def _change(self, body: int, **wanted: Any) -> None:
+        if self.settings.friction_anchor:
+            wanted["frictionAnchor"] = 1
+        self._p.changeDynamics(body, -1, physicsClientId=self._client, **wanted)
+
+    def _dynamics(self, body: int) -> tuple[Any, ...]:
+        return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
+
+
+def build(scene: Scene) -> BulletWorld:
+    """Build a scene, the block at rest on its base."""
+    return BulletWorld(scene)
+
+
+def _given(settings: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in settings.items() if value is not None}
+
+
+def _library() -> Any:
+    """Import PyBullet without the line that it writes past Python to the process's output."""
+    if "pybullet" in sys.modules:
+        return sys.modules["pybullet"]
+    with _silence():
+        return import_module("pybullet")
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    kept = {number: os.dup(number) for number in (1, 2)}
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for number in kept:
+            os.dup2(nowhere, number)
+        yield
+    finally:
+        os.close(nowhere)
+        for number, copy in kept.items():
+            os.dup2(copy, number)
+            os.close(copy)

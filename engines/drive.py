@@ -1,0 +1,83 @@
+"""One run: build the scene, take the steps, look on, and answer."""
+
+import math
+import time
+from importlib import import_module
+from typing import Protocol, cast
+
+from analytic.response import Response
+from engines.ground import velocity_of
+from engines.observe import Observer
+from engines.scene import Scene, World
+
+ENGINES = {"pybullet": "engines.bullet", "mujoco": "engines.mujoco"}
+"""Name of an engine -> module of its adapter, imported when the engine is first asked for."""
+
+LOOK_AT_CLOCK = 256
+"""Steps between two looks at the clock."""
+
+
+class Adapter(Protocol):
+    """What the module of an engine provides."""
+
+    def build(self, scene: Scene) -> World:
+        """Build a scene, the block at rest on its base."""
+
+
+def run(engine: str, scene: Scene) -> Response:
+    """Simulate a scene with an engine.
+
+    Parameters
+    ----------
+    engine : str
+        A name in `ENGINES`.
+    scene : Scene
+        What to simulate, and how.
+
+    Returns
+    -------
+    Response
+        A run that diverges, leaves the problem or takes too long is a failed response with its
+        reason.
+
+    Raises
+    ------
+    ValueError
+        If the engine is unknown, or a setting is not one of the engine's.
+    """
+    if engine not in ENGINES:
+        raise ValueError(f"engine is {engine!r}; it must be one of {', '.join(ENGINES)}")
+    adapter = cast(Adapter, import_module(ENGINES[engine]))
+    world = adapter.build(scene)
+    try:
+        return _simulate(world, scene)
+    finally:
+        world.close()
+
+
+def _simulate(world: World, scene: Scene) -> Response:
+    """Step a world until its response is decided."""
+    dt = world.default_step_s if scene.step is None else scene.step / scene.block.p
+    observer = Observer(scene, dt)
+    limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
+    velocity = velocity_of(scene.motion)
+    base = 0.0
+    steps = 0
+    started = time.perf_counter()
+    problem = ""
+    while not observer.done and not problem:
+        ahead = velocity((steps + 0.5) * dt)
+        world.step(dt, dt, ahead - base)
+        base = ahead
+        steps += 1
+        observer.see(steps * dt, dt, world.pose())
+        problem = observer.broken
+        if steps % LOOK_AT_CLOCK == 0 and time.perf_counter() - started > limit:
+            problem = f"not decided within {limit:g} s"
+        elif steps >= scene.max_steps and not observer.done:
+            problem = f"not decided within {steps} steps"
+    wall_s = time.perf_counter() - started
+    problem = world.fault() or problem
+    if problem:
+        return Response.failure(problem, steps=steps, wall_s=wall_s)
+    return observer.response(steps=steps, wall_s=wall_s)

@@ -1,0 +1,198 @@
+"""What is simulated, and the few calls a physics engine must answer."""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+from analytic.block import RigidBlock
+from analytic.checks import finite, positive
+from analytic.motion import Motion
+
+PRESETS = ("naive", "fixed")
+"""How an engine is used: as it comes out of the box, or tuned with a fixed step."""
+
+FRAMES = ("base", "world")
+"""Where the base moves: not at all, its motion being a body force, or in the world."""
+
+GEOMETRIES = ("box", "corners")
+"""What touches the base: the whole block, or small spheres at its corners."""
+
+SettingsT = TypeVar("SettingsT")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """One block on one shaken base, and how it is to be simulated.
+
+    Parameters
+    ----------
+    block : RigidBlock
+        Its restitution is not used: the impact is the engine's own.
+    motion : Motion
+        Horizontal motion of the base.
+    preset : str, optional
+        One of `PRESETS`.
+    frame : str, optional
+        "base": the base is at rest and the block carries the body force -m u_g''; "world": the
+        base moves.
+    density : float, optional
+        [kg/m3].
+    depth : float, optional
+        Size of the block out of the plane [m]; its width by default.
+    friction : float, optional
+        Coefficient between block and base; the preset's by default.
+    step : float, optional
+        p dt, the step in units of 1/p; the preset's by default.
+    duration : float, optional
+        Observe until this time [s], at least the motion's own duration. By default the
+        observation ends as soon as peak and outcome are decided.
+    times : sequence of float, optional
+        Increasing ground times [s] at which the response is sampled.
+    time_limit_s : float, optional
+        Wall-clock time after which a run is given up.
+    max_steps : int, optional
+        Number of steps after which a run is given up.
+    settings : mapping, optional
+        Settings of the engine by name that replace those of the preset.
+
+    Raises
+    ------
+    ValueError
+        If a value is not allowed; the message says what is.
+    """
+
+    block: RigidBlock
+    motion: Motion
+    preset: str = "fixed"
+    frame: str = "base"
+    density: float = 1000.0
+    depth: float | None = None
+    friction: float | None = None
+    step: float | None = None
+    duration: float | None = None
+    times: Sequence[float] | None = None
+    time_limit_s: float | None = None
+    max_steps: int = 5_000_000
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        one_of("preset", self.preset, PRESETS)
+        one_of("frame", self.frame, FRAMES)
+        for name in ("density", "depth", "friction", "step", "time_limit_s", "max_steps"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, positive(name, getattr(self, name)))
+        object.__setattr__(self, "max_steps", int(self.max_steps))
+        if self.duration is not None:
+            object.__setattr__(self, "duration", self._checked_duration(self.duration))
+        if self.times is not None:
+            object.__setattr__(self, "times", _increasing("times", self.times))
+        object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
+
+    def _checked_duration(self, value: float) -> float:
+        duration = finite("duration", value)
+        if duration < self.motion.duration:
+            raise ValueError(
+                f"duration is {value!r}; it must be at least the motion's {self.motion.duration!r}"
+            )
+        return duration
+
+    @property
+    def depth_m(self) -> float:
+        """Size of the block out of the plane [m]."""
+        return self.block.width if self.depth is None else self.depth
+
+    @property
+    def mass(self) -> float:
+        """Mass of the block [kg]."""
+        return self.density * self.block.width * self.block.height * self.depth_m
+
+    @property
+    def inertia(self) -> tuple[float, float, float]:
+        """Moments of inertia [kg m2] about the centre of mass and the axes x, y, z."""
+        x, y, z = self.block.width, self.depth_m, self.block.height
+        twelfth = self.mass / 12.0
+        return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
+
+    def choose(self, preset: SettingsT) -> SettingsT:
+        """Return the settings of a preset with this scene's own in their place.
+
+        Raises
+        ------
+        ValueError
+            If a setting is not one of the engine's.
+        """
+        names = [item.name for item in fields(preset)]  # type: ignore[arg-type]
+        for name in self.settings:
+            one_of("setting", name, names)
+        chosen = dict(self.settings)
+        if self.friction is not None:
+            chosen["friction"] = self.friction
+        return replace(preset, **chosen)  # type: ignore[type-var]
+
+
+class Pose(NamedTuple):
+    """Where the block is, relative to its base, as the engine reports it.
+
+    x, z [m] are the horizontal and vertical position of the centre of mass, zero under the
+    centre of the block at rest and at the level of the base; theta [rad] is positive when the
+    block leans towards +x; rate [rad/s] is the angular velocity of the step that led here.
+    """
+
+    x: float
+    z: float
+    theta: float
+    rate: float
+
+
+class World(Protocol):
+    """A built scene: what a stepping policy asks of an engine.
+
+    The engines integrate by semi-implicit Euler steps, so that a velocity belongs to the middle
+    of the step it has just carried the block through. A step is therefore told two durations:
+    how far it goes, and for how long the forces act on the velocity before it goes.
+    """
+
+    default_step_s: float
+    """Step [s] of the preset."""
+
+    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
+        """Advance by `dt_s` [s] after forces have acted for `kick_s` [s].
+
+        base_kick [m/s] is the change of the base's velocity meanwhile.
+        """
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+
+    def fault(self) -> str:
+        """Say what the engine knows to have gone wrong, or an empty string."""
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+
+
+def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
+    """Raise ValueError unless `value` is one of those allowed."""
+    if value not in allowed:
+        raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+
+
+def disagreement(pairs: Mapping[str, tuple[Any, Any]]) -> str:
+    """Name the first setting that reads back as something else, or return an empty string.
+
+    Each pair is what was set and what was read; numbers may differ by rounding.
+    """
+    for name, (wanted, found) in pairs.items():
+        if not math.isclose(wanted, found, rel_tol=1e-9):
+            return f"{name} was set to {wanted!r} but reads {found!r}"
+    return ""
+
+
+def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    times = tuple(finite(name, value) for value in values)
+    if not times or times[0] < 0.0 or any(b <= a for a, b in itertools.pairwise(times)):
+        raise ValueError(f"{name} is {values!r}; they must increase from 0 or later")
+    return times
