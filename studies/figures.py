@@ -1,5 +1,6 @@
 """Colours, markers and panels; every figure is drawn from the columns of its CSV alone."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -202,7 +203,8 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
+    columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
+    drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def _handle(source: str) -> Line2D:
