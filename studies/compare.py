@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
-from analytic.response import Outcome, Response
+from analytic.response import Response
 from studies import provenance
 from studies.arguments import (
     BadInputError,
@@ -251,7 +251,7 @@ def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> N
     parts = [
         samples(row["response"], block, motion, {**labels, "source": row["source"]})
         for row in rows
-        if row["outcome"] != Outcome.FAILED.value
+        if row["response"].history is not None
     ]
     if parts:
         save(draw_histories(pd.concat(parts), "The same block, the same shaking"), path)
@@ -260,10 +260,16 @@ def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> N
 def samples(
     response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
 ) -> pd.DataFrame:
-    """Return the history of a response as a tidy table, with the ground acceleration."""
+    """Return the history of a response as a tidy table, with the ground acceleration.
+
+    Raises
+    ------
+    ValueError
+        If no history was asked for, or the response failed before it had one.
+    """
     history = response.history
     if history is None:
-        return pd.DataFrame()
+        raise ValueError("the response has no history")
     return pd.DataFrame(
         {
             **labels,

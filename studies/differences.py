@@ -1,11 +1,14 @@
 """A sweep's rows beside the exact solution: errors, outcomes, the summary table."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from analytic import peak_ratios
+from analytic.motion import FloatArray
 from studies.cases import PULSES
 
 CASE_COLUMNS = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
@@ -19,6 +22,7 @@ SUMMARY_COLUMNS = [
     "median_error",
     "p90_error",
     "max_error",
+    "max_difference",
     "false_overturnings",
     "missed_overturnings",
     "failed",
@@ -37,24 +41,67 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        With the further columns exact_outcome, exact_peak, agrees, error (relative, where both
-        rocked and survived; else nan), false_overturning and missed_overturning.
+        With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
+        (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
+        missed_overturning.
     """
-    peak, outcome = peak_ratios(
-        np.arctan(1.0 / rows["aspect"].to_numpy(float)),
-        (1.0 / rows["aspect"] + rows["excess_g"]).to_numpy(float),
-        rows["omega_over_p"].to_numpy(float),
-        rows["pulse"].map(PULSES).to_numpy(),
-    )
+    peak, outcome = exact_peaks(rows)
     joined = rows.assign(exact_peak=peak, exact_outcome=[_word(item) for item in outcome])
     found, right = joined["outcome"], joined["exact_outcome"]
     both_rocked = (found == "rocked") & (right == "rocked")
     return joined.assign(
         agrees=found == right,
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rocked),
+        difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rocked),
         false_overturning=(found == "overturned") & (right != "overturned"),
         missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
     )
+
+
+def exact_peaks(cases: pd.DataFrame, scale: float = 1.0) -> tuple[FloatArray, NDArray[Any]]:
+    """Return the exact peaks and outcomes of the cases, their amplitudes multiplied by `scale`."""
+    return peak_ratios(
+        np.arctan(1.0 / cases["aspect"].to_numpy(float)),
+        scale * (1.0 / cases["aspect"] + cases["excess_g"]).to_numpy(float),
+        cases["omega_over_p"].to_numpy(float),
+        cases["pulse"].map(PULSES).to_numpy(),
+    )
+
+
+def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the case in which each source errs most, with its conditioning.
+
+    The condition number kappa = d ln(peak) / d ln(a_p), by a central difference of the exact
+    solution, is the factor by which a small relative error of the pulse grows into one of the
+    peak. It is inf where the block would overturn within that difference.
+    """
+    erring = compared.dropna(subset="error")
+    place = erring["error"].abs().groupby(erring["source"]).idxmax()
+    order = [source for source in compared["source"].unique() if source in place]
+    worst = erring.loc[place.loc[order]]
+    nudge = 1e-5
+    up, down = (exact_peaks(worst, 1.0 + sign * nudge)[0] for sign in (1.0, -1.0))
+    kappa = np.log(up / down) / (2.0 * nudge)
+    columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
+    return worst[columns].assign(kappa=kappa)
+
+
+def worst_text(worst: pd.DataFrame) -> str:
+    """Return the worst cases as an aligned table."""
+    shown = worst.assign(
+        exact_peak=worst["exact_peak"].map("{:.4f}".format),
+        error=worst["error"].map(scientific),
+        kappa=worst["kappa"].map("{:.3g}".format),
+    )
+    return shown.rename(
+        columns={
+            "aspect": "H/B",
+            "width_m": "B m",
+            "omega_over_p": "ω/p",
+            "exact_peak": "θmax/θcr",
+            "kappa": "κ",
+        }
+    ).to_string(index=False)
 
 
 def _word(outcome: object) -> str:
@@ -90,6 +137,7 @@ def _line(group: pd.DataFrame) -> list[object]:
         errors.median(),
         errors.quantile(0.9) if len(errors) else math.nan,
         errors.max(),
+        group["difference"].abs().max(),
         int(group["false_overturning"].sum()),
         int(group["missed_overturning"].sum()),
         int((group["outcome"] == "failed").sum()),
@@ -107,6 +155,7 @@ def summary_text(summary: pd.DataFrame) -> str:
             "median": summary["median_error"].map(scientific),
             "p90": summary["p90_error"].map(scientific),
             "max": summary["max_error"].map(scientific),
+            "max Δ": summary["max_difference"].map(scientific),
             "false": summary["false_overturnings"],
             "missed": summary["missed_overturnings"],
             "failed": summary["failed"],

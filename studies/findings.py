@@ -101,7 +101,11 @@ def agreement_at_high_frequency(compared: pd.DataFrame) -> Finding:
         high = rows.loc[rows["omega_over_p"] >= 3.0, "error"].abs()
         middle = rows.loc[rows["omega_over_p"].between(0.5, 1.5), "error"].abs()
         medians.append(high.median())
-        words.append(f"{name} {high.median():.2%} (at ω/p from 0.5 to 1.5: {middle.median():.2%})")
+        apart = rows.loc[rows["omega_over_p"] >= 3.0, "difference"].abs().median()
+        words.append(
+            f"{name} {high.median():.2%}, that is {apart:.4f} of θcr "
+            f"(at ω/p from 0.5 to 1.5: {middle.median():.2%})"
+        )
     return Finding(_statement(agreement_at_high_frequency), max(medians) < 0.05, "; ".join(words))
 
 

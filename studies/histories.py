@@ -82,8 +82,9 @@ def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Exec
         reduce=lambda response: {**summary(response), "response": response},
     )
     table = tidy(cases, rows)
-    provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
-    redraw(folder, figure)
+    if len(table):
+        provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
+        redraw(folder, figure)
     text = report(figure, rows, table)
     provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
     print(text, end="\n\n")
@@ -118,8 +119,9 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
             "amplitude_g": case.amplitude_g,
             "source": row["source"],
         }
-        parts.append(samples(row["response"], case.block, case.motion, labels))
-    return pd.concat(parts, ignore_index=True)
+        if row["response"].history is not None:
+            parts.append(samples(row["response"], case.block, case.motion, labels))
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
 def redraw(folder: Path, figure: int) -> Path:

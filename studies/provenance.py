@@ -13,6 +13,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from studies.journal import FolderError
+
 ENGINE_PACKAGES = ("pybullet", "mujoco")
 PACKAGES = ("numpy", "scipy", "numba", "pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
 ROOT = Path(__file__).parent.parent
@@ -53,13 +55,15 @@ def code_fingerprint() -> str:
 
 def identity(study: str, **settings: Any) -> dict[str, Any]:
     """Return what the rows of a results folder depend on besides their own case and source."""
-    return {
+    parts = {
         "study": study,
         "version": project_version(),
         "code": code_fingerprint(),
         "engines": {name: version_of(name) for name in ENGINE_PACKAGES},
         "settings": settings,
     }
+    # as it will be read back: a tuple becomes a list
+    return dict(json.loads(json.dumps(parts)))
 
 
 def git_commit() -> dict[str, Any] | None:
@@ -97,8 +101,13 @@ def usable_cores() -> int:
 
 
 def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dict[str, Any]:
-    """Write the provenance of a run that begins, after those that were made here before."""
-    earlier = json.loads(path.read_text())["runs"] if path.exists() else []
+    """Write the provenance of a run that begins, after those that were made here before.
+
+    Raises
+    ------
+    FolderError
+        If there is a provenance of something else.
+    """
     record = {
         **subject,
         "git": git_commit(),
@@ -109,10 +118,26 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
             "cores": usable_cores(),
             "os": platform.platform(),
         },
-        "runs": [*earlier, {"start": datetime.now(UTC).isoformat(timespec="seconds"), **arguments}],
+        "runs": [
+            *_earlier_runs(path, subject),
+            {"start": datetime.now(UTC).isoformat(timespec="seconds"), **arguments},
+        ],
     }
     write_text(path, json.dumps(record, indent=2) + "\n")
     return record
+
+
+def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
+    if not path.exists():
+        return []
+    try:
+        record = json.loads(path.read_text())
+        if all(record[name] == value for name, value in subject.items()):
+            return list(record["runs"])
+    except (ValueError, KeyError, TypeError):
+        pass
+    problem = "it must be new, or hold results of the same version and settings"
+    raise FolderError(path.parent, f"{problem} (its provenance.json says otherwise)")
 
 
 def finish(path: Path, record: dict[str, Any], began: float, rows: int) -> None:

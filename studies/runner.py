@@ -21,6 +21,9 @@ from analytic.response import Outcome, Response
 from studies.journal import Journal, Row
 from studies.sources import Source, resolve
 
+LONG = 1e7
+"""Steps, about a second of a compiled solver, beyond which a job gets a process of its own."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
@@ -55,6 +58,12 @@ class Job:
         text = json.dumps(parts, default=_plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
+    @property
+    def is_long(self) -> bool:
+        """Whether a stepping source would take so many steps that it needs a time limit."""
+        observed = self.motion.duration if self.duration is None else self.duration
+        return observed * self.block.p > LONG * float(self.options.get("step", 1e-3))
+
 
 def _plain(value: Any) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
@@ -77,12 +86,15 @@ class Executor(Protocol):
 class Local:
     """The machine at hand: models and solvers in this process, engines in processes of their own.
 
+    A compiled solver cannot be stopped from within its process: a long solve is treated as an
+    engine's.
+
     Attributes
     ----------
     workers : int
         Number of processes.
     time_limit_s : float
-        Wall-clock time [s] after which an engine's case is given up.
+        Wall-clock time [s] after which a case in a process of its own is given up.
     """
 
     workers: int
@@ -94,7 +106,7 @@ class Local:
         loaded: set[str] = set()
         for number, job in enumerate(jobs):
             source = resolve(job.source)
-            if source.kind == "engine":
+            if source.kind == "engine" or job.is_long:
                 slow[number] = job
                 continue
             if job.source not in loaded:

@@ -11,7 +11,14 @@ import pandas as pd
 from studies import provenance
 from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import sweep_cases
-from studies.differences import CASE_COLUMNS, summarize, summary_text, with_reference
+from studies.differences import (
+    CASE_COLUMNS,
+    summarize,
+    summary_text,
+    with_reference,
+    worst_cases,
+    worst_text,
+)
 from studies.findings import findings, findings_text
 from studies.journal import FolderError, Row, open_journal
 from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
@@ -158,8 +165,16 @@ def report(folder: Path) -> str:
     conclusions = findings_text(findings(compared))
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
     redraw(folder)
-    head = "Difference from exact; errors of the peak are relative, over cases that survive both:"
-    return f"{head}\n{summary_text(table)}\n\nThe paper's conclusions:\n{conclusions}"
+    return "\n".join(
+        [
+            "Difference from exact: errors of the peak θmax/θcr are relative, Δ is absolute, over",
+            "cases that both survive; outcomes right, overturned falsely, overturning missed:",
+            summary_text(table),
+            "\nThe case in which each source errs most; κ = ∂ln θmax/∂ln a_p there:",
+            worst_text(worst_cases(compared)),
+            f"\nThe paper's conclusions:\n{conclusions}",
+        ]
+    )
 
 
 def redraw(folder: Path) -> list[Path]:

@@ -21,7 +21,7 @@ from engines import ENGINES, PRESETS
 from studies import histories, respond, sweep
 from studies.__main__ import run
 from studies.cases import HISTORIES, sweep_cases
-from studies.differences import summarize, with_reference
+from studies.differences import summarize, with_reference, worst_cases
 from studies.findings import findings
 from studies.journal import FolderError, open_journal
 from studies.provenance import identity
@@ -341,6 +341,25 @@ def test_errors_are_counted_against_the_exact_solution():
     assert line["max_error"] == pytest.approx(1.0)
 
 
+def test_the_worst_case_comes_with_its_conditioning(swept):
+    worst = worst_cases(with_reference(sweep.read(swept[0]))).set_index("source")
+    assert list(worst.index) == MODELS_AND_SOLVERS
+    case = worst.loc["housner"]
+    block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
+    excess, half_cycles = {6: (0.05, 1), 7: (0.1, 1), 8: (0.1, 2), 9: (0.125, 2)}[case["figure"]]
+
+    def peak(scale):
+        amplitude = scale * (1.0 / case["aspect"] + excess) * 9.81
+        omega = case["omega_over_p"] * block.p
+        motion = SinePulse(amplitude=amplitude, omega=omega, half_cycles=half_cycles)
+        return simulate(block, motion).peak_ratio
+
+    # two difference quotients of different width agree to their second order
+    slope = (peak(1.0001) / peak(0.9999) - 1.0) / 2e-4
+    assert case["kappa"] == pytest.approx(slope, rel=1e-2)
+    assert case["exact_peak"] == pytest.approx(peak(1.0), rel=1e-10)
+
+
 def run_sweep_row(omega_over_p):
     jobs = sweep.sweep_jobs([6], ["exact"], None)
     chosen = next(item for item in jobs if item.labels["omega_over_p"] == omega_over_p)
@@ -423,6 +442,16 @@ def test_a_strangers_results_are_left_alone(tmp_path):
     assert (tmp_path / "sweep.csv").read_text() == "mine\n"
 
 
+def test_another_provenance_is_left_alone(tmp_path):
+    sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+    path = tmp_path / "provenance.json"
+    for text in (path.read_text().replace('"version": "', '"version": "9.'), "{}", "?"):
+        path.write_text(text)
+        with pytest.raises(FolderError, match="provenance"):
+            sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+        assert path.read_text() == text
+
+
 def test_a_damaged_journal_is_named(tmp_path):
     sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
     path = tmp_path / "journal.jsonl"
@@ -442,4 +471,27 @@ def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
         samples = pd.read_csv(tmp_path / f"figure-{figure}.csv")
         assert set(samples["panel"]) == {case.panel for case in panels}
         before = (tmp_path / f"figure-{figure}.png").read_bytes()
+        assert len(before) > 30_000
         assert histories.redraw(tmp_path, figure).read_bytes() == before
+
+
+def test_histories_of_named_sources_can_be_run_again(tmp_path, capsys, monkeypatch):
+    for _ in range(2):
+        assert histories.command(out=tmp_path, figure=(5,), sources=("exact",)) == 0
+        assert "not tested: In 5-b and 5-c" in capsys.readouterr().out
+    with pytest.raises(FolderError, match="sources"):
+        histories.command(out=tmp_path, figure=(5,), sources=("housner",))
+
+
+def test_a_history_that_failed_leaves_the_others(tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(SOURCES, "raises", Source("model", raises))
+    assert histories.command(out=tmp_path, figure=(4,), sources=("raises", "exact")) == 1
+    assert "failed" in capsys.readouterr().out
+    assert set(pd.read_csv(tmp_path / "figure-4.csv")["source"]) == {"exact"}
+
+
+def test_a_long_solve_has_a_time_limit_too():
+    long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
+    jobs = [Job(labels={}, block=BLOCK, motion=long, source=name) for name in ("rk4",)]
+    rows = run_jobs(jobs, executor=Local(2, 0.5), reduce=summary)
+    assert ["time limit" in row["message"] for row in rows] == [True]
