@@ -1,5 +1,6 @@
 """The command line: `rocking`, and `python -m studies`."""
 
+import io
 import os
 import signal
 import sys
@@ -82,6 +83,10 @@ def _refuse(message: str) -> int:
 
 def main() -> None:
     """Run the command that the arguments name, and exit."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # a terminal without Greek letters shows question marks instead
+            stream.reconfigure(errors="replace")
     sys.exit(run(sys.argv[1:]))
 
 

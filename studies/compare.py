@@ -1,14 +1,12 @@
 """One block, one pulse, every named source side by side."""
 
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-import pandas as pd
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
@@ -23,9 +21,11 @@ from studies.arguments import (
     several,
 )
 from studies.cases import PULSES, free_rocking_window
-from studies.differences import scientific
+from studies.comparison import draw, json_lines, table_text
+from studies.executors import Executor, Local
+from studies.jobs import Job, summary
 from studies.journal import Row
-from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
+from studies.runner import exit_code, run_jobs
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "pybullet", "mujoco")
 
@@ -173,110 +173,3 @@ def _reduce(response: Response) -> Row:
         "velocity_ratio": median(ratios) if ratios else math.nan,
         "response": response,
     }
-
-
-def json_lines(rows: list[Row]) -> str:
-    """Return one JSON object a line; a peak that is not finite is null."""
-    names = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
-    objects: list[dict[str, Any]] = [{name: row[name] for name in names} for row in rows]
-    for item in objects:
-        if not math.isfinite(item["peak_ratio"]):
-            item["peak_ratio"] = None
-    return "\n".join(json.dumps(item, allow_nan=False) for item in objects)
-
-
-def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[Row]) -> str:
-    """Return the table with its head, and the messages under it."""
-    table = pd.DataFrame(
-        {
-            "source": [row["source"] for row in rows],
-            "outcome": [row["outcome"] for row in rows],
-            "θmax/θcr": [_peak(row) for row in rows],
-            "vs exact": [_difference(row) for row in rows],
-            "impacts": [row["impacts"] for row in rows],
-            "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
-            "steps": [row["steps"] for row in rows],
-            "time": [_duration(row["wall_s"]) for row in rows],
-        }
-    )
-    notes = [f"{row['source']}: {row['message']}" for row in rows if row["message"]]
-    return "\n".join(
-        [
-            f"block   B = {block.width:g} m, H = {block.height:g} m: "
-            f"α = θcr = {block.alpha:.5g} rad, p = {block.p:.5g} rad/s",
-            f"ground  {_pulse_name(motion.half_cycles)}, {motion.amplitude / block.gravity:g} g, "
-            f"{motion.omega:g} rad/s, {motion.duration:.4g} s; observed for {window:.4g} s",
-            f"ratio   velocity after over before an impact, the median; Housner's η = "
-            f"{block.restitution:.6g}",
-            "",
-            table.to_string(index=False),
-            *notes,
-        ]
-    )
-
-
-def _pulse_name(half_cycles: int) -> str:
-    names = {number: f"{name} pulse" for name, number in PULSES.items()}
-    return names.get(half_cycles, f"{half_cycles} half cycles")
-
-
-def _peak(row: Row) -> str:
-    return f"{row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
-
-
-def _difference(row: Row) -> str:
-    value = row["difference"]
-    return ("" if value < 0 else "+") + scientific(value) if math.isfinite(value) else "-"
-
-
-def _fixed(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.6f}"
-
-
-def _duration(seconds: float) -> str:
-    return f"{seconds * 1e6:.0f} µs" if seconds < 1e-3 else f"{seconds * 1e3:.1f} ms"
-
-
-def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> None:
-    """Draw the histories of the rows over each other."""
-    from studies.figures import draw_histories, save
-
-    labels = {
-        "panel": "",
-        "pulse": _pulse_name(motion.half_cycles),
-        "width_m": block.width,
-        "height_m": block.height,
-        "amplitude_g": motion.amplitude / block.gravity,
-    }
-    parts = [
-        samples(row["response"], block, motion, {**labels, "source": row["source"]})
-        for row in rows
-        if row["response"].history is not None
-    ]
-    if parts:
-        save(draw_histories(pd.concat(parts), "The same block, the same shaking"), path)
-
-
-def samples(
-    response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
-) -> pd.DataFrame:
-    """Return the history of a response as a tidy table, with the ground acceleration.
-
-    Raises
-    ------
-    ValueError
-        If no history was asked for, or the response failed before it had one.
-    """
-    history = response.history
-    if history is None:
-        raise ValueError("the response has no history")
-    return pd.DataFrame(
-        {
-            **labels,
-            "outcome": response.outcome.value,
-            "time_s": history.time,
-            "ground_g": motion.acceleration(history.time) / block.gravity,
-            "theta_ratio": history.theta / block.alpha,
-            "velocity_rad_s": history.velocity,
-        }
-    )

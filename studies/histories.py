@@ -11,10 +11,12 @@ import pandas as pd
 from studies import provenance
 from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import HISTORIES, HistoryCase, free_rocking_window
-from studies.compare import samples
+from studies.comparison import samples
+from studies.executors import Executor, Local
 from studies.findings import Finding, findings_text
+from studies.jobs import Job, summary
 from studies.journal import Row, open_journal
-from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
+from studies.runner import exit_code, run_jobs
 
 DEFAULT_SOURCES = {
     2: ("exact", "rk4", "average-acceleration"),

@@ -35,7 +35,7 @@ def project_version() -> str:
     if source.is_file():
         import tomllib
 
-        return str(tomllib.loads(source.read_text())["project"]["version"])
+        return str(tomllib.loads(source.read_text(encoding="utf-8"))["project"]["version"])
     return version_of("rocking")
 
 
@@ -45,7 +45,7 @@ def code_fingerprint() -> str:
     files = [
         *sorted((ROOT / "analytic").glob("*.py")),
         *sorted((ROOT / "engines").glob("*.py")),
-        *(ROOT / "studies" / name for name in ("cases.py", "sources.py")),
+        *(ROOT / "studies" / name for name in ("cases.py", "sources.py", "jobs.py")),
     ]
     digest = hashlib.sha256()
     for path in files:
@@ -85,7 +85,7 @@ def _git(*arguments: str) -> str:
 
 def _cpu_model() -> str:
     try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         return next(
             line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")
         )
@@ -131,7 +131,7 @@ def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
     if not path.exists():
         return []
     try:
-        record = json.loads(path.read_text())
+        record = json.loads(path.read_text(encoding="utf-8"))
         if all(record[name] == value for name, value in subject.items()):
             return list(record["runs"])
     except (ValueError, KeyError, TypeError):
@@ -149,5 +149,5 @@ def finish(path: Path, record: dict[str, Any], began: float, rows: int) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write a file in one piece: it is complete, or it is still the one before."""
     draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text)
+    draft.write_text(text, encoding="utf-8")
     draft.replace(path)

@@ -19,9 +19,11 @@ from studies.differences import (
     worst_cases,
     worst_text,
 )
+from studies.executors import Executor, Local
 from studies.findings import findings, findings_text
+from studies.jobs import Job, summary
 from studies.journal import FolderError, Row, open_journal
-from studies.runner import Executor, Job, Local, exit_code, run_jobs, summary
+from studies.runner import exit_code, run_jobs
 from studies.sources import resolve
 
 COLUMNS = [

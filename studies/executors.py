@@ -1,0 +1,90 @@
+"""Where jobs are run: so far on the machine at hand; a cluster is one more class."""
+
+import signal
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import Future, TimeoutError, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Protocol
+
+from pebble import ProcessExpired, ProcessPool
+
+from analytic.response import Response
+from studies.jobs import Job, ask, one_line
+from studies.sources import resolve
+
+
+class Executor(Protocol):
+    """Where jobs are run: yields the number of each job with its response, in any order."""
+
+    def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
+        """Run the jobs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """The machine at hand: models and solvers in this process, engines in processes of their own.
+
+    A compiled solver cannot be stopped from within its process: a long solve is treated as an
+    engine's.
+
+    Attributes
+    ----------
+    workers : int
+        Number of processes.
+    time_limit_s : float
+        Wall-clock time [s] after which a case in a process of its own is given up.
+    """
+
+    workers: int
+    time_limit_s: float
+
+    def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
+        """Run the jobs."""
+        slow: dict[int, Job] = {}
+        loaded: set[str] = set()
+        for number, job in enumerate(jobs):
+            source = resolve(job.source)
+            if source.kind == "engine" or job.is_long:
+                slow[number] = job
+                continue
+            if job.source not in loaded:
+                # loading the compiled kernels is no part of the first case's run time
+                loaded.add(job.source)
+                ask(job, source)
+            yield number, ask(job, source)
+        if slow:
+            yield from self._in_processes(slow)
+
+    def _in_processes(self, jobs: Mapping[int, Job]) -> Generator[tuple[int, Response], None, None]:
+        # engines hold state of their own: no fork of a process that has loaded them
+        pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
+        try:
+            # the source travels with the job, so that a worker needs no registry of its own
+            tasks: dict[Future[Response], int] = {
+                pool.schedule(
+                    ask, args=(job, resolve(job.source)), timeout=self.time_limit_s
+                ): number
+                for number, job in jobs.items()
+            }
+            for task in as_completed(tasks):
+                yield tasks[task], self._outcome(task.result)
+        finally:
+            pool.stop()  # type: ignore[no-untyped-call]
+            pool.join()
+
+    def _outcome(self, result: Callable[[], Response]) -> Response:
+        try:
+            return result()
+        except TimeoutError:
+            return Response.failure(f"no result within the time limit of {self.time_limit_s:g} s")
+        except ProcessExpired as error:
+            return Response.failure(_cause_of_death(error.exitcode))
+        except Exception as error:
+            return Response.failure(one_line(error))
+
+
+def _cause_of_death(exitcode: int) -> str:
+    if exitcode < 0:
+        return f"the process was ended by signal {signal.Signals(-exitcode).name}"
+    return f"the process ended by itself with exit code {exitcode}"
