@@ -7,6 +7,7 @@ from textwrap import fill
 import pandas as pd
 
 PAPER_PAIR = ("housner", "modified")
+MODELS = ("exact", *PAPER_PAIR, "onset-matched")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ def findings(compared: pd.DataFrame) -> list[Finding]:
         else Finding(_statement(check), None, f"needs the sources {', '.join(needed)}")
         for check, needed in checks
     ]
-    return [*tested, *panels_coincide(compared)]
+    return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
 
 
 def _statement(check: object) -> str:
@@ -136,6 +137,20 @@ def onset_explains(compared: pd.DataFrame) -> Finding:
         f"{both['o'].median():.2%} ({explained:.0%} of it), wrong outcomes from {wrong_h} to "
         f"{wrong_o} (of {len(housner)} cases)",
     )
+
+
+def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
+    """Say for every solver and engine whether, and where not, its outcomes are the exact ones."""
+    others = compared[~compared["source"].isin(MODELS)]
+    return [
+        Finding(
+            f"every outcome of {source} is that of the exact solution",
+            bool(rows["agrees"].all()),
+            f"{int((~rows['agrees']).sum())} of {len(rows)} cases differ"
+            f"{_where(rows[~rows['agrees']])}",
+        )
+        for source, rows in others.groupby("source", sort=False)
+    ]
 
 
 def panels_coincide(compared: pd.DataFrame) -> list[Finding]:

@@ -63,7 +63,8 @@ def test_the_conclusions_of_the_paper_fall_as_they_fall(swept):
     verdicts = list(holds.values())
     assert verdicts[:6] == [True, False, True, False, True, True]
     assert all(verdicts[6:])
-    assert len(verdicts) == 6 + len(MODELS_AND_SOLVERS)
+    # two solvers against the exact solution, and the two widths of every source
+    assert len(verdicts) == 6 + 2 + len(MODELS_AND_SOLVERS)
     assert (folder / "findings.txt").read_text().strip() in text
     assert max(len(line) for line in text.splitlines()) <= 100
 
@@ -77,6 +78,10 @@ def test_findings_report_what_breaks_them(swept):
     coincide = {item.statement: item.holds for item in findings(scaled)}
     assert coincide["the left and right panels coincide for exact (within 1e-6)"] is False
     assert coincide["the left and right panels coincide for rk4 (within 1e-6)"] is True
+    lost = compared.assign(agrees=compared["agrees"] & ~compared["source"].eq("rk4"))
+    disagreeing = [item for item in findings(lost) if "every outcome of rk4" in item.statement]
+    assert [item.holds for item in disagreeing] == [False]
+    assert "960 of 960 cases differ; figure 6 H/B 2: ω/p 0.1–4;" in disagreeing[0].numbers
     alone = findings(compared[compared["source"] == "exact"])
     assert [item.holds for item in alone] == [None] * 6 + [True]
 
