@@ -26,6 +26,7 @@ from studies.executors import Executor, Local
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.runner import exit_code, run_jobs
+from studies.sources import stepping
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "pybullet", "mujoco")
 
@@ -143,8 +144,6 @@ def compare(
         Columns source, outcome, peak_ratio, impacts, steps, wall_s, message, response,
         difference (relative; nan where not both survived) and velocity_ratio (the median).
     """
-    from studies.sources import resolve
-
     asked = list(dict.fromkeys(["exact", *sources]))
     jobs = [
         Job(
@@ -154,7 +153,7 @@ def compare(
             source=name,
             duration=window,
             times=times,
-            options={"step": step} if step and resolve(name).kind != "model" else {},
+            options=stepping(name, step),
         )
         for name in asked
     ]

@@ -1,4 +1,4 @@
-"""A sweep's rows beside the exact solution: errors, outcomes, the summary table."""
+"""Rows beside the exact solution: errors, outcomes, the summary table."""
 
 import math
 from typing import Any
@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 from analytic import peak_ratios
 from analytic.motion import FloatArray
 from studies.cases import PULSES
-
-CASE_COLUMNS = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
-"""What tells one case from another."""
 
 SUMMARY_COLUMNS = [
     "figure",
@@ -36,7 +33,7 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     rows : DataFrame
-        The columns of sweep.csv.
+        The columns that `exact_peaks` takes, and outcome and peak_ratio.
 
     Returns
     -------
@@ -59,31 +56,45 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def exact_peaks(cases: pd.DataFrame, scale: float = 1.0) -> tuple[FloatArray, NDArray[Any]]:
-    """Return the exact peaks and outcomes of the cases, their amplitudes multiplied by `scale`."""
+    """Return the exact peaks and outcomes of the cases, their amplitudes multiplied by `scale`.
+
+    The cases have columns aspect and omega_over_p, amplitude_g or excess_g, half_cycles or pulse.
+    """
+    steepness = 1.0 / cases["aspect"].to_numpy(float)
+    amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
+    half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
     return peak_ratios(
-        np.arctan(1.0 / cases["aspect"].to_numpy(float)),
-        scale * (1.0 / cases["aspect"] + cases["excess_g"]).to_numpy(float),
+        np.arctan(steepness),
+        scale * amplitude.to_numpy(float),
         cases["omega_over_p"].to_numpy(float),
-        cases["pulse"].map(PULSES).to_numpy(),
+        half_cycles.to_numpy(),
     )
 
 
-def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the case in which each source errs most, with its conditioning.
+NUDGE = 1e-5
+"""Relative difference of the amplitude over which a condition number is taken."""
 
-    The condition number kappa = d ln(peak) / d ln(a_p), by a central difference of the exact
-    solution, is the factor by which a small relative error of the pulse grows into one of the
-    peak. It is inf where the block would overturn within that difference.
+
+def condition_numbers(cases: pd.DataFrame) -> FloatArray:
+    """Return kappa = d ln(peak) / d ln(a_p) of the exact solution, by a central difference.
+
+    It is the factor by which a small relative error of the pulse grows into one of the peak; inf
+    where the block overturns within that difference, nan where it overturns or rests anyway.
     """
+    up, down = (exact_peaks(cases, 1.0 + sign * NUDGE)[0] for sign in (1.0, -1.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        kappa: FloatArray = np.log(up / down) / (2.0 * NUDGE)
+    return kappa
+
+
+def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the case in which each source errs most, with its condition number kappa."""
     erring = compared.dropna(subset="error")
     place = erring["error"].abs().groupby(erring["source"]).idxmax()
     order = [source for source in compared["source"].unique() if source in place]
     worst = erring.loc[place.loc[order]]
-    nudge = 1e-5
-    up, down = (exact_peaks(worst, 1.0 + sign * nudge)[0] for sign in (1.0, -1.0))
-    kappa = np.log(up / down) / (2.0 * nudge)
     columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
-    return worst[columns].assign(kappa=kappa)
+    return worst[columns].assign(kappa=condition_numbers(worst))
 
 
 def worst_text(worst: pd.DataFrame) -> str:

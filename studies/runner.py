@@ -1,18 +1,89 @@
 """Many jobs: in parallel, resumable, with progress; a failure is a row and stops nothing."""
 
 import sys
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
+from pathlib import Path
+from typing import Any
 
+import pandas as pd
 from tqdm import tqdm
 
 from analytic.response import Outcome, Response
+from studies import provenance
 from studies.executors import Executor
-from studies.jobs import Job
-from studies.journal import Journal, Row
+from studies.jobs import Job, summary
+from studies.journal import FolderError, Journal, Row, open_journal
 
-_LABELS = ("figure", "panel", "aspect", "width_m", "omega_over_p")
+_LABELS = ("figure", "panel", "case", "aspect", "width_m", "omega_over_p")
 """Columns that name a failed case."""
+
+
+def fill_folder(
+    folder: Path,
+    study: str,
+    jobs: Sequence[Job],
+    *,
+    executor: Executor,
+    settings: Mapping[str, Any],
+    growing: Mapping[str, Sequence[Any]],
+    products: Sequence[str],
+) -> list[Row]:
+    """Run the jobs that a results folder does not hold yet; write its table and provenance.
+
+    Parameters
+    ----------
+    folder : Path
+        Results of another version or of other settings are refused.
+    study : str
+        Its name; the table is `<study>.csv`.
+    jobs : sequence of Job
+        In the order of the table.
+    executor : Executor
+    settings : mapping
+        What all rows depend on; must be the same whenever the folder is used.
+    growing : mapping
+        Column -> the values asked for. A folder may gain values, but one that holds others is
+        refused, so that its table is what was asked for and nothing is lost.
+    products : sequence of str
+        The files that the study writes.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    began = time.perf_counter()
+    identity = provenance.identity(study, **settings)
+    with open_journal(folder, identity, products) as journal:
+        _refuse_a_part(folder, journal.rows.values(), growing)
+        path = folder / "provenance.json"
+        record = provenance.begin(path, identity, {k: _short(v) for k, v in growing.items()})
+        try:
+            rows = run_jobs(jobs, executor=executor, reduce=summary, journal=journal)
+        except KeyboardInterrupt as stop:
+            kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
+            raise KeyboardInterrupt(f"{kept}; the same command goes on from there") from stop
+        table = pd.DataFrame(rows)
+        provenance.write_text(folder / f"{study}.csv", table.to_csv(index=False, na_rep="nan"))
+        provenance.finish(path, record, began, len(rows))
+    return rows
+
+
+def _short(values: Sequence[Any]) -> Any:
+    return str(values) if isinstance(values, range) else list(values)
+
+
+def _refuse_a_part(folder: Path, rows: Any, growing: Mapping[str, Sequence[Any]]) -> None:
+    left_out = [
+        f"{column} {', '.join(map(str, names))}"
+        for column, named in growing.items()
+        if (names := sorted({row[column] for row in rows} - set(named)))
+    ]
+    if left_out:
+        problem = f"it also holds results of {' and '.join(left_out)}, which must be named too"
+        raise FolderError(folder, problem)
 
 
 def run_jobs(

@@ -1,6 +1,6 @@
 """Who answers: the models, the paper's solvers and the engines, each by its name."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal
@@ -96,11 +96,6 @@ def allowed() -> str:
     return f"{names}; an engine takes a preset after a colon: {', '.join(PRESETS)}"
 
 
-def check_sources(names: Iterable[str]) -> None:
-    """Raise ValueError if a source is unknown or named twice."""
-    seen: set[str] = set()
-    for name in names:
-        resolve(name)
-        if name in seen:
-            raise ValueError(f"source {name!r} is named twice; name each source once")
-        seen.add(name)
+def stepping(name: str, step: float | None) -> dict[str, float]:
+    """Return the option that sets p dt for a source that steps; nothing for the others."""
+    return {"step": step} if step is not None and resolve(name).kind != "model" else {}

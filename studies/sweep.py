@@ -1,10 +1,9 @@
 """The paper's sensitivity analysis, figures 6 to 9: every case through every named source."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import pandas as pd
 
@@ -12,7 +11,6 @@ from studies import provenance
 from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import sweep_cases
 from studies.differences import (
-    CASE_COLUMNS,
     summarize,
     summary_text,
     with_reference,
@@ -21,22 +19,10 @@ from studies.differences import (
 )
 from studies.executors import Executor, Local
 from studies.findings import findings, findings_text
-from studies.jobs import Job, summary
-from studies.journal import FolderError, Row, open_journal
-from studies.runner import exit_code, run_jobs
-from studies.sources import resolve
-
-COLUMNS = [
-    *CASE_COLUMNS,
-    "source",
-    "outcome",
-    "peak_ratio",
-    "impacts",
-    "steps",
-    "wall_s",
-    "message",
-]
-"""The columns of sweep.csv."""
+from studies.jobs import Job
+from studies.journal import Row
+from studies.runner import exit_code, fill_folder
+from studies.sources import stepping
 
 PRODUCTS = ("sweep.csv", "summary.csv", "findings.txt", "provenance.json")
 
@@ -104,58 +90,37 @@ def sweep(
     Returns
     -------
     list of dict
-        `COLUMNS`, one row for each case and source.
+        The rows of sweep.csv, one for each case and source.
 
     Raises
     ------
     FolderError
         If the folder cannot be used.
     """
-    began = time.perf_counter()
-    jobs = sweep_jobs(numbers, sources, step)
-    identity = provenance.identity("sweep", step=step)
-    with open_journal(folder, identity, PRODUCTS) as journal:
-        _refuse_a_part(folder, journal.rows.values(), numbers, sources)
-        path = folder / "provenance.json"
-        asked = {"figures": list(numbers), "sources": list(sources)}
-        record = provenance.begin(path, identity, asked)
-        try:
-            rows = run_jobs(jobs, executor=executor, reduce=summary, journal=journal)
-        except KeyboardInterrupt as stop:
-            kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
-            raise KeyboardInterrupt(f"{kept}; the same command goes on from there") from stop
-        table = pd.DataFrame(rows, columns=COLUMNS)
-        provenance.write_text(folder / "sweep.csv", table.to_csv(index=False, na_rep="nan"))
-        provenance.finish(path, record, began, len(rows))
-    return rows
+    return fill_folder(
+        folder,
+        "sweep",
+        sweep_jobs(numbers, sources, step),
+        executor=executor,
+        settings={"step": step},
+        growing={"figure": numbers, "source": sources},
+        products=PRODUCTS,
+    )
 
 
 def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], step: float | None) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
-    stepping = {name: resolve(name).kind != "model" for name in sources}
-    options: dict[str, Any] = {} if step is None else {"step": step}
     return [
         Job(
             labels=asdict(case),
             block=case.block,
             motion=case.motion,
             source=source,
-            options=options if stepping[source] else {},
+            options=stepping(source, step),
         )
         for case in sweep_cases(numbers)
         for source in sources
     ]
-
-
-def _refuse_a_part(folder: Path, rows: Any, numbers: Sequence[int], sources: Sequence[str]) -> None:
-    left_out = [
-        f"{column} {', '.join(map(str, names))}"
-        for column, named in (("figure", numbers), ("source", sources))
-        if (names := sorted({row[column] for row in rows} - set(named)))
-    ]
-    if left_out:
-        problem = f"it also holds results of {' and '.join(left_out)}, which must be named too"
-        raise FolderError(folder, problem)
 
 
 def report(folder: Path) -> str:

@@ -3,7 +3,6 @@
 import json
 import math
 import sys
-import time
 import tomllib
 from pathlib import Path
 
@@ -41,13 +40,6 @@ def test_the_models_sweep_has_its_columns_and_rows(swept):
     assert len(table) == len(rows) == 960 * len(MODELS_AND_SOLVERS)
     assert (table["peak_ratio"].eq(math.inf) == table["outcome"].eq("overturned")).all()
     assert not table["outcome"].eq("failed").any()
-
-
-def test_all_models_and_solvers_take_less_than_5_s(swept, tmp_path):
-    # the fixture has compiled everything; this takes 1.2 s on a slow core
-    began = time.perf_counter()
-    sweep.sweep([6, 7, 8, 9], MODELS_AND_SOLVERS, tmp_path, executor=Local(1, 1.0))
-    assert time.perf_counter() - began < 5.0
 
 
 def test_the_conclusions_of_the_paper_fall_as_they_fall(swept):
