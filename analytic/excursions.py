@@ -17,7 +17,7 @@ from analytic.models import Law
 from analytic.motion import FloatArray
 from analytic.polynomial import MAX_DEPTH, ORDER, next_root, slope, value
 from analytic.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
-from analytic.taylor import expand_exact, expand_forcing, expand_linear, trusted_step
+from analytic.taylor import Accuracy, expand_exact, expand_forcing, expand_linear, trusted_step
 
 AT_REST, ROCKED, OVERTURNED, FAILED = 0, 1, 2, 3
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
@@ -72,27 +72,33 @@ def workspace() -> FloatArray:
 
 @kernel
 def expand(
-    law: Law, segment: FloatArray, side: float, tau: float, lead: int, work: FloatArray
+    law: Law,
+    accuracy: Accuracy,
+    segment: FloatArray,
+    side: float,
+    tau: float,
+    lead: int,
+    work: FloatArray,
 ) -> float:
     """Fill work[0] with the series of y, whose y[0] and y[1] are set; return the step it allows."""
     y, f = work[0], work[1]
-    expand_forcing(segment, tau, side, f)
+    expand_forcing(segment, tau, side, accuracy.order, f)
     y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0]) if lead < 3 else 0.0
     if law.linear:
-        expand_linear(law, f, y)
+        expand_linear(law, accuracy.order, f, y)
         return LINEAR_STEP / max(law.k, segment[3])
-    expand_exact(law, f, y, work[2], work[3])
-    return trusted_step(y)
+    expand_exact(law, accuracy.order, f, y, work[2], work[3])
+    return trusted_step(y, accuracy)
 
 
 @kernel
-def first_crossing(d: FloatArray, lead: int, level: float, work: FloatArray) -> float:
+def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
     """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
 
     The first `lead` coefficients are zero, and their root at x = 0 is left out.
     """
     q = work[0]
-    degree = ORDER - lead
+    degree = order - lead
     q[0] = d[lead] - level
     low = q[0]
     for i in range(1, degree + 1):
@@ -102,17 +108,19 @@ def first_crossing(d: FloatArray, lead: int, level: float, work: FloatArray) -> 
 
 
 @kernel
-def highest(d: FloatArray, lead: int, end: float, above: float, work: FloatArray) -> float:
+def highest(
+    d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
+) -> float:
     """Return the maximum of sum d[i] x^i on [0, end] if it exceeds `above`, else `above`."""
     bound = d[0]
-    for i in range(1, ORDER + 1):
+    for i in range(1, order + 1):
         bound += max(d[i], 0.0)
     if bound <= above:
         return above
-    top = max(above, value(d, ORDER, end))
+    top = max(above, value(d, order, end))
     rate = work[0]
     shift = max(lead, 1)
-    degree = ORDER - shift
+    degree = order - shift
     least = most = 0.0
     for i in range(degree + 1):
         rate[i] = (i + shift) * d[i + shift]
@@ -122,7 +130,7 @@ def highest(d: FloatArray, lead: int, end: float, above: float, work: FloatArray
         return top
     x = next_root(rate, degree, 0.0, work[1:])
     while x < end:
-        top = max(top, value(d, ORDER, x))
+        top = max(top, value(d, order, x))
         x = next_root(rate, degree, x, work[1:])
     return top
 
@@ -161,6 +169,7 @@ def sample_step(
     h: float,
     end: float,
     d: FloatArray,
+    order: int,
     y: float,
     v: float,
     record: Record,
@@ -173,7 +182,7 @@ def sample_step(
         if law.linear:
             theta, rate = linear_state(law, segment, side, tau, lead, y, v, at)
         else:
-            theta, rate = value(d, ORDER, at / h), slope(d, ORDER, at / h) / h
+            theta, rate = value(d, order, at / h), slope(d, order, at / h) / h
         samples[0, n] = side * theta
         samples[1, n] = side * rate
         n += 1
@@ -181,12 +190,21 @@ def sample_step(
 
 
 @kernel
-def march(law: Law, segments: FloatArray, until: float, record: Record, work: FloatArray) -> End:
+def march(
+    law: Law,
+    accuracy: Accuracy,
+    segments: FloatArray,
+    until: float,
+    record: Record,
+    work: FloatArray,
+) -> End:
     """Follow one response from rest.
 
     Parameters
     ----------
     law : Law
+    accuracy : Accuracy
+        Of the exact model; for a linear one the order is that of the series that brackets events.
     segments : ndarray, shape (m, 7)
         The ground motion: rows of `motion.SEGMENT_COLUMNS` in units of 1/p and g.
     until : float
@@ -197,6 +215,7 @@ def march(law: Law, segments: FloatArray, until: float, record: Record, work: Fl
         From `workspace()`.
     """
     series, d, spare = work[0], work[4], work[5:]
+    order = accuracy.order
     last = max(until, segments[-1, 1])
     still = np.zeros(7)
     tau = y = v = side = peak = 0.0
@@ -227,37 +246,37 @@ def march(law: Law, segments: FloatArray, until: float, record: Record, work: Fl
         segment = segments[j] if j < len(segments) else still
         boundary = segment[1] if j < len(segments) else last
         series[0], series[1] = y, v
-        h = expand(law, segment, side, tau, lead, work)
+        h = expand(law, accuracy, segment, side, tau, lead, work)
         landed = tau + h >= boundary
         if landed:
             h = boundary - tau
         scale = 1.0
-        for i in range(ORDER + 1):
+        for i in range(order + 1):
             d[i] = series[i] * scale
             scale *= h
 
-        x = first_crossing(d, lead, 0.0, spare)
+        x = first_crossing(d, order, lead, 0.0, spare)
         hit = x <= 1.0
         x = min(x, 1.0)
-        peak = highest(d, lead, x, peak, spare)
-        fallen = peak >= LYING and first_crossing(d, 0, LYING, spare) <= x
+        peak = highest(d, order, lead, x, peak, spare)
+        fallen = peak >= LYING and first_crossing(d, order, 0, LYING, spare) <= x
         if fallen:
-            x = first_crossing(d, 0, LYING, spare)
+            x = first_crossing(d, order, 0, LYING, spare)
         elif hit and law.linear:
             x = min(polish(law, segment, side, tau, lead, y, v, x * h) / h, 1.0)
-        n = sample_step(law, segment, side, tau, lead, h, x * h, d, y, v, record, n)
+        n = sample_step(law, segment, side, tau, lead, h, x * h, d, order, y, v, record, n)
         if record.limits.size > 0:
             for i in range(POINTS + 1):
                 at = x * i / POINTS
                 a = ground(segments, j, tau + at * h)
-                watch(record.limits, law, side, a, value(d, ORDER, at), slope(d, ORDER, at) / h)
+                watch(record.limits, law, side, a, value(d, order, at), slope(d, order, at) / h)
         if fallen:
             return End(OVERTURNED, peak, steps, impacts, events, tau + x * h)
 
         if law.linear:
             y, v = linear_state(law, segment, side, tau, lead, y, v, x * h)
         else:
-            y, v = value(d, ORDER, x), slope(d, ORDER, x) / h
+            y, v = value(d, order, x), slope(d, order, x) / h
         # a root within rounding of the step's end may escape the polynomial, not the state
         hit = hit or y <= 0.0
         tau = boundary if landed and x == 1.0 else tau + x * h

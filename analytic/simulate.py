@@ -26,9 +26,13 @@ from analytic.excursions import (
 from analytic.models import Law, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
+from analytic.taylor import TOLERANCE, Accuracy, accuracy
 
 OUTCOMES = (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED, Outcome.FAILED)
 """In the order of the codes in `analytic.excursions`."""
+LOOSEST = 1e-2
+"""Largest tolerance that `simulate` takes."""
+
 CHUNK = 4096
 """Cases that one call of the compiled kernel takes."""
 
@@ -40,6 +44,7 @@ def simulate(
     *,
     duration: float | None = None,
     times: ArrayLike | None = None,
+    tolerance: float = TOLERANCE,
 ) -> Response:
     """Solve one response.
 
@@ -56,6 +61,10 @@ def simulate(
     times : array_like, optional
         Ground times [s], increasing, at which to sample `Response.history`; it ends with the
         response.
+    tolerance : float, optional
+        Truncation error of a step of the exact model, relative to the rotation, from 1e-16 to
+        1e-2; the degree of its Taylor series follows from it. The linear models are solved in
+        closed form, whatever the tolerance.
 
     Returns
     -------
@@ -65,14 +74,19 @@ def simulate(
     Raises
     ------
     ValueError
-        If the model is unknown, the duration shorter than the motion or the times not increasing.
+        If the model is unknown, the duration shorter than the motion, the times not increasing or
+        the tolerance out of range.
     """
     law = find_model(model).law(block.alpha, block.restitution)
+    if not TOLERANCE <= tolerance <= LOOSEST:
+        allowed = f"from {TOLERANCE} to {LOOSEST}"
+        raise ValueError(f"tolerance is {tolerance!r}; it must be {allowed}")
+    exactly = accuracy(TOLERANCE if law.linear else float(tolerance))
     until, sampled = check_window(motion, duration, times)
     segments = scaled_segments(block, motion)
 
     def solve(record: Record) -> End:
-        return march(law, segments, until * block.p, record, workspace())
+        return march(law, exactly, segments, until * block.p, record, workspace())
 
     return respond(block, solve, sampled, times is not None, watched=not law.linear)
 
@@ -175,11 +189,14 @@ def peak_ratios(
     cases = np.stack([np.ravel(column).astype(np.float64) for column in columns])
     check_cases(cases)
     constants = np.stack(declared.constants(cases[0]))
+    exactly = accuracy(TOLERANCE)
     peaks, codes = np.empty(cases.shape[1]), np.empty(cases.shape[1], dtype=np.int8)
 
     def solve(start: int) -> None:
         part = slice(start, start + CHUNK)
-        solve_pulses(declared.linear, constants[:, part], cases[:, part], peaks[part], codes[part])
+        solve_pulses(
+            declared.linear, exactly, constants[:, part], cases[:, part], peaks[part], codes[part]
+        )
 
     starts = range(0, cases.shape[1], CHUNK)
     if len(starts) <= 1:
@@ -194,6 +211,7 @@ def peak_ratios(
 @kernel
 def solve_pulses(
     linear: bool,
+    exactly: Accuracy,
     constants: FloatArray,
     cases: FloatArray,
     peaks: FloatArray,
@@ -210,7 +228,7 @@ def solve_pulses(
         segments[0, 2] = amplitude
         segments[0, 3] = omega
         law = Law(linear, k, saddle, factor, alpha, onset, eta)
-        end = march(law, segments, 0.0, record, work)
+        end = march(law, exactly, segments, 0.0, record, work)
         codes[i] = end.outcome
         peaks[i] = end.peak / alpha
         if end.outcome == OVERTURNED:

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pandas as pd
@@ -184,11 +183,8 @@ def test_a_sweep_through_the_command_line(tmp_path):
     assert not table.duplicated(["figure", "aspect", "width_m", "omega_over_p", "source"]).any()
 
 
-def test_help_is_quick_and_explains_units():
-    began = time.perf_counter()
+def test_help_explains_units():
     done = rocking("--help")
-    # 0.15 s on two cores
-    assert time.perf_counter() - began < 1.0
     assert all(name in done.stdout for name in COMMANDS)
     text = " ".join(rocking("compare", "--help").stdout.split())
     for unit in ("[m]", "[g]", "[rad/s]", "[s]"):

@@ -288,6 +288,25 @@ def test_bad_arrays(change, words):
         peak_ratios(**(arguments | change))
 
 
+def test_the_error_follows_the_tolerance():
+    case = papers_case(0.5, 1.5, 0.4, 2)
+    exact = simulate(*case)
+    tolerances = 10.0 ** -np.arange(3, 15)
+    errors = []
+    for tolerance in tolerances:
+        response = simulate(*case, tolerance=tolerance)
+        errors.append(abs(response.peak_ratio / exact.peak_ratio - 1))
+        # a few steps, each amplified by the growth e^(p t) of the unstable motion
+        assert errors[-1] < 10 * tolerance
+    assert errors[0] > 1e4 * errors[-1]
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-17, 0.1, math.nan])
+def test_bad_tolerance(tolerance):
+    with pytest.raises(ValueError, match="tolerance is"):
+        simulate(*papers_case(0.5, 1.5, 0.4, 2), tolerance=tolerance)
+
+
 def test_bad_windows():
     case = papers_case(0.5, 1.5, 0.4, 1)
     with pytest.raises(ValueError, match=r"duration is 0\.1; it must be at least"):
