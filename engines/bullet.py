@@ -9,10 +9,18 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from engines.scene import GEOMETRIES, Pose, Scene, disagreement, one_of
+from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
 
 LIBRARY_STEP_S = 1.0 / 240.0
 """The library's own time step [s]."""
+
+LIBRARY_BREAKING_THRESHOLD = 0.02
+"""The library's own gap, over a body's size, up to which it keeps a contact."""
+
+KEPT_GAP = 4.0
+"""Gap up to which landing keeps a contact, in units of (p dt)^2 half diagonals. A pivot rises by
+some (theta' dt)^2 H/4 in a step; an anchor that is kept much longer pulls the corner back to where
+it stood an impact ago."""
 
 LARGEST_FRICTION = 10.0
 """The library clamps the coefficient of a pair, the product of the two bodies', to this."""
@@ -50,8 +58,12 @@ class BulletSettings:
         Hold the point of contact by its position, too.
     contact_slop : float or None
         Penetration [m] that is left alone.
-    breaking_threshold : float or None
-        Gap below which a contact is kept. The library holds it once for the whole process.
+    breaking_threshold : float
+        Gap, over the half diagonal, up to which a contact is kept. The library holds this once
+        for the whole process, so every scene sets it.
+    landing : bool
+        Keep contacts only up to a gap of 4 (p dt)^2 half diagonals, and correct no positions in
+        the short steps around an impact.
     """
 
     geometry: str = "corners"
@@ -68,7 +80,8 @@ class BulletSettings:
     friction_erp: float | None = 0.0
     friction_anchor: bool = False
     contact_slop: float | None = 0.0
-    breaking_threshold: float | None = 0.02
+    breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
+    landing: bool = False
 
     def __post_init__(self) -> None:
         one_of("geometry", self.geometry, GEOMETRIES)
@@ -92,9 +105,11 @@ PRESETS: Mapping[str, BulletSettings] = {
         contact_erp=None,
         friction_erp=None,
         contact_slop=None,
-        breaking_threshold=None,
     ),
     "fixed": BulletSettings(),
+    "landing": BulletSettings(
+        step=None, residual=1e-24, friction_erp=1.0, friction_anchor=True, landing=True
+    ),
 }
 
 
@@ -107,33 +122,45 @@ class BulletWorld:
 
     def __init__(self, scene: Scene) -> None:
         self.settings = scene.choose(PRESETS[scene.preset])
-        step = self.settings.step
-        self.default_step_s = LIBRARY_STEP_S if step is None else step / scene.block.p
+        self.dt_s = scene.ordinary_step(self.settings.step, LIBRARY_STEP_S)
         self._p = _library()
         self._client = self._p.connect(self._p.DIRECT)
         self._gravity = scene.block.gravity
         self._moving = scene.frame == "world"
+        self._grip: Grip | None = None
         self._velocity = self._dt = 0.0
-        self._set_engine()
+        self._set_engine(scene.block.p)
         self._base = self._add(0.0, self._plane(), not self._moving, (0.0, 0.0, 0.0))
         centre = (0.0, 0.0, 0.5 * scene.block.height)
         self._body = self._add(scene.mass, self._shape(scene), not self.settings.multibody, centre)
         self._fault = self._set_bodies(scene)
 
-    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
-        """Advance by `dt_s` [s]; see `engines.scene.World`."""
-        p, client = self._p, self._client
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.scene.World`."""
+        p, client, dt_s = self._p, self._client, step.dt_s
         if dt_s != self._dt:
             p.setTimeStep(dt_s, physicsClientId=client)
             self._dt = dt_s
-        pull = -self._gravity * kick_s / dt_s
+        if self.settings.landing and step.grip is not self._grip:
+            self._hold(step.grip)
+        pull = -self._gravity * step.kick_s / dt_s
         if self._moving:
-            self._velocity += base_kick
+            self._velocity += step.base_kick
             p.resetBaseVelocity(self._base, (self._velocity, 0.0, 0.0), physicsClientId=client)
             p.setGravity(0.0, 0.0, pull, physicsClientId=client)
         else:
-            p.setGravity(-base_kick / dt_s, 0.0, pull, physicsClientId=client)
+            p.setGravity(-step.base_kick / dt_s, 0.0, pull, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+
+    def _hold(self, grip: Grip) -> None:
+        """Correct positions in ordinary steps alone: a short one would make a velocity of them."""
+        s, short = self.settings, grip in (Grip.APPROACH, Grip.STRIKE)
+        self._p.setPhysicsEngineParameter(
+            contactERP=0.0 if short else s.contact_erp,
+            frictionERP=0.0 if short else s.friction_erp,
+            physicsClientId=self._client,
+        )
+        self._grip = grip
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
@@ -150,18 +177,22 @@ class BulletWorld:
         return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
 
     def close(self) -> None:
-        """Disconnect the client."""
+        """Disconnect the client, and give the library back what it holds for the process."""
+        self._p.setPhysicsEngineParameter(
+            contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD, physicsClientId=self._client
+        )
         self._p.disconnect(self._client)
 
-    def _set_engine(self) -> None:
+    def _set_engine(self, p: float) -> None:
         s = self.settings
+        threshold = KEPT_GAP * (p * self.dt_s) ** 2 if s.landing else s.breaking_threshold
         wanted = {
             "numSolverIterations": s.iterations,
             "solverResidualThreshold": s.residual,
             "contactERP": s.contact_erp,
             "frictionERP": s.friction_erp,
             "contactSlop": s.contact_slop,
-            "contactBreakingThreshold": s.breaking_threshold,
+            "contactBreakingThreshold": threshold,
         }
         self._p.setPhysicsEngineParameter(**_given(wanted), physicsClientId=self._client)
 

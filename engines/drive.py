@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from analytic.response import Response
-from engines.ground import velocity_of
+from engines.landing import Stepper
 from engines.observe import Observer
 from engines.scene import Scene, World
 
@@ -57,20 +57,18 @@ def run(engine: str, scene: Scene) -> Response:
 
 def _simulate(world: World, scene: Scene) -> Response:
     """Step a world until its response is decided."""
-    dt = world.default_step_s if scene.step is None else scene.step / scene.block.p
-    observer = Observer(scene, dt)
+    observer = Observer(scene, world.dt_s)
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
-    velocity = velocity_of(scene.motion)
-    base = 0.0
-    steps = 0
+    stepper = Stepper(scene, world.dt_s)
+    steps, problem = 0, ""
+    pose = world.pose()
     started = time.perf_counter()
-    problem = ""
     while not observer.done and not problem:
-        ahead = velocity((steps + 0.5) * dt)
-        world.step(dt, dt, ahead - base)
-        base = ahead
+        step = stepper.next(pose, observer.lifted)
+        world.step(step)
         steps += 1
-        observer.see(steps * dt, dt, world.pose())
+        pose = world.pose()
+        observer.see(stepper.time, step.dt_s, pose)
         problem = observer.broken
         if steps % LOOK_AT_CLOCK == 0 and time.perf_counter() - started > limit:
             problem = f"not decided within {limit:g} s"

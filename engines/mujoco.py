@@ -7,7 +7,7 @@ from typing import Any
 
 import mujoco as mj
 
-from engines.scene import GEOMETRIES, Pose, Scene, disagreement, one_of
+from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
 
 OPTIONS = ("cone", "solver", "jacobian", "tolerance", "iterations", "impratio")
 """Settings that are options of the model under their own names."""
@@ -16,6 +16,20 @@ PLANAR_JOINTS = (
     '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
     '<joint type="hinge" axis="0 1 0"/>'
 )
+
+REFLECTION = 0.99
+"""Part of a contact's velocity that landing returns in an ordinary step: the velocities before
+and after then cancel at its start, where the contact is, and the scheme is symmetric."""
+
+FEEBLE = 1e-15
+"""k dt^2 where positions are to be left alone; the library takes a zero for something else."""
+
+FLOAT = 3e-4
+"""Gap, over g dt^2 of the ordinary step, at which landing lets the block rest, so that a contact
+at rest is never lost."""
+
+CARRY = 1e-4
+"""Gap, over the width, up to which landing keeps the contact about which the block turns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,12 +61,15 @@ class MujocoSettings:
         k dt^2, wherever damping is set.
     impedance : tuple of float or None
         The five numbers of solimp, wherever damping is set.
+    landing : bool
+        Hold each contact as the step needs it: `stiffness` at rest alone, velocities reflected
+        while the block turns about a corner, and taken out in the short steps of an impact.
     """
 
     geometry: str = "corners"
     planar: bool = True
     friction: float = 10.0
-    step: float | None = 5e-4
+    step: float | None = 2.5e-4
     corner_radius: float = 1e-7
     cone: str | None = "elliptic"
     solver: str | None = "Newton"
@@ -64,6 +81,8 @@ class MujocoSettings:
     sliding_damping: float | None = 1.0
     stiffness: float | None = 0.01
     impedance: tuple[float, ...] | None = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+
+    landing: bool = False
 
     def __post_init__(self) -> None:
         one_of("geometry", self.geometry, GEOMETRIES)
@@ -97,6 +116,7 @@ PRESETS: Mapping[str, MujocoSettings] = {
         impedance=None,
     ),
     "fixed": MujocoSettings(),
+    "landing": MujocoSettings(step=None, friction=1e3, stiffness=1.0, landing=True),
 }
 
 
@@ -115,30 +135,33 @@ class MujocoWorld:
         self._model = mj.MjModel.from_xml_string(model_xml(scene, s))
         self._data = mj.MjData(self._model)
         self._pull, self._option = self._model.opt.gravity, self._model.opt
-        self.default_step_s = self._option.timestep if s.step is None else s.step / scene.block.p
+        self.dt_s = scene.ordinary_step(s.step, self._option.timestep)
         self._velocity = self._moved = self._dt = self._time = 0.0
+        self._sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
+        self._set_reach(scene)
         self._fault = self._read_back(scene)
         # the library would write its warnings to a file; they are counted and read from `fault`
         mj.set_mju_user_warning(_ignore)
 
-    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
-        """Advance by `dt_s` [s]; see `engines.scene.World`."""
-        if dt_s != self._dt:
-            self._set_step(dt_s)
-        self._pull[2] = -self._gravity * kick_s / dt_s
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.scene.World`."""
+        self._hold(step)
+        self._pull[2] = -self._gravity * step.kick_s / step.dt_s
         if self._moving:
-            self._move_base(dt_s, base_kick)
+            self._move_base(step.dt_s, step.base_kick)
         else:
-            self._pull[0] = -base_kick / dt_s
+            self._pull[0] = -step.base_kick / step.dt_s
         mj.mj_step(self._model, self._data)
-        self._time += dt_s
+        self._time += step.dt_s
+        if self.settings.landing:
+            self._look_at_yield(step)
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
-        q, v = self._data.qpos.tolist(), self._data.qvel
+        q, v = self._data.qpos.tolist(), self._data.qvel.tolist()
         if self.settings.planar:
-            return Pose(q[0] - self._moved, q[1] + self._height, q[2], float(v[2]))
-        return Pose(q[0] - self._moved, q[2], 2.0 * math.atan2(q[5], q[3]), float(v[4]))
+            return Pose(q[0] - self._moved, q[1] + self._height, q[2], v[2])
+        return Pose(q[0] - self._moved, q[2], 2.0 * math.atan2(q[5], q[3]), v[4])
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the engine warned of."""
@@ -153,20 +176,59 @@ class MujocoWorld:
         """Give warnings back to the library."""
         mj.set_mju_user_warning(None)
 
-    def _set_step(self, dt_s: float) -> None:
-        s = self.settings
-        self._option.timestep = self._dt = dt_s
-        if s.stiffness is not None and s.damping is not None and s.sliding_damping is not None:
-            stiffness = -s.stiffness / dt_s**2
-            self._model.pair_solref[:] = (stiffness, -s.damping / dt_s)
-            self._model.pair_solreffriction[:] = (stiffness, -s.sliding_damping / dt_s)
+    def _hold(self, step: Step) -> None:
+        """Set the step, and the contact in units of it."""
+        s, model, dt = self.settings, self._model, step.dt_s
+        if dt == self._dt and not s.landing:
+            return
+        before, self._dt = self._dt, dt
+        self._option.timestep = dt
+        if s.damping is None or s.sliding_damping is None or s.stiffness is None:
+            return
+        back = 0.0
+        if s.landing and before and step.grip in (Grip.SWING, Grip.APPROACH):
+            back = REFLECTION * min(1.0, dt / before)
+        firm = FEEBLE if s.landing and (step.side or step.grip is not Grip.REST) else s.stiffness
+        self._sliding = s.sliding_damping + back
+        # the library divides both numbers by the impedance, the first one twice
+        k, unit = -firm * (self._impedance / dt) ** 2, -self._impedance / dt
+        model.pair_solref[:] = (k, unit * (s.damping + back))
+        model.pair_solreffriction[:] = (k, unit * self._sliding)
+        if s.landing:
+            self._reach(step)
+
+    def _reach(self, step: Step) -> None:
+        """Set from which gap on each contact acts, and preload the one that carries the block."""
+        model = self._model
+        model.pair_margin[:] = self._float if step.grip is Grip.REST or not step.side else 0.0
+        if step.side:
+            pivot = self._left if step.side < 0.0 else self._right
+            model.pair_margin[pivot] = self._carry
+            preload = self._yield * step.kick_s / step.dt_s
+            model.pair_solref[pivot, 0] = -preload * self._impedance**2 / self._carry
+
+    def _look_at_yield(self, step: Step) -> None:
+        """Note by how much [m/s2] the pivot yields to its force, for the next step's preload."""
+        data = self._data
+        if step.grip is Grip.REST and data.nefc:
+            self._yield = float(data.efc_R[0]) * self._weight
+        elif step.grip is Grip.SWING and data.ncon == 1:
+            self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
+
+    def _set_reach(self, scene: Scene) -> None:
+        s, pairs = self.settings, self._model.npair
+        self._left, self._right = slice(0, pairs // 2), slice(pairs // 2, pairs)
+        self._float = FLOAT * scene.block.gravity * self.dt_s**2
+        self._carry = CARRY * scene.block.width
+        self._weight = scene.mass * scene.block.gravity
+        self._impedance = 1.0 if s.impedance is None else s.impedance[1]
+        self._yield = (1.0 - self._impedance) * scene.block.gravity
 
     def _move_base(self, dt_s: float, base_kick: float) -> None:
         before, self._velocity = self._velocity, self._velocity + base_kick
-        b = 1.0 if self.settings.sliding_damping is None else self.settings.sliding_damping
         # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
         # moved with the base before moves with the base after
-        self._model.geom_surfacevel[0, 0] = before + base_kick / b
+        self._model.geom_surfacevel[0, 0] = before + base_kick / self._sliding
         self._data.mocap_pos[0, 0] = self._moved
         self._moved += dt_s * self._velocity
 

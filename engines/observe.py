@@ -5,6 +5,7 @@ of the steps; what lies between two steps is interpolated.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from analytic.response import Impact, Outcome, Response
@@ -17,7 +18,8 @@ above the noise of a tuned contact at rest and below the smallest lift of intere
 
 LIFT_FALL = 1e-3
 """... plus this part of g dt^2, twice the way fallen in one step, which no engine resolves,
-plus the depth to which the contact was seen to give way under the resting block."""
+plus the depth to which the contact was seen to give way under the resting block, and twice
+the height to which the pivot of the last swing hopped, by the curvature of its steps."""
 
 REST_TIME = 0.05
 """A block that has not lifted for this time, in units of 1/p, ..."""
@@ -27,6 +29,9 @@ REST_RATE = 0.01
 
 RESOLVED_ROWS = 3
 """An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""
+
+EDGE_ROWS = 4
+"""Ends of steps from which the velocity at either end of a swing is read."""
 
 SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
@@ -57,40 +62,53 @@ START = Row(0.0, 0.0, 0.0, 0.0)
 class Swing:
     """The rows during which the block is aloft on one side."""
 
-    __slots__ = ("first", "last", "rows", "side")
+    __slots__ = ("_end", "_first", "_last", "rows", "side")
 
     def __init__(self, side: float) -> None:
         self.side = side
         self.rows = 0
-        self.first: tuple[Row, ...] = ()
-        self.last: tuple[Row, Row, Row] = (START, START, START)
+        self._first: list[Row] = []
+        self._last: list[Row] = []
+        self._end = START
 
     def add(self, row: Row) -> None:
         """Take the next row in."""
         self.rows += 1
-        if self.rows <= RESOLVED_ROWS:
-            self.first = (*self.first, row)
-        self.last = (self.last[1], self.last[2], row)
+        if self.rows <= EDGE_ROWS:
+            self._first.append(row)
+        # a step much shorter than the last approaches an impact, in which the contact's force may
+        # come later than the others
+        if row.time - row.middle > 0.5 * (self._end.time - self._end.middle):
+            self._last.append(row)
+            if len(self._last) == EDGE_ROWS:
+                del self._last[0]
+        self._end = row
 
     def landing(self) -> tuple[float, float]:
         """Time [s] at which the swing meets theta = 0, and the velocity [rad/s] with which."""
-        _, before, end = self.last
-        rate = extrapolated(before, end, end.time)
+        end = self._end
+        rate = extrapolated(self._last, end.time)
         if rate * self.side >= 0.0:
             return end.time, rate
         time = end.time - end.theta / rate
-        return time, extrapolated(before, end, time)
+        return time, extrapolated(self._last, time)
 
     def launch(self, time: float) -> float:
         """Velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
-        if self.rows < RESOLVED_ROWS:
-            return self.first[-1].rate
-        return extrapolated(self.first[1], self.first[2], time)
+        # the step to the first row may contain the impact
+        return extrapolated(self._first[1:] or self._first, time)
 
 
-def extrapolated(a: Row, b: Row, time: float) -> float:
-    """Angular velocity [rad/s] at `time` [s] by the straight line through two steps' own."""
-    return b.rate + (time - b.middle) * (b.rate - a.rate) / (b.middle - a.middle)
+def extrapolated(rows: Sequence[Row], time: float) -> float:
+    """Angular velocity [rad/s] at `time` [s] by the polynomial through those of some steps."""
+    total = 0.0
+    for row in rows:
+        weight = 1.0
+        for other in rows:
+            if other is not row:
+                weight *= (time - other.middle) / (row.middle - other.middle)
+        total += weight * row.rate
+    return total
 
 
 class Observer:
@@ -131,7 +149,7 @@ class Observer:
         self._uplifts: list[float] = []
         self._rests: list[float] = []
         self._impacts: list[Impact] = []
-        self._peak = self._slide = self._give = 0.0
+        self._peak = self._slide = self._give = self._hop = 0.0
         self._crossed = self._overturned = self._turned = False
         self.lifted = self.done = False
         self.broken = ""
@@ -145,7 +163,9 @@ class Observer:
         level = z - self._half_height * cosine
         if self._resting:
             self._give = max(self._give, reach - level)
-        self.lifted = level + reach > self._lift + self._give
+        self.lifted = level + reach > self._lift + self._give + 2.0 * self._hop
+        if self.lifted:
+            self._hop = max(self._hop, level - reach)
         if abs(theta) <= self._alpha:
             inward = math.copysign(self._half_width * (1.0 - cosine), theta)
             self._slide = max(self._slide, abs(x - self._half_height * sine - inward))
@@ -176,11 +196,12 @@ class Observer:
         if self._swing is None or self._swing.side != side:
             self._land()
             self._swing = Swing(side)
+            self._hop = 0.0
             if self._resting:
                 self._uplifts.append(self._now.time)
                 self._resting = False
         self._swing.add(row)
-        if self._swing.rows == RESOLVED_ROWS:
+        if self._swing.rows == EDGE_ROWS:
             self._launch()
         self._low_since = math.nan
 
@@ -217,7 +238,7 @@ class Observer:
         peak = abs(c.theta)
         if b.rate * side > 0.0 >= c.rate * side:
             bend = (b.rate - c.rate) / (c.middle - b.middle) * side
-            rate = extrapolated(b, c, b.time)
+            rate = extrapolated((b, c), b.time)
             peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
             self._turned = b.time >= self._motion_end and self.lifted
         if peak > self._peak:

@@ -1,5 +1,6 @@
 """What is simulated, and the few calls a physics engine must answer."""
 
+import enum
 import itertools
 import math
 from collections.abc import Mapping, Sequence
@@ -11,11 +12,15 @@ from analytic.block import RigidBlock
 from analytic.checks import finite, positive
 from analytic.motion import Motion
 
-PRESETS = ("naive", "fixed")
-"""How an engine is used: as it comes out of the box, or tuned with a fixed step."""
+PRESETS = ("naive", "fixed", "landing")
+"""How an engine is used: as it comes out of the box, tuned with a fixed step, or tuned with steps
+that land on impacts, the best there is."""
 
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
+
+ACCURACIES = {"loose": 50, "standard": 200, "tight": 800}
+"""Name of an accuracy -> steps of the preset "landing" in a time 1/p."""
 
 GEOMETRIES = ("box", "corners")
 """What touches the base: the whole block, or small spheres at its corners."""
@@ -35,6 +40,8 @@ class Scene:
         Horizontal motion of the base.
     preset : str, optional
         One of `PRESETS`.
+    accuracy : str, optional
+        One of `ACCURACIES`, for the preset "landing".
     frame : str, optional
         "base": the base is at rest and the block carries the body force -m u_g''; "world": the
         base moves.
@@ -45,7 +52,7 @@ class Scene:
     friction : float, optional
         Coefficient between block and base; the preset's by default.
     step : float, optional
-        p dt, the step in units of 1/p; the preset's by default.
+        p dt, the ordinary step in units of 1/p; the preset's by default.
     duration : float, optional
         Observe until this time [s], at least the motion's own duration. By default the
         observation ends as soon as peak and outcome are decided.
@@ -66,7 +73,8 @@ class Scene:
 
     block: RigidBlock
     motion: Motion
-    preset: str = "fixed"
+    preset: str = "landing"
+    accuracy: str = "standard"
     frame: str = "base"
     density: float = 1000.0
     depth: float | None = None
@@ -80,6 +88,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         one_of("preset", self.preset, PRESETS)
+        one_of("accuracy", self.accuracy, tuple(ACCURACIES))
         one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "friction", "step", "time_limit_s", "max_steps"):
             if getattr(self, name) is not None:
@@ -116,6 +125,17 @@ class Scene:
         twelfth = self.mass / 12.0
         return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
 
+    def ordinary_step(self, preset_step: float | None, library_s: float) -> float:
+        """Return the ordinary step [s].
+
+        preset_step is the p dt of a preset, or None to leave the library's own step `library_s`.
+        """
+        if self.step is not None:
+            return self.step / self.block.p
+        if self.preset == "landing":
+            return 1.0 / (ACCURACIES[self.accuracy] * self.block.p)
+        return library_s if preset_step is None else preset_step / self.block.p
+
     def choose(self, preset: SettingsT) -> SettingsT:
         """Return the settings of a preset with this scene's own in their place.
 
@@ -131,6 +151,30 @@ class Scene:
         if self.friction is not None:
             chosen["friction"] = self.friction
         return replace(preset, **chosen)  # type: ignore[type-var]
+
+
+class Grip(enum.Enum):
+    """What a step is for, by which an adapter may choose how firmly a contact holds."""
+
+    REST = "the block is at rest"
+    SWING = "the block turns about a corner"
+    APPROACH = "one of the shorter steps before an impact"
+    STRIKE = "one of the shortest steps through an impact"
+
+
+class Step(NamedTuple):
+    """A step of a policy.
+
+    dt_s [s] is how far it goes; kick_s [s] is for how long forces act on the velocity before, and
+    base_kick [m/s] is the change of the base's velocity meanwhile; grip says what the step is for,
+    and side about which corner the block turns: -1 or 1, or 0 where it is held by both.
+    """
+
+    dt_s: float
+    kick_s: float
+    base_kick: float
+    grip: Grip
+    side: float
 
 
 class Pose(NamedTuple):
@@ -151,18 +195,15 @@ class World(Protocol):
     """A built scene: what a stepping policy asks of an engine.
 
     The engines integrate by semi-implicit Euler steps, so that a velocity belongs to the middle
-    of the step it has just carried the block through. A step is therefore told two durations:
-    how far it goes, and for how long the forces act on the velocity before it goes.
+    of the step through which it has carried the block. A step is therefore told two durations:
+    from the middle of the last step to the middle of this one, and from its start to its end.
     """
 
-    default_step_s: float
-    """Step [s] of the preset."""
+    dt_s: float
+    """Ordinary step [s]."""
 
-    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
-        """Advance by `dt_s` [s] after forces have acted for `kick_s` [s].
-
-        base_kick [m/s] is the change of the base's velocity meanwhile.
-        """
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
 
     def pose(self) -> Pose:
         """Read the block's pose back."""

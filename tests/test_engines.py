@@ -13,7 +13,7 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import ENGINES, FRAMES, PRESETS, Scene, run
 from engines.drive import _simulate
-from engines.scene import Pose, World
+from engines.scene import Pose, Step, World
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 TUNED = tuple(name for name in PRESETS if name != "naive")
@@ -244,12 +244,12 @@ def test_a_silent_reset_is_a_failure(tmp_path: object, monkeypatch: pytest.Monke
 class Lost:
     """A world that hands out what a broken engine might."""
 
-    default_step_s = 1e-3
+    dt_s = 1e-3
 
     def __init__(self, pose: Pose) -> None:
         self._pose = pose
 
-    def step(self, dt_s: float, kick_s: float, base_kick: float) -> None:
+    def step(self, step: Step) -> None:
         pass
 
     def pose(self) -> Pose:
