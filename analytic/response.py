@@ -79,6 +79,8 @@ class Response:
         Steps of the integrator or engine.
     wall_s : float
         Seconds spent on the steps; building a scene and compiling are not included.
+    setup_s : float
+        Seconds spent on what comes before the steps, where that was measured.
     message : str
         Why a response failed, or what a reader should know about it.
     history : History or None
@@ -98,6 +100,7 @@ class Response:
     rests: tuple[float, ...] = ()
     steps: int = 0
     wall_s: float = 0.0
+    setup_s: float = 0.0
     message: str = ""
     history: History | None = field(default=None, repr=False)
     min_normal: float = float("nan")

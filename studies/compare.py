@@ -165,10 +165,10 @@ def compare(
     return [by_source[name] for name in sources]
 
 
-def _reduce(response: Response) -> Row:
+def _reduce(job: Job, response: Response) -> Row:
     ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
     return {
-        **summary(response),
+        **summary(job, response),
         "velocity_ratio": median(ratios) if ratios else math.nan,
         "response": response,
     }

@@ -11,7 +11,7 @@ from pebble import ProcessExpired, ProcessPool
 
 from analytic.response import Response
 from studies.jobs import Job, ask, one_line
-from studies.sources import resolve
+from studies.sources import Source, resolve
 
 
 class Executor(Protocol):
@@ -34,10 +34,13 @@ class Local:
         Number of processes.
     time_limit_s : float
         Wall-clock time [s] after which a case in a process of its own is given up.
+    ask : callable, optional
+        How a job is put to its source.
     """
 
     workers: int
     time_limit_s: float
+    ask: Callable[[Job, Source], Response] = ask
 
     def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
         """Run the jobs."""
@@ -51,8 +54,8 @@ class Local:
             if job.source not in loaded:
                 # loading the compiled kernels is no part of the first case's run time
                 loaded.add(job.source)
-                ask(job, source)
-            yield number, ask(job, source)
+                self.ask(job, source)
+            yield number, self.ask(job, source)
         if slow:
             yield from self._in_processes(slow)
 
@@ -63,7 +66,7 @@ class Local:
             # the source travels with the job, so that a worker needs no registry of its own
             tasks: dict[Future[Response], int] = {
                 pool.schedule(
-                    ask, args=(job, resolve(job.source)), timeout=self.time_limit_s
+                    self.ask, args=(job, resolve(job.source)), timeout=self.time_limit_s
                 ): number
                 for number, job in jobs.items()
             }

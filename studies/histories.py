@@ -81,7 +81,7 @@ def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Exec
     rows = run_jobs(
         [history_job(case, source) for case in cases for source in sources],
         executor=executor,
-        reduce=lambda response: {**summary(response), "response": response},
+        reduce=lambda job, response: {**summary(job, response), "response": response},
     )
     table = tidy(cases, rows)
     if len(table):

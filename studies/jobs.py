@@ -78,7 +78,7 @@ def ask(job: Job, source: Source) -> Response:
         return Response.failure(one_line(error))
 
 
-def summary(response: Response) -> Row:
+def summary(_: Job, response: Response) -> Row:
     """Return the columns that every study shares."""
     return {
         "outcome": response.outcome.value,

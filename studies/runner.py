@@ -20,12 +20,17 @@ _LABELS = ("figure", "panel", "case", "aspect", "width_m", "omega_over_p")
 """Columns that name a failed case."""
 
 
+Reduce = Callable[[Job, Response], Row]
+"""Makes of a job's response the columns that follow its labels and source, outcome among them."""
+
+
 def fill_folder(
     folder: Path,
     study: str,
     jobs: Sequence[Job],
     *,
     executor: Executor,
+    reduce: Reduce = summary,
     settings: Mapping[str, Any],
     growing: Mapping[str, Sequence[Any]],
     products: Sequence[str],
@@ -41,6 +46,8 @@ def fill_folder(
     jobs : sequence of Job
         In the order of the table.
     executor : Executor
+    reduce : callable, optional
+        As in `run_jobs`.
     settings : mapping
         What all rows depend on; must be the same whenever the folder is used.
     growing : mapping
@@ -61,7 +68,7 @@ def fill_folder(
         path = folder / "provenance.json"
         record = provenance.begin(path, identity, {k: _short(v) for k, v in growing.items()})
         try:
-            rows = run_jobs(jobs, executor=executor, reduce=summary, journal=journal)
+            rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
         except KeyboardInterrupt as stop:
             kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
             raise KeyboardInterrupt(f"{kept}; the same command goes on from there") from stop
@@ -90,13 +97,12 @@ def run_jobs(
     jobs: Sequence[Job],
     *,
     executor: Executor,
-    reduce: Callable[[Response], Row],
+    reduce: Reduce,
     journal: Journal | None = None,
 ) -> list[Row]:
     """Run the jobs that are not in the journal yet, and return the rows of all in their order.
 
-    Progress is shown on stderr if that is a terminal. `reduce` makes the columns that follow the
-    labels and the source, `outcome` among them.
+    Progress is shown on stderr if that is a terminal.
     """
     keys = [job.key for job in jobs]
     done = dict(journal.rows) if journal else {}
@@ -108,7 +114,11 @@ def run_jobs(
     ):
         for position, response in answers:
             number = pending[position]
-            row = {**jobs[number].labels, "source": jobs[number].source, **reduce(response)}
+            row = {
+                **jobs[number].labels,
+                "source": jobs[number].source,
+                **reduce(jobs[number], response),
+            }
             done[keys[number]] = row
             if journal:
                 journal.append(keys[number], row)

@@ -10,6 +10,7 @@ from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from engines import ENGINES, PRESETS
+from studies.peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "engine"]
 """Models and solvers take microseconds and cannot crash; an engine may do either."""
@@ -24,12 +25,13 @@ class Source:
     """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
 
     It can be sent to another process or machine. `preset` is an engine's, by default the best
-    there is.
+    there is; `stepping` sources have an option `step`, p dt.
     """
 
     kind: Kind
     call: Callable[..., Response]
     preset: str = ""
+    stepping: bool = False
 
 
 def run_engine(
@@ -58,7 +60,12 @@ def run_engine(
 
 
 def _engine(name: str, preset: str) -> Source:
-    return Source("engine", partial(run_engine, engine=name, preset=preset), preset)
+    call = partial(run_engine, engine=name, preset=preset)
+    return Source("engine", call, preset, stepping=True)
+
+
+def _peer(method: str) -> Source:
+    return Source("solver", partial(solve_ivp_response, method=method))
 
 
 BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"
@@ -66,8 +73,11 @@ BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"
 
 SOURCES: dict[str, Source] = {
     **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
-    "rk4": Source("solver", partial(integrate, method="rk4")),
-    "average-acceleration": Source("solver", partial(integrate, method="average-acceleration")),
+    "rk4": Source("solver", partial(integrate, method="rk4"), stepping=True),
+    "average-acceleration": Source(
+        "solver", partial(integrate, method="average-acceleration"), stepping=True
+    ),
+    **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
     **{name: _engine(name, BEST_PRESET) for name in ENGINES},
 }
 """Every source; a new model or engine appears here by being registered in its own storey."""
@@ -98,4 +108,4 @@ def allowed() -> str:
 
 def stepping(name: str, step: float | None) -> dict[str, float]:
     """Return the option that sets p dt for a source that steps; nothing for the others."""
-    return {"step": step} if step is not None and resolve(name).kind != "model" else {}
+    return {"step": step} if step is not None and resolve(name).stepping else {}
