@@ -65,8 +65,8 @@ def command(
     half_cycles
         Number of half cycles, instead of --pulse.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco; an engine
-        takes a preset after a colon, as in pybullet:naive.
+        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
+        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in pybullet:naive.
     duration
         Observe until this time [s], at least the length of the pulse; by default the pulse and
         8/p of free rocking.

@@ -85,8 +85,9 @@ class _March:
         self.segments = scaled_segments(block, motion)
         self.moving = float(self.segments[-1, 1])
         self.until = math.inf if duration is None else duration * block.p
-        self.times = times
-        self.samples: list[FloatArray] = []
+        self.times = np.empty(0) if times is None else times
+        self.samples = np.zeros((2, self.times.size))
+        self.recorded, self.end = times is not None, self.until
         self.impacts: list[Impact] = []
         self.peak, self.evaluations, self.message = 0.0, 0, ""
 
@@ -108,6 +109,7 @@ class _March:
             tau, y, v = float(path.t[-1]), float(path.y[0, -1]), float(path.y[1, -1])
             over = tau >= self.moving
             if len(lying) or (over and y > self.alpha and v >= 0.0 and self.until == math.inf):
+                self.end = tau
                 return Outcome.OVERTURNED
             if tau >= self.until:
                 return Outcome.OVERTURNED if y > self.alpha else Outcome.ROCKED
@@ -138,7 +140,7 @@ class _March:
             rtol=self.rtol,
             atol=1e-3 * self.rtol * self.alpha,
             events=events,
-            dense_output=self.times is not None,
+            dense_output=self.recorded,
             # an excursion shorter than the first step would be stepped over
             first_step=min(0.2 * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
         )
@@ -168,19 +170,18 @@ class _March:
         return -side, after
 
     def _sample(self, path: Any, side: float) -> None:
-        if self.times is not None:
-            wanted = self.times * self.p
-            inside = wanted[(wanted >= path.t[0]) & (wanted < path.t[-1])]
-            if inside.size:
-                theta, rate = side * path.sol(inside)
-                self.samples.append(np.stack([inside / self.p, theta, rate * self.p]))
+        wanted = self.times * self.p
+        inside = (wanted >= path.t[0]) & (wanted <= path.t[-1])
+        if inside.any():
+            self.samples[:, inside] = side * path.sol(wanted[inside])
 
     def history(self) -> History | None:
-        """Return the samples while the block rocked."""
-        if self.times is None:
+        """Return the samples to the end of the response, if they were asked for."""
+        if not self.recorded:
             return None
-        time_s, theta, rate = np.concatenate([np.empty((3, 0)), *self.samples], axis=1)
-        return History(time_s, theta, rate)
+        seen = int(np.searchsorted(self.times * self.p, self.end, side="right"))
+        theta, rate = self.samples[:, :seen]
+        return History(self.times[:seen], theta, rate * self.p)
 
 
 def _crossing(component: int, level: float, direction: int) -> Callable[[float, Any], float]:

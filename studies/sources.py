@@ -12,8 +12,9 @@ from analytic.response import Response
 from engines import ENGINES, PRESETS
 from studies.peers import solve_ivp_response
 
-Kind = Literal["model", "solver", "engine"]
-"""Models and solvers take microseconds and cannot crash; an engine may do either."""
+Kind = Literal["model", "solver", "peer", "engine"]
+"""Models and solvers take microseconds, peers (general-purpose integrators) milliseconds, and
+none of them crashes; an engine may."""
 
 
 class UnknownSourceError(ValueError):
@@ -65,7 +66,7 @@ def _engine(name: str, preset: str) -> Source:
 
 
 def _peer(method: str) -> Source:
-    return Source("solver", partial(solve_ivp_response, method=method))
+    return Source("peer", partial(solve_ivp_response, method=method))
 
 
 BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"

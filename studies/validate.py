@@ -102,8 +102,8 @@ def command(
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco; an engine
-        takes a preset after a colon, as in mujoco:fixed.
+        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
+        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
     jobs
