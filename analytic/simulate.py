@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -88,7 +89,16 @@ def simulate(
     def solve(record: Record) -> End:
         return march(law, exactly, segments, until * block.p, record, workspace())
 
-    return respond(block, solve, sampled, times is not None, watched=not law.linear)
+    response = respond(block, solve, sampled, times is not None, watched=not law.linear)
+    if response.outcome is Outcome.AT_REST and not law.linear:
+        return replace(response, friction_needed=strongest(motion) / block.gravity)
+    return response
+
+
+def strongest(motion: Motion) -> float:
+    """Return the largest ground acceleration [m/s2] of a motion, at 1001 points and its breaks."""
+    times = np.union1d(np.linspace(0.0, motion.duration, 1001), motion.breakpoints)
+    return float(np.abs(motion.acceleration(times)).max())
 
 
 def respond(

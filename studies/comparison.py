@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse
 from analytic.response import Response
@@ -35,6 +36,7 @@ def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[R
             "vs exact": [_difference(row) for row in rows],
             "impacts": [row["impacts"] for row in rows],
             "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
+            "slip/B": [_slip(row["response"].slip_m / block.width) for row in rows],
             "steps": [row["steps"] for row in rows],
             "time": [_duration(row["wall_s"]) for row in rows],
         }
@@ -48,11 +50,21 @@ def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[R
             f"{motion.omega:g} rad/s, {motion.duration:.4g} s; observed for {window:.4g} s",
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
+            f"valid   {validity(block, motion)}",
             "",
             table.to_string(index=False),
             *notes,
         ]
     )
+
+
+def validity(block: RigidBlock, motion: Motion) -> str:
+    """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
+    exact = simulate(block, motion)
+    if exact.min_normal < 0.0:
+        return "not here: the pivot would lift off, and an engine is right to differ"
+    least = f"the normal force stays above {exact.min_normal:.3g} of the weight"
+    return f"with friction of {exact.friction_needed:.3g} or more; {least}"
 
 
 def pulse_name(half_cycles: int) -> str:
@@ -72,6 +84,10 @@ def _difference(row: Row) -> str:
 
 def _fixed(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.6f}"
+
+
+def _slip(value: float) -> str:
+    return "-" if math.isnan(value) else scientific(value)
 
 
 def _duration(seconds: float) -> str:

@@ -225,6 +225,13 @@ def test_contact_forces_follow_from_the_history():
     assert response.friction_needed >= ratio.max() - 1e-3
 
 
+def test_a_block_at_rest_needs_the_friction_that_carries_it():
+    response = simulate(*papers_case(0.5, 1.5, 0.3, 2))
+    assert response.outcome is Outcome.AT_REST
+    assert response.friction_needed == pytest.approx(0.3, rel=1e-5)
+    assert response.min_normal == 1
+
+
 def test_history_follows_the_response():
     block, pulse = papers_case(0.5, 1.5, 0.4, 2)
     times = np.linspace(0, 3, 3001)

@@ -20,7 +20,7 @@ from studies.runner import run_jobs
 from studies.sources import SOURCES
 
 HERE = Path(__file__).parent
-MODELS_AND_SOLVERS = [name for name, source in SOURCES.items() if source.kind in ("model", "solver")]
+MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
 
 
 @pytest.fixture(scope="module")
