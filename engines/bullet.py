@@ -138,11 +138,11 @@ class BulletWorld:
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.scene.World`."""
         p, client, dt_s = self._p, self._client, step.dt_s
-        if dt_s != self._dt:
+        if dt_s != self._dt or step.grip is not self._grip:
             p.setTimeStep(dt_s, physicsClientId=client)
-            self._dt = dt_s
-        if self.settings.landing and step.grip is not self._grip:
-            self._hold(step.grip)
+            if self.settings.landing:
+                self._hold(step.grip, dt_s)
+            self._dt, self._grip = dt_s, step.grip
         pull = -self._gravity * step.kick_s / dt_s
         if self._moving:
             self._velocity += step.base_kick
@@ -152,15 +152,16 @@ class BulletWorld:
             p.setGravity(-step.base_kick / dt_s, 0.0, pull, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
 
-    def _hold(self, grip: Grip) -> None:
+    def _hold(self, grip: Grip, dt_s: float) -> None:
         """Correct positions in ordinary steps alone: a short one would make a velocity of them."""
-        s, short = self.settings, grip in (Grip.APPROACH, Grip.STRIKE)
+        s, part = self.settings, 0.0
+        if grip not in (Grip.APPROACH, Grip.STRIKE):
+            part = min(1.0, dt_s / self.dt_s) ** 2
         self._p.setPhysicsEngineParameter(
-            contactERP=0.0 if short else s.contact_erp,
-            frictionERP=0.0 if short else s.friction_erp,
+            contactERP=part * (s.contact_erp or 0.0),
+            frictionERP=part * (s.friction_erp or 0.0),
             physicsClientId=self._client,
         )
-        self._grip = grip
 
     def pose(self) -> Pose:
         """Read the block's pose back."""

@@ -6,9 +6,10 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from analytic.response import Response
-from engines.landing import Stepper
+from engines.landing import LandingSteps
 from engines.observe import Observer
 from engines.scene import Scene, World
+from engines.steps import FixedSteps, Policy, Stepper
 
 ENGINES = {"pybullet": "engines.bullet", "mujoco": "engines.mujoco"}
 """Name of an engine -> module of its adapter, imported when the engine is first asked for."""
@@ -55,11 +56,16 @@ def run(engine: str, scene: Scene) -> Response:
         world.close()
 
 
+def policy_of(scene: Scene, dt_s: float) -> Policy:
+    """Return the stepping policy of a scene whose ordinary step is `dt_s` [s]."""
+    return LandingSteps(scene, dt_s) if scene.preset == "landing" else FixedSteps(dt_s)
+
+
 def _simulate(world: World, scene: Scene) -> Response:
     """Step a world until its response is decided."""
     observer = Observer(scene, world.dt_s)
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
-    stepper = Stepper(scene, world.dt_s)
+    stepper = Stepper(policy_of(scene, world.dt_s), scene)
     steps, problem = 0, ""
     pose = world.pose()
     started = time.perf_counter()

@@ -6,16 +6,10 @@ A base that has its mean velocity during each step is where it should be at the 
 import bisect
 import math
 from collections.abc import Callable
-from typing import NamedTuple
-
-import numpy as np
 
 from analytic.motion import Motion
 
 MeanVelocity = Callable[[float, float], float]
-
-LEAST_SAMPLES = 256
-"""Samples at least in which the base's acceleration is looked through."""
 
 SMALL = 0.05
 """Below this angle [rad] a series keeps more digits of 1 - sin(x)/x than the formula does."""
@@ -66,41 +60,3 @@ def _one_minus_sinc(x: float) -> float:
         square = x * x
         return square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
     return 1.0 - math.sin(x) / x
-
-
-class Load(NamedTuple):
-    """A time [s] during which the base accelerates enough to lift a resting block, and whither."""
-
-    begin: float
-    end: float
-    side: float
-
-
-def loads_of(motion: Motion, onset: float, dt_s: float) -> list[Load]:
-    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], seen every dt_s/4 [s]."""
-    samples = max(4 * math.ceil(motion.duration / dt_s), LEAST_SAMPLES) + 1
-    grid = np.union1d(np.linspace(0.0, motion.duration, samples), motion.breakpoints)
-    acceleration = motion.acceleration(grid)
-    loads = []
-    for side in (-1.0, 1.0):
-        excess = -side * acceleration - onset
-        changes = np.nonzero((excess[1:] > 0.0) != (excess[:-1] > 0.0))[0]
-        corners = [_crossing(motion, -side, onset, *map(float, grid[i : i + 2])) for i in changes]
-        if excess[0] > 0.0:
-            corners.insert(0, 0.0)
-        if len(corners) % 2:
-            corners.append(motion.duration)
-        loads += [Load(*pair, side) for pair in zip(corners[::2], corners[1::2], strict=True)]
-    return sorted(loads)
-
-
-def _crossing(motion: Motion, sign: float, onset: float, low: float, high: float) -> float:
-    """Bisect for the time [s] at which sign u_g'' passes `onset` between two times."""
-
-    def above(time: float) -> bool:
-        return sign * float(motion.acceleration(time)) > onset
-
-    first = above(low)
-    while low < (middle := 0.5 * (low + high)) < high:
-        low, high = (middle, high) if above(middle) is first else (low, middle)
-    return float(high)

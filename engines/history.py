@@ -1,18 +1,15 @@
 """A response at chosen times, from the steps that were taken."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analytic.response import History
-
-if TYPE_CHECKING:
-    from engines.observe import Row
+from engines.swing import Row
 
 
-def sample(rows: "Sequence[Row]", times: Sequence[float]) -> History:
+def sample(rows: Sequence[Row], times: Sequence[float]) -> History:
     """Sample a response at those of `times` [s] that it reached.
 
     Over a step, the rotation is the parabola through both ends whose slope in the middle is the

@@ -1,16 +1,16 @@
-"""When to step: a fixed step, or steps that land on what happens.
+"""Steps that end on what happens: impacts, uplifts, and the corners of the base's motion.
 
-A policy chooses how long a step is. It never decides what the state becomes: the block lifts,
-strikes its base and comes to rest by the engine's own contact, whatever the policy expects. What
-it expects comes from the poses seen until now and from the base's motion.
+What to expect comes from the poses seen until now and from the base's motion; what happens is the
+engine's, whatever was expected. Before an impact each step covers half of the way that is left, so
+that the contact about which the block turns is never out of reach of the next step; through the
+impact the steps are too short for anything but the contact to act.
 """
 
-import bisect
 import math
-from typing import NamedTuple, Protocol
 
-from engines.ground import Load, loads_of, mean_velocity_of
-from engines.scene import Grip, Pose, Scene, Step
+from engines.scene import Grip, Pose, Scene
+from engines.steps import Choice
+from engines.timetable import NEVER, Timetable
 
 SWING_STEPS = 24
 """Steps at least in a swing between two impacts."""
@@ -24,14 +24,18 @@ LEAST_LOAD = 0.02
 SHORTEST_SWING = 1e-4
 """A swing that would last no longer than this, in units of 1/p, is left to come to rest."""
 
-REMAINDER = 0.1
+REMAINDER = 0.5
 """Part of the way to an event that each step of an approach leaves for the next."""
 
 NEAR = 1e-6
-"""An impact is near when less than this part of the ordinary step is left."""
+"""An impact is near when less than this part of the ordinary step is left, ..."""
+
+MOST_ACCELERATION = 3e9
+"""... or than the time in which this angular acceleration [rad/s2] would stop the block; engines
+take what is much larger for a failure."""
 
 UPLIFT_NEAR = 2e-3
-"""The same for an uplift, before which nothing moves."""
+"""An uplift is near when less than this part of the ordinary step is left."""
 
 STRIKES = 4
 """Steps at least through an impact, in which the contact takes its effect, ..."""
@@ -42,68 +46,8 @@ MOST_STRIKES = 12
 SETTLED = 1e-6
 """An impact is over when a step changes the angular velocity by less than this part of it."""
 
-ROUNDING = 1e-9
-"""Times closer than this part of the ordinary step are the same."""
-
-
-class Choice(NamedTuple):
-    """How long a step is [s], what it is for, and the corner turned about (0: both hold)."""
-
-    dt_s: float
-    grip: Grip
-    side: float
-
-
-class Policy(Protocol):
-    """Chooses the steps of a run."""
-
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Choose the step from `time` [s] on, where the block has the pose `pose`."""
-
-
-class Stepper:
-    """Makes a policy's choices into steps, with what the base does meanwhile.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is being simulated.
-    dt_s : float
-        Ordinary step [s].
-    """
-
-    def __init__(self, scene: Scene, dt_s: float) -> None:
-        landing = scene.preset == "landing"
-        self._policy: Policy = LandingSteps(scene, dt_s) if landing else FixedSteps(dt_s)
-        self._mean_velocity = mean_velocity_of(scene.motion)
-        self._velocity = self._last_dt = 0.0
-        self.time = 0.0
-
-    def next(self, pose: Pose, lifted: bool) -> Step:
-        """Return the next step and advance `time` [s] to its end."""
-        dt, grip, side = self._policy.choose(self.time, pose, lifted)
-        end = self.time + dt
-        velocity = self._mean_velocity(self.time, end)
-        step = Step(dt, 0.5 * (self._last_dt + dt), velocity - self._velocity, grip, side)
-        self._velocity, self._last_dt, self.time = velocity, dt, end
-        return step
-
-
-class FixedSteps:
-    """Steps that are all equal.
-
-    Parameters
-    ----------
-    dt_s : float
-        Step [s].
-    """
-
-    def __init__(self, dt_s: float) -> None:
-        self._choice = Choice(dt_s, Grip.SWING, 0.0)
-
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Return the step."""
-        return self._choice
+TOUCHING = 1e-9
+"""A corner lower above the base than this part of the width touches it."""
 
 
 class LandingSteps:
@@ -120,126 +64,115 @@ class LandingSteps:
     def __init__(self, scene: Scene, dt_s: float) -> None:
         block = scene.block
         self._dt = dt_s
-        self._half_width, self._half_height = 0.5 * block.width, 0.5 * block.height
-        # what a block at rest on one corner is accelerated by towards the other
+        self._width, self._half_height = block.width, 0.5 * block.height
+        # what a block that stands on one corner is accelerated by towards the other
         self._fall = block.p**2 * math.sin(block.alpha)
         self._shortest = SHORTEST_SWING / block.p
-        self._loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha), dt_s)
-        ends = () if scene.duration is None else (scene.duration,)
-        starts = (time for load in self._loads for time in (load.begin, load.end))
-        self._stops = sorted({*scene.motion.breakpoints, *starts, *ends} - {0.0})
+        self._times = Timetable(scene, dt_s)
         self._side = 0.0
-        self._resting, self._launched = True, False
-        self._approaching = False
-        self._strikes = 0
-        self._strike = 0.0
-        self._last_dt = self._last_rate = self._kick = 0.0
+        self._resting, self._bouncing, self._approaching = True, False, False
+        self._strikes, self._strike_s = 0, 0.0
+        self._last = Choice(0.0, Grip.REST, 0.0)
+        self._last_rate = self._kick = 0.0
 
     def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
         """Choose the step from `time` [s] on, where the block has the pose `pose`."""
-        choice = self._choose(time + ROUNDING * self._dt, pose, lifted)
-        self._kick = 0.5 * (self._last_dt + choice.dt_s)
-        self._last_dt, self._last_rate = choice.dt_s, pose.rate
+        self._times.pass_to(time)
+        if self._strikes:
+            choice = self._through(pose)
+        elif self._resting and not lifted:
+            choice = self._at_rest()
+        else:
+            choice = self._aloft(pose, lifted)
+        self._kick = 0.5 * (self._last.dt_s + choice.dt_s)
+        self._last, self._last_rate = choice, pose.rate
         return choice
 
-    def _choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        if self._strikes:
-            return self._through(time, pose)
-        if self._resting and lifted:
-            self._resting = self._launched = False
-        elif self._resting:
-            return self._at_rest(time, pose)
-        if not self._approaching and lifted:
-            self._side = math.copysign(1.0, pose.theta)
-        longest = self._longest(time, pose)
-        ahead = self._until_impact(pose)
-        if self._approaching or ahead < min(2.0 * longest, self._left(time)):
-            return self._towards_impact(ahead, longest)
-        return Choice(self._even(time, longest), Grip.SWING, self._side)
-
-    def _at_rest(self, time: float, pose: Pose) -> Choice:
-        load = self._load(time)
-        if load is not None and load.begin <= time:
-            self._side = load.side
-            return Choice(self._even(time, self._longest(time, pose)), Grip.REST, load.side)
+    def _at_rest(self) -> Choice:
+        """Step on to the next stop; come slowly where the block may lift."""
+        times = self._times
+        if times.loaded:
+            self._side = times.load.side
+            return Choice(times.even(self._longest()), Grip.REST, self._side)
         self._side = 0.0
-        left = self._left(time)
-        if (
-            load is not None
-            and left <= self._dt
-            and math.isclose(time + left, load.begin, abs_tol=ROUNDING * self._dt)
-        ):
-            rest = 0.0 if left <= UPLIFT_NEAR * self._dt else REMAINDER
-            return Choice((1.0 - rest) * left, Grip.REST, load.side)
-        return Choice(self._even(time, self._dt), Grip.REST, 0.0)
+        if not times.lifts_next or times.left > self._dt:
+            return Choice(times.even(self._dt), Grip.REST, 0.0)
+        # a short last step, or the first one aloft would feel forces of the time before
+        part = 1.0 if times.left <= UPLIFT_NEAR * self._dt else 1.0 - REMAINDER
+        return Choice(part * times.left, Grip.REST, times.load.side)
 
-    def _towards_impact(self, ahead: float, longest: float) -> Choice:
+    def _aloft(self, pose: Pose, lifted: bool) -> Choice:
+        """Step on until an impact is near."""
+        if self._resting:
+            self._resting = self._bouncing = False
+        if lifted and not self._approaching:
+            self._side = math.copysign(1.0, pose.theta)
+        if self._bouncing and not lifted and self._swing_s(pose) < self._shortest:
+            return self._settle()
+        longest = self._longest(pose)
+        ahead = self._until_impact(pose)
+        self._approaching = self._approaching and ahead < math.inf
+        if self._approaching or ahead < min(2.0 * longest, self._times.left):
+            return self._towards_impact(ahead, longest, pose.rate)
+        return Choice(self._times.even(longest), Grip.SWING, self._side)
+
+    def _towards_impact(self, ahead: float, longest: float, rate: float) -> Choice:
         if not self._approaching and ahead > longest:
             return Choice(0.5 * ahead, Grip.SWING, self._side)
         self._approaching = True
-        least = NEAR * self._dt
-        if ahead > least and math.isfinite(ahead):
+        least = max(NEAR * self._dt, abs(rate) / MOST_ACCELERATION)
+        if ahead > least:
             return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, self._side)
         self._approaching = False
-        self._strikes, self._strike = 1, least
+        self._strikes, self._strike_s = 1, least
         return Choice(least, Grip.STRIKE, self._side)
 
-    def _through(self, time: float, pose: Pose) -> Choice:
+    def _through(self, pose: Pose) -> Choice:
         """Step on in the shortest steps until the impact is over."""
         self._strikes += 1
         settled = abs(pose.rate - self._last_rate) <= SETTLED * abs(pose.rate)
-        over = self._strikes > STRIKES and settled and self._gap(pose) <= 0.0
+        over = self._strikes > STRIKES and settled and self._gap(pose) < TOUCHING * self._width
         if not over and self._strikes <= MOST_STRIKES:
-            return Choice(self._strike, Grip.STRIKE, self._side)
-        self._strikes = 0
-        self._launched = True
-        if 2.0 * abs(pose.rate) < self._fall * self._shortest:
-            self._resting, self._side = True, 0.0
-            return self._at_rest(time, pose)
+            return Choice(self._strike_s, Grip.STRIKE, self._side)
+        self._strikes, self._bouncing = 0, True
+        if self._swing_s(pose) < self._shortest:
+            return self._settle()
         self._side = math.copysign(1.0, pose.rate)
-        return Choice(self._even(time, self._longest(time, pose)), Grip.SWING, self._side)
+        return Choice(self._times.even(self._longest(pose)), Grip.SWING, self._side)
+
+    def _settle(self) -> Choice:
+        """Leave the block to its contacts."""
+        self._resting = True
+        return self._at_rest()
 
     def _until_impact(self, pose: Pose) -> float:
-        """Time [s] until the free corner reaches the base if the acceleration stays as it is."""
-        side = self._side
-        acceleration = (pose.rate - self._last_rate) / self._kick * side if self._kick else 0.0
-        rate = pose.rate * side + 0.5 * acceleration * self._last_dt
-        angle = self._gap(pose) / (2.0 * self._half_width)
-        inside = rate * rate - 2.0 * acceleration * angle
+        """Time [s] until the free corner meets the base, if the acceleration stays as it is."""
+        bend = (pose.rate - self._last_rate) / self._kick * self._side
+        rate = pose.rate * self._side + 0.5 * bend * self._last.dt_s
+        angle = self._gap(pose) / self._width
+        inside = rate * rate - 2.0 * bend * angle
         if rate >= 0.0 or inside < 0.0:
             return math.inf
         return max(2.0 * angle / (math.sqrt(inside) - rate), 0.0)
 
     def _gap(self, pose: Pose) -> float:
         """Height [m] of the free corner above the base."""
-        raised = self._side * self._half_width * math.sin(pose.theta)
+        raised = 0.5 * self._side * self._width * math.sin(pose.theta)
         return pose.z - self._half_height * math.cos(pose.theta) + raised
 
-    def _longest(self, time: float, pose: Pose) -> float:
-        """Longest step [s] that resolves the swing and the load."""
+    def _swing_s(self, pose: Pose) -> float:
+        """Duration [s] of the swing from one impact to the next, were there no load."""
+        launched = math.sqrt(pose.rate**2 + 2.0 * self._fall * abs(pose.theta))
+        return 2.0 * launched / self._fall
+
+    def _longest(self, pose: Pose | None = None) -> float:
+        """Longest step [s] that resolves the load, and the swing if it is one between impacts."""
+        load = self._times.load
         longest = self._dt
-        if self._launched and not self._resting:
-            swing = math.sqrt(pose.rate**2 + 2.0 * self._fall * abs(pose.theta)) / self._fall
-            longest = min(longest, max(2.0 * swing, self._shortest) / SWING_STEPS)
-        load = self._load(time)
-        if load is not None:
-            resolved = max((load.end - load.begin) / LOAD_STEPS, LEAST_LOAD * self._dt)
-            longest = min(longest, resolved)
+        if load is not NEVER:
+            resolving = max((load.end - load.begin) / LOAD_STEPS, LEAST_LOAD * self._dt)
+            longest = min(longest, resolving)
+        if pose is not None and self._bouncing:
+            swing = max(self._swing_s(pose), self._shortest)
+            longest = min(longest, swing / SWING_STEPS)
         return longest
-
-    def _load(self, time: float) -> Load | None:
-        """Return the load at or next after a time."""
-        i = bisect.bisect_right(self._loads, time, key=lambda load: load.end)
-        return self._loads[i] if i < len(self._loads) else None
-
-    def _left(self, time: float) -> float:
-        """Time [s] left until the next stop."""
-        i = bisect.bisect_right(self._stops, time)
-        return self._stops[i] - time if i < len(self._stops) else math.inf
-
-    def _even(self, time: float, longest: float) -> float:
-        """Longest step [s] of which a whole number leads to the next stop."""
-        left = self._left(time)
-        if left == math.inf:
-            return longest
-        return left / math.ceil(left / longest * (1.0 - ROUNDING))

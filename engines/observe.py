@@ -5,12 +5,11 @@ of the steps; what lies between two steps is interpolated.
 """
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
 
 from analytic.response import Impact, Outcome, Response
 from engines.history import sample
 from engines.scene import Pose, Scene
+from engines.swing import START, Row, Swing, extrapolated
 
 LIFT_WIDTHS = 1e-8
 """A block has lifted when its free corner is higher above the base than this part of its width,
@@ -27,12 +26,6 @@ REST_TIME = 0.05
 REST_RATE = 0.01
 """... and turns no faster than this, in units of p alpha, is at rest."""
 
-RESOLVED_ROWS = 3
-"""An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""
-
-EDGE_ROWS = 4
-"""Ends of steps from which the velocity at either end of a swing is read."""
-
 SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
@@ -41,74 +34,6 @@ SINK_WIDTHS = 0.05
 
 THROWN_WIDTHS = 1.0
 """... and one higher above the base than this has been thrown off."""
-
-
-class Row(NamedTuple):
-    """The end of a step.
-
-    time and its middle [s], rotation [rad], and the angular velocity [rad/s] of the step, which
-    belongs to its middle.
-    """
-
-    time: float
-    middle: float
-    theta: float
-    rate: float
-
-
-START = Row(0.0, 0.0, 0.0, 0.0)
-
-
-class Swing:
-    """The rows during which the block is aloft on one side."""
-
-    __slots__ = ("_end", "_first", "_last", "rows", "side")
-
-    def __init__(self, side: float) -> None:
-        self.side = side
-        self.rows = 0
-        self._first: list[Row] = []
-        self._last: list[Row] = []
-        self._end = START
-
-    def add(self, row: Row) -> None:
-        """Take the next row in."""
-        self.rows += 1
-        if self.rows <= EDGE_ROWS:
-            self._first.append(row)
-        # a step much shorter than the last approaches an impact, in which the contact's force may
-        # come later than the others
-        if row.time - row.middle > 0.5 * (self._end.time - self._end.middle):
-            self._last.append(row)
-            if len(self._last) == EDGE_ROWS:
-                del self._last[0]
-        self._end = row
-
-    def landing(self) -> tuple[float, float]:
-        """Time [s] at which the swing meets theta = 0, and the velocity [rad/s] with which."""
-        end = self._end
-        rate = extrapolated(self._last, end.time)
-        if rate * self.side >= 0.0:
-            return end.time, rate
-        time = end.time - end.theta / rate
-        return time, extrapolated(self._last, time)
-
-    def launch(self, time: float) -> float:
-        """Velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
-        # the step to the first row may contain the impact
-        return extrapolated(self._first[1:] or self._first, time)
-
-
-def extrapolated(rows: Sequence[Row], time: float) -> float:
-    """Angular velocity [rad/s] at `time` [s] by the polynomial through those of some steps."""
-    total = 0.0
-    for row in rows:
-        weight = 1.0
-        for other in rows:
-            if other is not row:
-                weight *= (time - other.middle) / (row.middle - other.middle)
-        total += weight * row.rate
-    return total
 
 
 class Observer:
@@ -195,14 +120,17 @@ class Observer:
         side = math.copysign(1.0, row.theta)
         if self._swing is None or self._swing.side != side:
             self._land()
-            self._swing = Swing(side)
+            self._swing = Swing(side, from_rest=self._resting)
             self._hop = 0.0
             if self._resting:
                 self._uplifts.append(self._now.time)
                 self._resting = False
         self._swing.add(row)
-        if self._swing.rows == EDGE_ROWS:
+        if self._swing.begun:
             self._launch()
+            if self._swing.from_rest:
+                earliest = self._rests[-1] if self._rests else 0.0
+                self._uplifts[-1] = self._swing.lift_off(earliest)
         self._low_since = math.nan
 
     def _low(self, row: Row) -> None:
@@ -220,7 +148,7 @@ class Observer:
         """End the present swing, if there is one, with an impact."""
         if self._swing is not None:
             self._launch()
-            if self._swing.rows >= RESOLVED_ROWS:
+            if self._swing.resolved:
                 self._landed = self._swing.landing()
             self._swing = None
 

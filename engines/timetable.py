@@ -1,0 +1,117 @@
+"""What is known of a run before it begins: when the base's motion changes, when it can lift."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.motion import Motion
+from engines.scene import Scene
+
+LEAST_SAMPLES = 256
+"""Samples at least in which the base's acceleration is looked through."""
+
+ROUNDING = 1e-9
+"""Times closer than this part of the ordinary step are the same."""
+
+
+class Load(NamedTuple):
+    """A time [s] during which the base accelerates enough to lift a block at rest.
+
+    side is the corner that the block would turn about, -1 or 1.
+    """
+
+    begin: float
+    end: float
+    side: float
+
+
+NEVER = Load(math.inf, math.inf, 0.0)
+
+
+class Timetable:
+    """The stops that a step must not pass, and the loads, as time goes by.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is being simulated.
+    dt_s : float
+        Ordinary step [s].
+    """
+
+    def __init__(self, scene: Scene, dt_s: float) -> None:
+        block = scene.block
+        self._same = ROUNDING * dt_s
+        loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha), dt_s)
+        ends = () if scene.duration is None else (scene.duration,)
+        stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
+        self._stops: list[float] = [*sorted(stop for stop in stops if stop > self._same), math.inf]
+        self._loads = [*loads, NEVER]
+        self._stop = self._load = 0
+        self._now = 0.0
+
+    def pass_to(self, time: float) -> None:
+        """Move on to `time` [s]."""
+        self._now = time
+        while self._stops[self._stop] <= time + self._same:
+            self._stop += 1
+        while self._loads[self._load].end <= time + self._same:
+            self._load += 1
+
+    @property
+    def left(self) -> float:
+        """Time [s] left until the next stop."""
+        return self._stops[self._stop] - self._now
+
+    @property
+    def load(self) -> Load:
+        """The present load or else the next."""
+        return self._loads[self._load]
+
+    @property
+    def loaded(self) -> bool:
+        """Whether the load is present."""
+        return self.load.begin <= self._now + self._same
+
+    @property
+    def lifts_next(self) -> bool:
+        """Whether a load begins at the next stop."""
+        return self.load.begin == self._stops[self._stop]
+
+    def even(self, longest: float) -> float:
+        """Longest step [s], up to `longest`, of which a whole number leads to the next stop."""
+        if self.left == math.inf:
+            return longest
+        return self.left / math.ceil(self.left / longest * (1.0 - ROUNDING))
+
+
+def loads_of(motion: Motion, onset: float, dt_s: float) -> list[Load]:
+    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], seen every dt_s/4 [s]."""
+    samples = max(4 * math.ceil(motion.duration / dt_s), LEAST_SAMPLES) + 1
+    grid = np.union1d(np.linspace(0.0, motion.duration, samples), motion.breakpoints)
+    acceleration = motion.acceleration(grid)
+    loads: list[Load] = []
+    for side in (-1.0, 1.0):
+        above = -side * acceleration > onset
+        changes = np.nonzero(above[1:] != above[:-1])[0]
+        corners = [_crossing(motion, -side, onset, grid[i : i + 2].tolist()) for i in changes]
+        if above[0]:
+            corners.insert(0, 0.0)
+        if above[-1]:
+            corners.append(motion.duration)
+        loads += [Load(*pair, side) for pair in zip(corners[::2], corners[1::2], strict=True)]
+    return sorted(loads)
+
+
+def _crossing(motion: Motion, sign: float, onset: float, between: Sequence[float]) -> float:
+    """Bisect for the time [s] at which sign u_g'' passes `onset` between two times."""
+    low, high = between
+    above = sign * float(motion.acceleration(low)) > onset
+    while low < (middle := 0.5 * (low + high)) < high:
+        if (sign * float(motion.acceleration(middle)) > onset) is above:
+            low = middle
+        else:
+            high = middle
+    return high
