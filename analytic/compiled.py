@@ -11,9 +11,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(function: Function) -> Function:
     """Compile `function` at its first call, keep the result on disk, release the GIL.
 
-    Sums may be reordered and contracted; infinities and NaN keep their meaning.
+    A product and a sum may become one operation; nothing is reordered, since then the compiler
+    may take x - x for zero, infinite or not.
     """
-    compile_ = numba.njit(
-        cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}
-    )
+    compile_ = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
     return cast(Function, compile_(function))

@@ -19,11 +19,13 @@ from analytic.polynomial import MAX_DEPTH, ORDER, next_root, slope, value
 from analytic.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.taylor import Accuracy, expand_exact, expand_forcing, expand_linear, trusted_step
 
-AT_REST, ROCKED, OVERTURNED, FAILED = 0, 1, 2, 3
+AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
 LYING = 0.5 * math.pi
 """Rotation at which the side of the block lies on the ground."""
 MAX_STEPS = 2_000_000
+VANISHING = 1e-15
+"""A step shorter than this part of the time it starts from is lost in rounding."""
 LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
@@ -240,13 +242,15 @@ def march(
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, last)
         if steps == MAX_STEPS:
-            return End(FAILED, peak, steps, impacts, events, tau)
+            return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
         segment = segments[j] if j < len(segments) else still
         boundary = segment[1] if j < len(segments) else last
         series[0], series[1] = y, v
         h = expand(law, accuracy, segment, side, tau, lead, work)
+        if not tau * VANISHING < h < math.inf:
+            return End(BROKEN, peak, steps, impacts, events, tau)
         landed = tau + h >= boundary
         if landed:
             h = boundary - tau
@@ -277,6 +281,8 @@ def march(
             y, v = linear_state(law, segment, side, tau, lead, y, v, x * h)
         else:
             y, v = value(d, order, x), slope(d, order, x) / h
+        if not abs(y) + abs(v) < math.inf:
+            return End(BROKEN, peak, steps, impacts, events, tau)
         # a root within rounding of the step's end may escape the polynomial, not the state
         hit = hit or y <= 0.0
         tau = boundary if landed and x == 1.0 else tau + x * h

@@ -14,10 +14,11 @@ from analytic.block import RigidBlock, housner_restitution
 from analytic.checks import finite
 from analytic.compiled import kernel
 from analytic.excursions import (
-    FAILED,
+    BROKEN,
     IMPACT,
     OVERTURNED,
     REST,
+    TOO_LONG,
     UPLIFT,
     End,
     Record,
@@ -29,8 +30,14 @@ from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.taylor import TOLERANCE, Accuracy, accuracy
 
-OUTCOMES = (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED, Outcome.FAILED)
+OUTCOMES = (*list(Outcome), Outcome.FAILED)
 """In the order of the codes in `analytic.excursions`."""
+FAILURES = {
+    TOO_LONG: "the response takes too many steps",
+    BROKEN: "the solution overflows, or its steps vanish beside the time they start from",
+}
+"""What a reader is told of a failure, by its code."""
+
 LOOSEST = 1e-2
 """Largest tolerance that `simulate` takes."""
 
@@ -134,7 +141,7 @@ def respond(
 
     outcome = OUTCOMES[end.outcome]
     if outcome is Outcome.FAILED:
-        return Response.failure("too many steps", steps=end.steps, wall_s=wall_s)
+        return Response.failure(FAILURES[end.outcome], steps=end.steps, wall_s=wall_s)
     impacts, uplifts, rests = read_log(log[: end.events], block.p)
     seen = int(np.searchsorted(record.times, end.time, side="right"))
     history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)
@@ -243,7 +250,7 @@ def solve_pulses(
         peaks[i] = end.peak / alpha
         if end.outcome == OVERTURNED:
             peaks[i] = math.inf
-        elif end.outcome == FAILED:
+        elif end.outcome in (TOO_LONG, BROKEN):
             peaks[i] = math.nan
 
 

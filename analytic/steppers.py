@@ -14,13 +14,15 @@ from analytic.closed_form import free_peak
 from analytic.compiled import kernel
 from analytic.excursions import (
     AT_REST,
-    FAILED,
+    BROKEN,
     IMPACT,
     LYING,
     OVERTURNED,
     REST,
     ROCKED,
+    TOO_LONG,
     UPLIFT,
+    VANISHING,
     End,
     Record,
     note,
@@ -193,7 +195,7 @@ def tread(
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, tau)
         if steps == MAX_STEPS:
-            return End(FAILED, peak, steps, impacts, events, tau)
+            return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
         boundary = segments[j, 1] if j < len(segments) else (until if until > moving else math.inf)
@@ -203,6 +205,8 @@ def tread(
             end, rate = rk4_step(law, segments, j, side, tau, y, v, length)
         else:
             end, rate = average_step(law, segments, j, side, tau, y, v, length)
+        if not (abs(end) + abs(rate) < math.inf and length > tau * VANISHING):
+            return End(BROKEN, peak, steps, impacts, events, tau)
         if end < -tolerance and length > 1e-15:
             h = FRACTION * length
             continue

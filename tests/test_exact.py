@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from independent import peak_and_impacts
 
-from analytic import MODELS, Outcome, RigidBlock, SinePulse, peak_ratios, simulate
+from analytic import MODELS, Outcome, RigidBlock, SinePulse, integrate, peak_ratios, simulate
 from analytic.criteria import free_amplitude, overturning_velocity, quarter_period
 
 G = 9.81
@@ -312,6 +312,25 @@ def test_the_error_follows_the_tolerance():
 def test_bad_tolerance(tolerance):
     with pytest.raises(ValueError, match="tolerance is"):
         simulate(*papers_case(0.5, 1.5, 0.4, 2), tolerance=tolerance)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(("amplitude", "omega"), [(1e300, 6.0), (4.0, 1e-300)])
+def test_what_floating_point_cannot_hold_fails_and_says_so(model, amplitude, omega):
+    block = RigidBlock(width=0.5, height=1.5)
+    motion = SinePulse(amplitude=amplitude, omega=omega, half_cycles=2)
+    for response in (simulate(block, motion, model), integrate(block, motion, model)):
+        if response.outcome is not Outcome.OVERTURNED:
+            assert response.outcome is Outcome.FAILED
+            assert "overflows" in response.message
+            assert math.isnan(response.peak_ratio)
+
+
+@pytest.mark.parametrize("amplitude_g", 10.0 ** np.arange(1, 13))
+def test_the_most_violent_pulse_overturns(amplitude_g):
+    peaks, outcomes = peak_ratios(0.3, amplitude_g, [0.5, 2.0, 8.0], 1)
+    assert np.isinf(peaks).all()
+    assert all(outcome is Outcome.OVERTURNED for outcome in outcomes)
 
 
 def test_bad_windows():
