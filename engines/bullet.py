@@ -145,12 +145,16 @@ class BulletWorld:
             self._dt, self._grip = dt_s, step.grip
         pull = -self._gravity * step.kick_s / dt_s
         if self._moving:
-            self._velocity += step.base_kick
-            p.resetBaseVelocity(self._base, (self._velocity, 0.0, 0.0), physicsClientId=client)
+            self._move_base(step.base_kick)
             p.setGravity(0.0, 0.0, pull, physicsClientId=client)
         else:
             p.setGravity(-step.base_kick / dt_s, 0.0, pull, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+
+    def _move_base(self, base_kick: float) -> None:
+        self._velocity += base_kick
+        velocity = (self._velocity, 0.0, 0.0)
+        self._p.resetBaseVelocity(self._base, velocity, physicsClientId=self._client)
 
     def _hold(self, grip: Grip, dt_s: float) -> None:
         """Correct positions in ordinary steps alone: a short one would make a velocity of them."""

@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 from importlib import import_module
 from typing import Protocol, cast
 
@@ -49,9 +50,11 @@ def run(engine: str, scene: Scene) -> Response:
     if engine not in ENGINES:
         raise ValueError(f"engine is {engine!r}; it must be one of {', '.join(ENGINES)}")
     adapter = cast(Adapter, import_module(ENGINES[engine]))
+    began = time.perf_counter()
     world = adapter.build(scene)
     try:
-        return _simulate(world, scene)
+        built = time.perf_counter()
+        return replace(_simulate(world, scene), setup_s=built - began)
     finally:
         world.close()
 

@@ -12,14 +12,17 @@ from engines.scene import Grip, Pose, Scene
 from engines.steps import Choice
 from engines.timetable import NEVER, Timetable
 
-SWING_STEPS = 24
-"""Steps at least in a swing between two impacts."""
+SWING_PART = 8.0
+"""A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps, ..."""
 
-LOAD_STEPS = 48
-"""Steps at least while the base accelerates enough to lift a resting block, ..."""
+LOAD_PART = 4.0
+"""... and a load, during which the base can lift a block at rest, as 1/p over this, ..."""
+
+COARSEST = 1.0 / 6.0
+"""... each in steps no longer than this part of it."""
 
 LEAST_LOAD = 0.02
-"""... but not below this part of the ordinary step."""
+"""A load is not resolved more finely than by this part of the ordinary step."""
 
 SHORTEST_SWING = 1e-4
 """A swing that would last no longer than this, in units of 1/p, is left to come to rest."""
@@ -67,6 +70,8 @@ class LandingSteps:
         self._width, self._half_height = block.width, 0.5 * block.height
         # what a block that stands on one corner is accelerated by towards the other
         self._fall = block.p**2 * math.sin(block.alpha)
+        self._swing_part = min(SWING_PART * block.p * dt_s, COARSEST)
+        self._load_part = min(LOAD_PART * block.p * dt_s, COARSEST)
         self._shortest = SHORTEST_SWING / block.p
         self._times = Timetable(scene, dt_s)
         self._side = 0.0
@@ -170,9 +175,8 @@ class LandingSteps:
         load = self._times.load
         longest = self._dt
         if load is not NEVER:
-            resolving = max((load.end - load.begin) / LOAD_STEPS, LEAST_LOAD * self._dt)
-            longest = min(longest, resolving)
+            resolving = (load.end - load.begin) * self._load_part
+            longest = min(longest, max(resolving, LEAST_LOAD * self._dt))
         if pose is not None and self._bouncing:
-            swing = max(self._swing_s(pose), self._shortest)
-            longest = min(longest, swing / SWING_STEPS)
+            longest = min(longest, max(self._swing_s(pose), self._shortest) * self._swing_part)
         return longest

@@ -201,11 +201,17 @@ class MujocoWorld:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
         model = self._model
         model.pair_margin[:] = self._float if step.grip is Grip.REST or not step.side else 0.0
-        if step.side:
-            pivot = self._left if step.side < 0.0 else self._right
-            model.pair_margin[pivot] = self._carry
-            preload = self._yield * step.kick_s / step.dt_s
-            model.pair_solref[pivot, 0] = -preload * self._impedance**2 / self._carry
+        if not step.side:
+            return
+        if model.npair == 1:
+            # all corners of a box share one pair, and the free one must not touch early
+            lean = 0.5 * self._width * abs(self.pose().theta)
+            model.pair_margin[:] = max(self._float, min(self._carry, lean))
+            return
+        pivot = self._left if step.side < 0.0 else self._right
+        model.pair_margin[pivot] = self._carry
+        preload = self._yield * step.kick_s / step.dt_s
+        model.pair_solref[pivot, 0] = -preload * self._impedance**2 / self._carry
 
     def _look_at_yield(self, step: Step) -> None:
         """Note by how much [m/s2] the pivot yields to its force, for the next step's preload."""
@@ -219,6 +225,7 @@ class MujocoWorld:
         s, pairs = self.settings, self._model.npair
         self._left, self._right = slice(0, pairs // 2), slice(pairs // 2, pairs)
         self._float = FLOAT * scene.block.gravity * self.dt_s**2
+        self._width = scene.block.width
         self._carry = CARRY * scene.block.width
         self._weight = scene.mass * scene.block.gravity
         self._impedance = 1.0 if s.impedance is None else s.impedance[1]

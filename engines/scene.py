@@ -19,7 +19,7 @@ that land on impacts, the best there is."""
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
 
-ACCURACIES = {"loose": 50, "standard": 200, "tight": 800}
+ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
 """Name of an accuracy -> steps of the preset "landing" in a time 1/p."""
 
 GEOMETRIES = ("box", "corners")

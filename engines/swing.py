@@ -54,7 +54,7 @@ class Swing:
         self.rows += 1
         if self.rows <= EDGE_ROWS + 1:
             self._first.append(row)
-        if row.time - row.middle > 0.5 * (self._end.time - self._end.middle):
+        if row.time - row.middle > 0.7 * (self._end.time - self._end.middle):
             self._last.append(row)
             if len(self._last) > EDGE_ROWS + 1:
                 del self._last[0]
