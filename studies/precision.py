@@ -1,7 +1,6 @@
 """Error against run time: every method along its own setting, on the same cases."""
 
 import functools
-import itertools
 import json
 import math
 import time
@@ -17,6 +16,7 @@ from studies import provenance
 from studies.arguments import Positive
 from studies.cases import Case, free_rocking_window, sweep_cases
 from studies.differences import scientific
+from studies.energy import flights
 from studies.executors import Local
 from studies.jobs import Job, ask, summary
 from studies.journal import Row
@@ -173,20 +173,9 @@ def energy_drift(job: Job, response: Response) -> float:
     The largest over the flights after the ground motion; the energy is the exact model's, over its
     value at the flight's end, and the samples next to an impact are left out.
     """
-    history, block = response.history, job.block
-    if history is None or response.outcome is not Outcome.ROCKED:
+    if response.outcome is not Outcome.ROCKED:
         return math.nan
-    y = np.abs(history.theta)
-    energy = 0.5 * (history.velocity / block.p) ** 2
-    energy += 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
-    edges = [job.motion.duration, *(i.time for i in response.impacts)]
-    edges = [edge for edge in edges if edge >= job.motion.duration]
-    margin = 2.0 * float(history.time[1])
-    drifts = []
-    for start, end in itertools.pairwise(edges):
-        flight = energy[(history.time > start + margin) & (history.time < end - margin)]
-        if len(flight) > 1:
-            drifts.append(float(np.ptp(flight) / flight[-1]))
+    drifts = (float(np.ptp(e) / e[-1]) for e in flights(job.block, job.motion, response))
     return max(drifts, default=math.nan)
 
 

@@ -1,0 +1,50 @@
+"""The energy of free rocking, read from a history: what a method loses or adds by itself."""
+
+import itertools
+
+import numpy as np
+
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from analytic.response import History, Response
+
+
+def energy(block: RigidBlock, history: History) -> FloatArray:
+    """Return the exact model's energy of each sample, over m g R."""
+    y = np.abs(history.theta)
+    kinetic = 0.5 * (history.velocity / block.p) ** 2
+    result: FloatArray = kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
+    return result
+
+
+def flights(block: RigidBlock, motion: Motion, response: Response) -> list[FloatArray]:
+    """Return the energies of the samples between two impacts, after the ground motion.
+
+    Samples next to an impact are left out; so is what follows the last impact.
+    """
+    history = response.history
+    if history is None or len(history.time) < 2:
+        return []
+    energies = energy(block, history)
+    edges = [motion.duration, *(i.time for i in response.impacts)]
+    edges = [edge for edge in edges if edge >= motion.duration]
+    margin = 2.0 * float(history.time[1] - history.time[0])
+    inside = (
+        (history.time > start + margin) & (history.time < end - margin)
+        for start, end in itertools.pairwise(edges)
+    )
+    return [energies[here] for here in inside if np.count_nonzero(here) > 1]
+
+
+def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
+    """Return the largest rise of energy during free rocking over its largest value; or nan.
+
+    A rise is counted from the least energy before it, through all flights and impacts: free
+    rocking of a rigid block can only lose energy.
+    """
+    parts = flights(block, motion, response)
+    if not parts:
+        return float("nan")
+    energies = np.concatenate(parts)
+    rise = float((energies - np.minimum.accumulate(energies)).max())
+    return rise / float(energies.max()) if rise > 0.0 else 0.0
