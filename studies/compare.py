@@ -26,7 +26,7 @@ from studies.executors import Executor, Local
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.runner import exit_code, run_jobs
-from studies.sources import stepping
+from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "pybullet", "mujoco")
 
@@ -42,6 +42,7 @@ def command(
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     step: Positive | None = None,
+    accuracy: Accuracy | None = None,
     plot: Path | None = None,
     json: bool = False,
     jobs: Count | None = None,
@@ -72,6 +73,8 @@ def command(
         8/p of free rocking.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
+    accuracy
+        loose, standard or tight, for engines whose steps land on impacts; standard by default.
     plot
         Draw the time histories over each other into this file (.png, .pdf or .svg).
     json
@@ -87,7 +90,15 @@ def command(
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
     executor = Local(jobs or provenance.usable_cores(), time_limit)
-    rows = compare(block, motion, sources, window, times=times, step=step, executor=executor)
+    rows = compare(
+        block,
+        motion,
+        sources,
+        window,
+        times=times,
+        effort=Effort(step, accuracy),
+        executor=executor,
+    )
     print(json_lines(rows) if json else table_text(block, motion, window, rows))
     if plot:
         draw(rows, block, motion, plot)
@@ -134,7 +145,7 @@ def compare(
     *,
     executor: Executor,
     times: FloatArray | None = None,
-    step: float | None = None,
+    effort: Effort = DEFAULT_EFFORT,
 ) -> list[Row]:
     """Ask every source; return a row for each, with its response and its distance from exact.
 
@@ -153,7 +164,7 @@ def compare(
             source=name,
             duration=window,
             times=times,
-            options=stepping(name, step),
+            options=effort.options(name),
         )
         for name in asked
     ]

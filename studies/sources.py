@@ -107,6 +107,35 @@ def allowed() -> str:
     return f"{names}; an engine takes a preset after a colon: {', '.join(PRESETS)}"
 
 
-def stepping(name: str, step: float | None) -> dict[str, float]:
-    """Return the option that sets p dt for a source that steps; nothing for the others."""
-    return {"step": step} if step is not None and resolve(name).stepping else {}
+Accuracy = Literal["loose", "standard", "tight"]
+"""Of an engine whose steps land on impacts; `engines.scene.ACCURACIES` says how many steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How finely to step, for the sources that step; None leaves it to them.
+
+    Attributes
+    ----------
+    step : float or None
+        p dt.
+    accuracy : str or None
+        Of an engine whose steps land on impacts.
+    """
+
+    step: float | None = None
+    accuracy: Accuracy | None = None
+
+    def options(self, name: str) -> dict[str, Any]:
+        """Return the options that this means for a source."""
+        source = resolve(name)
+        chosen: dict[str, Any] = {}
+        if self.step is not None and source.stepping:
+            chosen["step"] = self.step
+        if self.accuracy is not None and source.preset == "landing":
+            chosen["accuracy"] = self.accuracy
+        return chosen
+
+
+DEFAULT_EFFORT = Effort()
+"""Every source as finely as it sees fit."""

@@ -22,7 +22,7 @@ from studies.findings import findings, findings_text
 from studies.jobs import Job
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
-from studies.sources import stepping
+from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
 PRODUCTS = ("sweep.csv", "summary.csv", "findings.txt", "provenance.json")
 
@@ -36,6 +36,7 @@ def command(
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     step: Positive | None = None,
+    accuracy: Accuracy | None = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
@@ -52,6 +53,8 @@ def command(
         rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
+    accuracy
+        loose, standard or tight, for engines whose steps land on impacts; standard by default.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
@@ -60,7 +63,7 @@ def command(
     refuse_repeats("--figure", figure)
     check_sources(sources)
     executor = Local(jobs or provenance.usable_cores(), time_limit)
-    rows = sweep(figure, sources, out, executor=executor, step=step)
+    rows = sweep(figure, sources, out, executor=executor, effort=Effort(step, accuracy))
     print(report(out))
     return exit_code(rows)
 
@@ -71,7 +74,7 @@ def sweep(
     folder: Path,
     *,
     executor: Executor,
-    step: float | None = None,
+    effort: Effort = DEFAULT_EFFORT,
 ) -> list[Row]:
     """Run the cases that the folder does not hold yet, and write its CSV.
 
@@ -84,8 +87,8 @@ def sweep(
         Results of another version, with other settings, or of figures and sources that are not
         named here are refused, so that nothing is lost.
     executor : Executor
-    step : float, optional
-        p dt of the solvers and engines; their own by default.
+    effort : Effort, optional
+        How finely the solvers and engines step.
 
     Returns
     -------
@@ -100,15 +103,15 @@ def sweep(
     return fill_folder(
         folder,
         "sweep",
-        sweep_jobs(numbers, sources, step),
+        sweep_jobs(numbers, sources, effort),
         executor=executor,
-        settings={"step": step},
+        settings=asdict(effort),
         growing={"figure": numbers, "source": sources},
         products=PRODUCTS,
     )
 
 
-def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], step: float | None) -> list[Job]:
+def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
     return [
         Job(
@@ -116,7 +119,7 @@ def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], step: float | Non
             block=case.block,
             motion=case.motion,
             source=source,
-            options=stepping(source, step),
+            options=effort.options(source),
         )
         for case in sweep_cases(numbers)
         for source in sources

@@ -20,7 +20,7 @@ from studies.executors import Executor, Local
 from studies.jobs import Job
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
-from studies.sources import stepping
+from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
 PRODUCTS = ("validate.csv", "errors.csv", "provenance.json")
 
@@ -88,6 +88,7 @@ def command(
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several] = ("pybullet", "mujoco"),
     step: Positive | None = None,
+    accuracy: Accuracy | None = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
@@ -106,6 +107,8 @@ def command(
         rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
+    accuracy
+        loose, standard or tight, for engines whose steps land on impacts; standard by default.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
@@ -113,7 +116,7 @@ def command(
     """
     check_sources(sources)
     executor = Local(jobs or provenance.usable_cores(), time_limit)
-    rows = validate(cases, seed, sources, out, executor=executor, step=step)
+    rows = validate(cases, seed, sources, out, executor=executor, effort=Effort(step, accuracy))
     print(report(out))
     return exit_code(rows)
 
@@ -125,7 +128,7 @@ def validate(
     folder: Path,
     *,
     executor: Executor,
-    step: float | None = None,
+    effort: Effort = DEFAULT_EFFORT,
 ) -> list[Row]:
     """Run the random cases that the folder does not hold yet, and write its table.
 
@@ -140,7 +143,7 @@ def validate(
             block=case.block,
             motion=case.motion,
             source=source,
-            options=stepping(source, step),
+            options=effort.options(source),
         )
         for case in islice(draw(seed), cases)
         for source in sources
@@ -150,7 +153,7 @@ def validate(
         "validate",
         jobs,
         executor=executor,
-        settings={"seed": seed, "step": step},
+        settings={"seed": seed, **asdict(effort)},
         growing={"case": range(cases), "source": sources},
         products=PRODUCTS,
     )

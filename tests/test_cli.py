@@ -10,7 +10,7 @@ import pytest
 
 from analytic.response import Response
 from studies.__main__ import COMMANDS, run
-from studies.sources import SOURCES, Source
+from studies.sources import SOURCES, Effort, Source
 
 ROOT = Path(__file__).parent.parent
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
@@ -201,3 +201,11 @@ def test_a_reader_who_leaves_early_is_no_error():
         errors = process.stderr.read()
     assert errors == b""
     assert process.returncode == 141
+
+
+def test_accuracy_and_step_reach_only_the_sources_they_are_for():
+    effort = Effort(step=1e-3, accuracy="tight")
+    assert effort.options("exact") == {}
+    assert effort.options("rk4") == {"step": 1e-3}
+    assert effort.options("pybullet:fixed") == {"step": 1e-3}
+    assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}

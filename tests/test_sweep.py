@@ -17,7 +17,7 @@ from studies.executors import Local
 from studies.findings import findings
 from studies.jobs import summary
 from studies.runner import run_jobs
-from studies.sources import SOURCES
+from studies.sources import DEFAULT_EFFORT, SOURCES
 
 HERE = Path(__file__).parent
 MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
@@ -107,7 +107,7 @@ def test_the_worst_case_comes_with_its_conditioning(swept):
 
 
 def run_sweep_row(omega_over_p):
-    jobs = sweep.sweep_jobs([6], ["exact"], None)
+    jobs = sweep.sweep_jobs([6], ["exact"], DEFAULT_EFFORT)
     chosen = next(item for item in jobs if item.labels["omega_over_p"] == omega_over_p)
     return run_jobs([chosen], executor=Local(1, 1.0), reduce=summary)[0]
 
@@ -141,7 +141,7 @@ def test_provenance_says_what_ran(swept):
     assert record["version"] == project["version"]
     for name, version in record["engines"].items():
         assert f"{name}=={version}" in project["dependencies"]
-    assert record["settings"] == {"step": None}
+    assert record["settings"] == {"step": None, "accuracy": None}
     assert set(record["machine"]) == {"cpu", "cores", "os"}
     assert record["packages"]["numpy"] == np.__version__
     assert record["python"] == ".".join(map(str, sys.version_info[:3]))
