@@ -5,6 +5,6 @@ decides what the state becomes: no rotation or velocity is written, and the impa
 """
 
 from engines.drive import ENGINES, run
-from engines.scene import FRAMES, PRESETS, Scene
+from engines.scene import ACCURACIES, FRAMES, PRESETS, Scene
 
-__all__ = ["ENGINES", "FRAMES", "PRESETS", "Scene", "run"]
+__all__ = ["ACCURACIES", "ENGINES", "FRAMES", "PRESETS", "Scene", "run"]

@@ -24,12 +24,8 @@ and after then cancel at its start, where the contact is, and the scheme is symm
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
 
-FLOAT = 3e-4
-"""Gap, over g dt^2 of the ordinary step, at which landing lets the block rest, so that a contact
-at rest is never lost."""
-
 CARRY = 1e-4
-"""Gap, over the width, up to which landing keeps the contact about which the block turns."""
+"""Gap, over the width, up to which landing keeps the corner about which the block turns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +77,6 @@ class MujocoSettings:
     sliding_damping: float | None = 1.0
     stiffness: float | None = 0.01
     impedance: tuple[float, ...] | None = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-
     landing: bool = False
 
     def __post_init__(self) -> None:
@@ -200,13 +195,18 @@ class MujocoWorld:
     def _reach(self, step: Step) -> None:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
         model = self._model
-        model.pair_margin[:] = self._float if step.grip is Grip.REST or not step.side else 0.0
+        # at rest, half of the weight presses a corner just so far below its margin; about to
+        # lift, the free corner is still in reach where no weight does
+        sag = 0.5 * self._yield * step.kick_s * step.dt_s
+        if step.side:
+            sag = self._yield * self.dt_s**2
+        model.pair_margin[:] = sag if step.grip is Grip.REST else 0.0
         if not step.side:
             return
         if model.npair == 1:
             # all corners of a box share one pair, and the free one must not touch early
             lean = 0.5 * self._width * abs(self.pose().theta)
-            model.pair_margin[:] = max(self._float, min(self._carry, lean))
+            model.pair_margin[:] = max(sag, min(self._carry, lean))
             return
         pivot = self._left if step.side < 0.0 else self._right
         model.pair_margin[pivot] = self._carry
@@ -218,16 +218,16 @@ class MujocoWorld:
         data = self._data
         if step.grip is Grip.REST and data.nefc:
             self._yield = float(data.efc_R[0]) * self._weight
-        elif step.grip is Grip.SWING and data.ncon == 1:
+        elif step.grip is Grip.SWING and data.ncon == self._corners:
             self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
 
     def _set_reach(self, scene: Scene) -> None:
         s, pairs = self.settings, self._model.npair
         self._left, self._right = slice(0, pairs // 2), slice(pairs // 2, pairs)
-        self._float = FLOAT * scene.block.gravity * self.dt_s**2
         self._width = scene.block.width
         self._carry = CARRY * scene.block.width
-        self._weight = scene.mass * scene.block.gravity
+        self._corners = max(pairs // 2, 1)
+        self._weight = scene.mass * scene.block.gravity / self._corners
         self._impedance = 1.0 if s.impedance is None else s.impedance[1]
         self._yield = (1.0 - self._impedance) * scene.block.gravity
 

@@ -82,6 +82,9 @@ class Observer:
     def see(self, time: float, dt_s: float, pose: Pose) -> None:
         """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
         x, z, theta, rate = pose
+        if not math.isfinite(x + z + theta + rate):
+            self.broken = "the engine's state is not finite"
+            return
         row = Row(time, time - 0.5 * dt_s, theta, rate)
         sine, cosine = math.sin(theta), math.cos(theta)
         reach = self._half_width * abs(sine)
@@ -94,7 +97,7 @@ class Observer:
         if abs(theta) <= self._alpha:
             inward = math.copysign(self._half_width * (1.0 - cosine), theta)
             self._slide = max(self._slide, abs(x - self._half_height * sine - inward))
-        self._check(row, level - reach)
+        self._check(level - reach)
         if self._rows is not None:
             self._rows.append(row)
         if self.lifted:
@@ -105,11 +108,9 @@ class Observer:
         self._before, self._now = self._now, row
         self._decide(row)
 
-    def _check(self, row: Row, depth: float) -> None:
+    def _check(self, depth: float) -> None:
         width = 2.0 * self._half_width
-        if not math.isfinite(row.theta + row.rate + depth):
-            self.broken = "the engine's state is not finite"
-        elif depth < -SINK_WIDTHS * width:
+        if depth < -SINK_WIDTHS * width:
             self.broken = f"the pivot sank {-depth:.3g} m into the base"
         elif depth > THROWN_WIDTHS * width:
             self.broken = f"the block was thrown {depth:.3g} m off the base"

@@ -130,11 +130,12 @@ class Scene:
 
         preset_step is the p dt of a preset, or None to leave the library's own step `library_s`.
         """
-        if self.step is not None:
-            return self.step / self.block.p
+        step = preset_step if self.step is None else self.step
+        if step is not None:
+            return step / self.block.p
         if self.preset == "landing":
             return 1.0 / (ACCURACIES[self.accuracy] * self.block.p)
-        return library_s if preset_step is None else preset_step / self.block.p
+        return library_s
 
     def choose(self, preset: SettingsT) -> SettingsT:
         """Return the settings of a preset with this scene's own in their place.

@@ -201,8 +201,9 @@ def test_repeats_bit_by_bit(engine: str, preset: str) -> None:
     assert everything(run(engine, scene(pulse(1.3, 3.0, 2), preset=preset))) == everything(first)
 
 
-def test_a_sliding_block_is_no_rocking_block(engine: str) -> None:
-    response = run(engine, scene(pulse(1.3, 1.0), preset="fixed", friction=0.05))
+@pytest.mark.parametrize("preset", TUNED)
+def test_a_sliding_block_is_no_rocking_block(engine: str, preset: str) -> None:
+    response = run(engine, scene(pulse(1.3, 1.0), preset=preset, friction=0.05))
     assert response.outcome is Outcome.FAILED
     assert "slid" in response.message
     assert math.isnan(response.peak_ratio)
@@ -267,6 +268,7 @@ class Lost:
     [
         (Pose(0.0, 0.75, math.nan, 0.0), "not finite"),
         (Pose(0.0, math.inf, 0.0, 0.0), "not finite"),
+        (Pose(0.0, 0.75, math.inf, 0.0), "not finite"),
         (Pose(0.0, 0.5, 0.0, 0.0), "sank 0.25 m"),
         (Pose(0.0, 2.75, 0.0, 0.0), "thrown 2 m"),
         (Pose(0.2, 0.75, 0.0, 0.0), "slid 0.2 m"),
