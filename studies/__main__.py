@@ -32,6 +32,15 @@ the pulse moves its peak. Writes validate.csv, errors.csv and provenance.json; r
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
 resumable. The full study takes about a quarter of an hour on one core, --quick half a minute.""",
+    "cost": """What a scene costs, and what each thing left out of it would cost and change.
+
+Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
+history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv.""",
+    "stability": """Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
+
+Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),
+sensitivity.csv and findings.txt; resumable. A failure is an answer: the exit code is 1 only where
+a source gives no result at all. --quick takes less than a minute on two cores.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
