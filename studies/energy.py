@@ -17,10 +17,17 @@ def energy(block: RigidBlock, history: History) -> FloatArray:
     return result
 
 
-def flights(block: RigidBlock, motion: Motion, response: Response) -> list[FloatArray]:
+NEAR = 0.15
+"""Part of a flight at either end in which a coarse step may still feel the impact."""
+
+
+def flights(
+    block: RigidBlock, motion: Motion, response: Response, near: float = 0.0
+) -> list[FloatArray]:
     """Return the energies of the samples between two impacts, after the ground motion.
 
-    Samples next to an impact are left out; so is what follows the last impact.
+    Left out are the samples next to an impact, those in the part `near` of a flight at either end,
+    and what follows the last impact.
     """
     history = response.history
     if history is None or len(history.time) < 2:
@@ -29,11 +36,13 @@ def flights(block: RigidBlock, motion: Motion, response: Response) -> list[Float
     edges = [motion.duration, *(i.time for i in response.impacts)]
     edges = [edge for edge in edges if edge >= motion.duration]
     margin = 2.0 * float(history.time[1] - history.time[0])
-    inside = (
-        (history.time > start + margin) & (history.time < end - margin)
-        for start, end in itertools.pairwise(edges)
-    )
-    return [energies[here] for here in inside if np.count_nonzero(here) > 1]
+    result = []
+    for start, end in itertools.pairwise(edges):
+        apart = max(margin, near * (end - start))
+        inside = (history.time > start + apart) & (history.time < end - apart)
+        if np.count_nonzero(inside) > 1:
+            result.append(energies[inside])
+    return result
 
 
 def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
@@ -42,7 +51,7 @@ def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
     A rise is counted from the least energy before it, through all flights and impacts: free
     rocking of a rigid block can only lose energy.
     """
-    parts = flights(block, motion, response)
+    parts = flights(block, motion, response, NEAR)
     if not parts:
         return float("nan")
     energies = np.concatenate(parts)

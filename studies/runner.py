@@ -34,6 +34,7 @@ def fill_folder(
     settings: Mapping[str, Any],
     growing: Mapping[str, Sequence[Any]],
     products: Sequence[str],
+    tables: str | None = None,
 ) -> list[Row]:
     """Run the jobs that a results folder does not hold yet; write its table and provenance.
 
@@ -55,6 +56,8 @@ def fill_folder(
         refused, so that its table is what was asked for and nothing is lost.
     products : sequence of str
         The files that the study writes.
+    tables : str, optional
+        A label whose values name the tables, where a study has several.
 
     Raises
     ------
@@ -72,8 +75,10 @@ def fill_folder(
         except KeyboardInterrupt as stop:
             kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
             raise KeyboardInterrupt(f"{kept}; the same command goes on from there") from stop
-        table = pd.DataFrame(rows)
-        provenance.write_text(folder / f"{study}.csv", table.to_csv(index=False, na_rep="nan"))
+        for name in dict.fromkeys(row[tables] for row in rows) if tables else [study]:
+            part = [row for row in rows if row[tables] == name] if tables else rows
+            text = pd.DataFrame(part).to_csv(index=False, na_rep="nan")
+            provenance.write_text(folder / f"{name}.csv", text)
         provenance.finish(path, record, began, len(rows))
     return rows
 
