@@ -130,9 +130,7 @@ QUICK = (
     "1 cm high",
     "onset + 1e-6",
     "boundary − 1e-6",
-    "boundary + 1e-6",
     "ω/p 100",
-    "20 half-cycles",
     "density 1e9",
     "friction 1e-3",
     "friction 1",
@@ -163,7 +161,7 @@ def _shapes() -> tuple[Extreme, ...]:
 
 def _amplitudes() -> tuple[Extreme, ...]:
     half = Extreme(name="boundary", group="amplitude", half_cycles=1)
-    full = replace(half, name="2nd boundary", half_cycles=2)
+    full = replace(half, name="boundary after impact", half_cycles=2)
     # the largest rotation that survives lies before the first impact, and after it
     edges = [(half, overturning(half, 1.0, 5.0)), (full, overturning(full, 1.0, 1.5))]
     return (

@@ -83,10 +83,10 @@ def _of_engine(
     name, value = BETTER_SETTING[engine]
     if preset != "naive":
         settings = {**options.get("settings", {}), name: value}
-        tried.insert(0, (f"{name} {value}", source, {**options, "settings": settings}))
+        tried.insert(0, (f"{name} {value:g}", source, {**options, "settings": settings}))
     better = {k: v for k, v in options.items() if k not in ("step", "settings")}
+    if case.step_s is not None:
+        tried.append(("the preset's own step", source, better))
     if preset != "landing":
         tried += [(f"preset {name}", f"{engine}:{name}", better) for name in ("fixed", "landing")]
-    elif case.step_s is not None:
-        tried.append(("the preset's own step", source, better))
     return [entry for entry in tried if entry[1:] != (source, options)]

@@ -177,10 +177,23 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
         if accurate.notna().any():
             missing = int(accurate.isna().sum())
             never = f", none in {missing} of {len(accurate)} problems" if missing else ""
-            sentences.append(f"{source} {accurate.min():.2g}–{accurate.max():.2g}{never}")
+            sentences.append(f"{source} {span(accurate)}{never}")
         else:
             sentences.append(f"{source} none")
-    return [f"The largest p dt that is accurate to 1 %: {'; '.join(sentences)}."]
+    own = steps[(steps["source"] == "mujoco:fixed") & steps["contact_s"].notna()]
+    contact = (
+        "A MuJoCo contact with a time of its own is stable up to steps of "
+        f"{span(own['stable_over_contact'])} of that time and accurate up to "
+        f"{span(own['accurate_over_contact'])} of it."
+    )
+    words = f"The largest p dt that is accurate to 1 %: {'; '.join(sentences)}."
+    return [words, contact] if len(own) else [words]
+
+
+def span(values: "pd.Series[float]") -> str:
+    """Return the least and the largest of some numbers."""
+    low, high = values.min(), values.max()
+    return f"{low:.2g}" if low == high else f"{low:.2g}–{high:.2g}"
 
 
 def _on_sensitivity(moved: pd.DataFrame) -> list[str]:

@@ -20,6 +20,7 @@ SLIP_BAND = 0.01
 """Slip over the width that counts as sliding."""
 SMALLEST = 1e-6
 """Peaks below this part of θcr may go unseen."""
+SMALLEST_WORDS = "1e-6"
 LEFT = ("the pivot slid", "the block was thrown")
 """How a run ends that leaves the problem, which is right where the reference does so."""
 
@@ -44,8 +45,8 @@ class Verdict(enum.Enum):
 
 
 _SENTENCES = {
-    Verdict.GOOD: f"outcome right, peak within {BAND:.0%} or {SMALLEST:.0e} θcr",
-    Verdict.UNSEEN: f"a rocking below {SMALLEST:.0e} θcr not seen",
+    Verdict.GOOD: f"outcome right, peak within {BAND:.0%} or {SMALLEST_WORDS} θcr",
+    Verdict.UNSEEN: f"a rocking below {SMALLEST_WORDS} θcr not seen",
     Verdict.COARSE: f"peak within {WIDE_BAND:.0%}",
     Verdict.OFF: f"peak off by more than {WIDE_BAND:.0%}",
     Verdict.SLIDES: f"slides more than {SLIP_BAND:.0%} of B",
