@@ -21,12 +21,7 @@ def report(folder: Path) -> str:
     from studies.figures import save
     from studies.stability_figure import draw_matrix
 
-    matrix, steps, moved = (
-        pd.read_csv(
-            folder / f"{name}.csv", dtype={"message": str}, keep_default_na=False, na_values=["nan"]
-        )
-        for name in ("stability", "steps", "sensitivity")
-    )
+    matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
     moved = with_growth(moved)
     text = moved.to_csv(index=False, na_rep="nan")
     provenance.write_text(folder / "sensitivity.csv", text)
@@ -45,6 +40,14 @@ def report(folder: Path) -> str:
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
+
+
+def _table(folder: Path, name: str) -> pd.DataFrame:
+    """Return a table with empty words as such; empty if none of the sources has a row in it."""
+    path = folder / f"{name}.csv"
+    if not path.is_file():
+        return pd.DataFrame()
+    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
 
 
 def verdicts_text(matrix: pd.DataFrame) -> str:
@@ -170,6 +173,8 @@ def _on_limits(matrix: pd.DataFrame) -> list[str]:
 
 
 def _on_steps(steps: pd.DataFrame) -> list[str]:
+    if steps.empty:
+        return []
     sentences = []
     for source, group in steps.groupby("source", sort=False):
         usual = group[group["contact_s"].isna() | (source == "mujoco:naive")]
