@@ -19,7 +19,7 @@ QUANTITIES = ("amplitude", "width", "friction")
 DELTAS = tuple(10.0**-n for n in range(9, 2, -1))
 QUICK_DELTAS = (1e-9, 1e-6, 1e-3)
 FRICTION = 1.0
-"""Friction of these cases: more than they need, less than any engine's largest."""
+"""Friction that is perturbed: more than these cases need, less than any engine's largest."""
 
 CASES = (
     Extreme(name="before an impact", group="sensitivity", half_cycles=1, onsets=1.5),
@@ -38,7 +38,7 @@ def perturbed(case: Extreme, quantity: str, delta: float) -> Extreme:
     if quantity == "amplitude":
         return replace(case, onsets=case.onsets * (1.0 + delta))
     if quantity == "friction":
-        return replace(case, friction=(case.friction or FRICTION) * (1.0 + delta))
+        return replace(case, friction=FRICTION * (1.0 + delta))
     omega, wider = case.motion.omega, 1.0 + delta
     changed = replace(
         case,
@@ -52,26 +52,25 @@ def perturbed(case: Extreme, quantity: str, delta: float) -> Extreme:
 def sensitivity_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     """Return each case as it is and perturbed, for every source that has the quantity."""
     cases = [case for case in CASES if not quick or case.name in QUICK]
-    changes = [("none", 0.0)]
-    changes += [(q, d) for q in QUANTITIES for d in (QUICK_DELTAS if quick else DELTAS)]
+    deltas = (0.0, *(QUICK_DELTAS if quick else DELTAS))
     return [
         _job(case, source, quantity, delta)
         for case in cases
         for source in sources
-        for quantity, delta in changes
+        for quantity in QUANTITIES
         if quantity != "friction" or resolve(source).kind == "engine"
+        for delta in deltas
     ]
 
 
 def _job(case: Extreme, source: str, quantity: str, delta: float) -> Job:
-    changed = case if quantity == "none" else perturbed(case, quantity, delta)
-    friction = FRICTION if changed.friction is None else changed.friction
+    changed = perturbed(case, quantity, delta)
     return Job(
         labels={"table": "sensitivity", "case": case.name, "quantity": quantity, "delta": delta},
         block=changed.block,
         motion=changed.motion,
         source=source,
-        options={"friction": friction} if resolve(source).kind == "engine" else {},
+        options=changed.options(source),
     )
 
 
@@ -116,8 +115,9 @@ def with_growth(rows: pd.DataFrame) -> pd.DataFrame:
     answer moves as κ says, change_over_exact where it moves as far as the exact solution does.
     nan without a perturbation.
     """
-    plain = rows[rows["quantity"] == "none"].set_index(["case", "source"])["peak_ratio"]
-    before = [float(plain[pair]) for pair in zip(rows["case"], rows["source"], strict=True)]
+    names = ["case", "source", "quantity"]
+    plain = rows[rows["delta"] == 0.0].set_index(names)["peak_ratio"]
+    before = [float(plain[tuple(row)]) for row in rows[names].to_numpy()]
     change = pd.Series(
         [_log_ratio(*pair) for pair in zip(rows["peak_ratio"], before, strict=True)],
         index=rows.index,

@@ -19,10 +19,10 @@ from studies.journal import Row
 from studies.largest_step import reduce_steps, search, step_jobs
 from studies.remedies import Remedied, answer
 from studies.runner import exit_code, fill_folder
-from studies.sensitivity import reduce_sensitivity, sensitivity_jobs
+from studies.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 from studies.sources import Source
 from studies.stability_report import report
-from studies.verdicts import friction_of, invalidity, judge
+from studies.verdicts import BANDS, friction_of, invalidity, judge
 
 PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
 METHODS = (
@@ -104,7 +104,7 @@ def stability(
         ],
         executor=executor,
         reduce=reduce,
-        settings={"quick": quick},
+        settings={"quick": quick, "bands": BANDS},
         growing={"source": sources},
         products=PRODUCTS,
         tables="table",
@@ -162,6 +162,7 @@ def judged(case: Extreme, source: str, response: Response) -> Row:
         "exact_outcome": exact.outcome.value,
         "exact_peak": exact.peak_ratio,
         "error": found.error,
+        "kappa": condition_number(case, "amplitude"),
         "energy_growth": found.energy_growth,
         "slip_widths": response.slip_m / case.block.width,
         "friction": friction_of(case, source),

@@ -64,7 +64,7 @@ def failures_text(matrix: pd.DataFrame) -> str:
     if wrong.empty:
         return "none"
     shown = wrong[["case", "source", "reason", "remedy"]].rename(columns={"remedy": "avoided by"})
-    return left_aligned(shown.assign(reason=shown["reason"].str.slice(0, 76)))
+    return left_aligned(shown.assign(reason=shown["reason"].str.slice(0, 80)))
 
 
 def failures(matrix: pd.DataFrame) -> pd.DataFrame:
@@ -120,7 +120,7 @@ def _step(value: float, over: float) -> str:
 
 def sensitivity_text(moved: pd.DataFrame, quantity: str) -> str:
     """Return the median growth over κ for each source and perturbation."""
-    part = moved[moved["quantity"] == quantity]
+    part = moved[(moved["quantity"] == quantity) & (moved["delta"] > 0.0)]
     medians = part.groupby(["source", "delta"], sort=False)["change_over_exact"].median()
     table = medians.unstack("delta").map(lambda value: f"{value:.3g}")
     table.columns = [f"{delta:.0e}" for delta in table.columns]
@@ -146,8 +146,8 @@ def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     return [
         f"Of the extreme cases where the reference holds, right outcome and a peak within 1 %: "
         f"{scores}.",
-        f"{unbounded} answers were not finite or threw the block away; energy grew in free "
-        f"rocking in {int((wrong['verdict'] == 'energy').sum())}.",
+        f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
+        f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
         f"Another setting mends {len(mended)} of {len(wrong)} failures.",
         f"In {void['case'].nunique()} cases an engine differs where the reference itself does not "
         f"hold ({', '.join(void['case'].unique())}).",
@@ -202,7 +202,7 @@ def span(values: "pd.Series[float]") -> str:
 
 
 def _on_sensitivity(moved: pd.DataFrame) -> list[str]:
-    part = moved[moved["quantity"] == "amplitude"]
+    part = moved[(moved["quantity"] == "amplitude") & (moved["delta"] > 0.0)]
     follows = (part["change_over_exact"] - 1.0).abs() <= 0.1
     words = [
         f"{source} {_from_which(follows[group.index], group['delta'])}"

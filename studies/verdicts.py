@@ -2,7 +2,7 @@
 
 import enum
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 
 from analytic import simulate
@@ -16,11 +16,15 @@ BAND, WIDE_BAND = 0.01, 0.1
 """Relative error of the peak that is accurate, and that is still a result."""
 ENERGY_BAND = 0.01
 """Rise of the energy of free rocking, over its largest value, that counts as growth."""
+EDGE_BAND = 2e-6
+"""Relative difference of the amplitude within which an outcome that changes is hard to tell."""
 SLIP_BAND = 0.01
 """Slip over the width that counts as sliding."""
 SMALLEST = 1e-6
 """Peaks below this part of θcr may go unseen."""
 SMALLEST_WORDS = "1e-6"
+BANDS = (BAND, WIDE_BAND, ENERGY_BAND, SLIP_BAND, SMALLEST)
+"""What the rows of a results folder depend on."""
 LEFT = ("the pivot slid", "the block was thrown")
 """How a run ends that leaves the problem, which is right where the reference does so."""
 
@@ -103,14 +107,21 @@ def _verdict(
     if found is Outcome.AT_REST and exact.peak_ratio < SMALLEST and right is not found:
         return Verdict.UNSEEN, f"the exact peak is {exact.peak_ratio:.1e} θcr"
     if found is not right:
-        return Verdict.OUTCOME, f"{found.value}; the exact solution: {right.value}"
+        edge = f" only within {EDGE_BAND:g} of this amplitude" if is_at_an_edge(case, right) else ""
+        return Verdict.OUTCOME, f"{found.value}; the exact solution: {right.value}{edge}"
     if grown > ENERGY_BAND:
-        return Verdict.ENERGY, f"energy grows by {grown:.2g} in free rocking"
+        return Verdict.ENERGY, f"energy grows by {grown:.2g} in free rocking, {peak_error}"
     if slip > SLIP_BAND:
         return Verdict.SLIDES, f"the pivot slid {slip:.2g} B"
     if math.isnan(error) or abs(error) <= BAND or absolute <= SMALLEST:
         return Verdict.GOOD, ""
     return (Verdict.COARSE if abs(error) <= WIDE_BAND else Verdict.OFF), peak_error
+
+
+def is_at_an_edge(case: Extreme, outcome: Outcome) -> bool:
+    """Say whether the exact outcome is another one at an amplitude that hardly differs."""
+    near = (replace(case, onsets=case.onsets * (1.0 + s * EDGE_BAND)) for s in (1.0, -1.0))
+    return any(simulate(other.block, other.motion).outcome is not outcome for other in near)
 
 
 def invalidity(case: Extreme, source: str, exact: Response) -> str:

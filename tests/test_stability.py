@@ -200,7 +200,7 @@ def test_growth_of_the_exact_solution_is_its_kappa():
         {
             "case": case.name,
             "source": "exact",
-            "quantity": ["none", "amplitude"],
+            "quantity": "amplitude",
             "delta": [0.0, 1e-6],
             "peak_ratio": peaks,
             "kappa": [math.nan, condition_number(case, "amplitude")],
