@@ -19,7 +19,7 @@ from studies.extremes import Extreme
 from studies.jobs import Job, ask
 from studies.journal import Row
 from studies.sources import Source, resolve
-from studies.verdicts import ENERGY_BAND, Verdict, judge
+from studies.verdicts import ENERGY_BAND, Verdict, invalidity, judge
 
 START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
 """p dt from which a search sets out, and between which it searches."""
@@ -93,13 +93,18 @@ def search_job(case: Extreme, source: str, contact_s: float, quick: bool) -> Job
     )
 
 
+def problem(job: Job) -> Extreme:
+    """Return the problem of a search."""
+    return next(case for case in PROBLEMS if case.name == job.labels["case"])
+
+
 def search(job: Job, source: Source, time_limit_s: float) -> Response:
     """Run a source with one step after another until both largest steps are known.
 
     A run of an engine that takes longer than `time_limit_s` [s] is no answer.
     """
     limit = {"time_limit_s": time_limit_s} if source.kind == "engine" else {}
-    case = next(case for case in PROBLEMS if case.name == job.labels["case"])
+    case = problem(job)
     exact = simulate(case.block, case.motion)
 
     @functools.cache
@@ -168,6 +173,7 @@ def reduce_steps(job: Job, response: Response) -> Row:
             response.runs,
         )
     contact = float(job.labels["contact_s"]) * job.block.p
+    case = problem(job)
     return {
         # a search that ends is an answer, though it be that no step is stable
         "outcome": "searched" if runs else response.outcome.value,
@@ -176,5 +182,6 @@ def reduce_steps(job: Job, response: Response) -> Row:
         "stable_over_contact": stable / contact,
         "accurate_over_contact": accurate / contact,
         "runs": runs,
+        "invalid": invalidity(case, job.source, simulate(case.block, case.motion)),
         "message": response.message,
     }

@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 from textwrap import fill
+from typing import Any
 
 import pandas as pd
 
@@ -101,8 +102,10 @@ def method_name(source: str, contact_s: float) -> str:
     return source if math.isnan(contact_s) else f"{source}, own contact time"
 
 
-def step_cell(row: "pd.Series[float]") -> str:
+def step_cell(row: "pd.Series[Any]") -> str:
     """Return both largest steps of a row, and over the contact's time where there is one."""
+    if row["invalid"]:
+        return "not valid"
     pairs = zip(
         (row["largest_stable"], row["largest_accurate"]),
         (row["stable_over_contact"], row["accurate_over_contact"]),
@@ -178,6 +181,7 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
     sentences = []
     for source, group in steps.groupby("source", sort=False):
         usual = group[group["contact_s"].isna() | (source == "mujoco:naive")]
+        usual = usual[usual["invalid"] == ""]
         accurate = usual["largest_accurate"]
         if accurate.notna().any():
             missing = int(accurate.isna().sum())
