@@ -14,11 +14,19 @@ from studies.differences import condition_numbers
 from studies.energy import energy, growth
 from studies.executors import Local
 from studies.extremes import QUICK, Extreme, contact_settings, extremes
-from studies.largest_step import FACTOR, LARGEST_STEP, SMALLEST_STEP, edge, search, search_job
+from studies.largest_step import (
+    FACTOR,
+    LARGEST_STEP,
+    PROBLEMS,
+    SMALLEST_STEP,
+    edge,
+    search,
+    search_job,
+)
 from studies.remedies import NOTHING, answer, remedies
 from studies.sensitivity import CASES, condition_number, perturbed, with_growth
 from studies.sources import resolve
-from studies.stability import METHODS, matrix_jobs, speechless, stability
+from studies.stability import METHODS, matrix_jobs, put, reduce, speechless, stability
 from studies.stability_figure import MARKS
 from studies.stability_report import report
 from studies.verdicts import Verdict, invalidity, judge
@@ -214,6 +222,27 @@ def test_growth_of_the_exact_solution_is_its_kappa():
     assert math.isnan(moved["growth"].iloc[0])
     # tables that were read back and reduced again stay as they are
     pd.testing.assert_frame_equal(with_growth(moved), moved)
+
+
+@pytest.mark.parametrize("source", METHODS)
+def test_every_method_has_a_row_and_so_has_one_that_was_given_up(source):
+    job = job_of("ω/p 10", source)
+    answered = reduce(job, put(job, resolve(source), time_limit_s=60.0))
+    given_up = reduce(job, Response.failure("no result within the time limit"))
+    assert answered["outcome"] == "rocked"
+    assert answered["verdict"] in [verdict.value for verdict in Verdict]
+    assert given_up["verdict"] == "failed"
+    assert list(given_up) == list(answered)
+    # what nobody tunes a tuned method away from
+    if ":" not in source:
+        assert answered["verdict"] == "good"
+
+
+def test_a_search_that_was_given_up_is_a_row_too():
+    job = search_job(PROBLEMS[0], "rk4", math.nan, True)
+    row = reduce(job, Response.failure("no result within the time limit"))
+    assert row["outcome"] == "failed"
+    assert math.isnan(row["largest_stable"])
 
 
 def test_every_verdict_has_a_mark_of_its_own():
