@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from studies.verdicts import Verdict
+from studies.verdicts import ACCEPTED, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,8 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
     _label_methods(axes, sources)
     _label_cases(axes, rows, names)
     _separate_groups(axes, list(cases["group"]), len(sources))
-    axes.set(xlim=(0, len(sources)), ylim=(len(names), 0))
+    _score(axes, rows, sources, len(names))
+    axes.set(xlim=(0, len(sources)), ylim=(len(names) + 1, 0))
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)
@@ -111,6 +112,17 @@ def _label_cases(axes: Axes, rows: pd.DataFrame, names: list[str]) -> None:
 
 def _reference(outcome: str, peak: float) -> str:
     return f"{peak:.3g} θcr" if outcome == "rocked" else outcome
+
+
+def _score(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
+    """Write under each method how many of its cases are right, of those that are valid."""
+    style = {"va": "center", "fontsize": 8, "color": "#333333"}
+    axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **style)  # type: ignore[arg-type]
+    for i, source in enumerate(sources):
+        found = [Verdict(value) for value in rows.loc[rows["source"] == source, "verdict"]]
+        valid = [verdict for verdict in found if verdict is not Verdict.INVALID]
+        right = sum(verdict in ACCEPTED for verdict in valid)
+        axes.text(i + 0.5, level + 0.6, f"{right}/{len(valid)}", ha="center", **style)  # type: ignore[arg-type]
 
 
 def _separate_groups(axes: Axes, groups: list[str], width: int) -> None:
