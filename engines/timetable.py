@@ -9,9 +9,6 @@ import numpy as np
 from analytic.motion import Motion
 from engines.scene import Scene
 
-LEAST_SAMPLES = 256
-"""Samples at least in which the base's acceleration is looked through."""
-
 ROUNDING = 1e-9
 """Times closer than this part of the ordinary step are the same."""
 
@@ -44,7 +41,7 @@ class Timetable:
     def __init__(self, scene: Scene, dt_s: float) -> None:
         block = scene.block
         self._same = ROUNDING * dt_s
-        loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha), dt_s)
+        loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
         ends = () if scene.duration is None else (scene.duration,)
         stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
         self._stops: list[float] = [*sorted(stop for stop in stops if stop > self._same), math.inf]
@@ -87,10 +84,9 @@ class Timetable:
         return self.left / math.ceil(self.left / longest * (1.0 - ROUNDING))
 
 
-def loads_of(motion: Motion, onset: float, dt_s: float) -> list[Load]:
-    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], seen every dt_s/4 [s]."""
-    samples = max(4 * math.ceil(motion.duration / dt_s), LEAST_SAMPLES) + 1
-    grid = np.union1d(np.linspace(0.0, motion.duration, samples), motion.breakpoints)
+def loads_of(motion: Motion, onset: float) -> list[Load]:
+    """Return the times during which abs(u_g'') exceeds `onset` [m/s2]."""
+    grid = np.union1d([0.0, motion.duration, *_turns(motion)], motion.breakpoints)
     acceleration = motion.acceleration(grid)
     loads: list[Load] = []
     for side in (-1.0, 1.0):
@@ -103,6 +99,20 @@ def loads_of(motion: Motion, onset: float, dt_s: float) -> list[Load]:
             corners.append(motion.duration)
         loads += [Load(*pair, side) for pair in zip(corners[::2], corners[1::2], strict=True)]
     return sorted(loads)
+
+
+def _turns(motion: Motion) -> list[float]:
+    """Return the times [s] of the crests and zeros of the sines that make up a motion.
+
+    Between two of them, and on a straight segment, the acceleration is monotonic.
+    """
+    times: list[float] = []
+    for start, end, amplitude, omega, phase, _, _ in motion.segments().tolist():
+        if amplitude != 0.0:
+            first, last = (2.0 * (omega * t + phase) / math.pi for t in (0.0, end - start))
+            quarters = np.arange(math.ceil(first), math.floor(last) + 1)
+            times += (start + (0.5 * math.pi * quarters - phase) / omega).tolist()
+    return times
 
 
 def _crossing(motion: Motion, sign: float, onset: float, between: Sequence[float]) -> float:

@@ -22,7 +22,7 @@ from studies.jobs import Job, summary
 from studies.journal import FolderError, open_journal
 from studies.provenance import identity
 from studies.runner import run_jobs
-from studies.sources import SOURCES, Source, resolve
+from studies.sources import SOURCES, Effort, Source, resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
@@ -219,7 +219,9 @@ def test_a_folder_grows_and_never_shrinks(tmp_path):
         with pytest.raises(FolderError, match=missing):
             sweep.sweep(figures, sources, tmp_path, executor=executor)
     with pytest.raises(FolderError, match="settings"):
-        sweep.sweep([6, 7], ["exact", "modified"], tmp_path, executor=executor, step=1e-2)
+        sweep.sweep(
+            [6, 7], ["exact", "modified"], tmp_path, executor=executor, effort=Effort(step=1e-2)
+        )
     assert len(pd.read_csv(tmp_path / "sweep.csv")) == 960
 
 
