@@ -90,6 +90,8 @@ class Response:
         no-lift-off, no-slip reference needs; nan where a source does not report them.
     slip_m : float
         Largest distance [m] that an engine's contact slid; nan for the reference.
+    sink_m : float
+        Largest depth [m] of an engine's lowest corner in the base; nan for the reference.
     """
 
     outcome: Outcome
@@ -106,6 +108,7 @@ class Response:
     min_normal: float = float("nan")
     friction_needed: float = float("nan")
     slip_m: float = float("nan")
+    sink_m: float = float("nan")
 
     @classmethod
     def failure(cls, message: str, *, steps: int = 0, wall_s: float = 0.0) -> "Response":

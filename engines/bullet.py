@@ -1,6 +1,7 @@
 """PyBullet: how a scene is built, set, read back and stepped."""
 
 import contextlib
+import itertools
 import math
 import os
 import sys
@@ -22,6 +23,16 @@ KEPT_GAP = 4.0
 some (theta' dt)^2 H/4 in a step; an anchor that is kept much longer pulls the corner back to where
 it stood an impact ago."""
 
+SOLVERS = {
+    "sequential impulse": "CONSTRAINT_SOLVER_LCP_SI",
+    "PGS": "CONSTRAINT_SOLVER_LCP_PGS",
+    "Dantzig": "CONSTRAINT_SOLVER_LCP_DANTZIG",
+}
+"""Name of a contact solver -> the library's constant."""
+
+BASES = ("plane", "box")
+"""Shape of the base."""
+
 LARGEST_FRICTION = 10.0
 """The library clamps the coefficient of a pair, the product of the two bodies', to this."""
 
@@ -33,7 +44,8 @@ class BulletSettings:
     Attributes
     ----------
     geometry : str
-        "box", or "corners": small spheres where the corners at the base are.
+        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
+        mesh of the block's eight corners.
     planar : bool
         Put two corner spheres into the middle plane instead of four at the edges; a box has its
         four corners either way.
@@ -64,6 +76,19 @@ class BulletSettings:
     landing : bool
         Keep contacts only up to a gap of 4 (p dt)^2 half diagonals, and correct no positions in
         the short steps around an impact.
+    base_geometry : str
+        "plane" or "box".
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    solver : str or None
+        Of the contacts: "sequential impulse", "PGS" or "Dantzig".
+    warm_starting : float or None
+        Part of the last step's impulses from which the solver starts.
+    split_impulse, cone_friction, separating_axis : bool or None
+        Correct penetration without giving it a velocity; bound friction by a cone instead of a
+        pyramid; find contacts of polyhedra by separating axes.
+    contact_stiffness, contact_damping : float or None
+        Of a yielding contact, over m p^2 and m p; both or neither.
     """
 
     geometry: str = "corners"
@@ -82,13 +107,40 @@ class BulletSettings:
     contact_slop: float | None = 0.0
     breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
     landing: bool = False
+    base_geometry: str = "plane"
+    base_velocity: bool = True
+    solver: str | None = None
+    warm_starting: float | None = None
+    split_impulse: bool | None = None
+    cone_friction: bool | None = None
+    separating_axis: bool | None = None
+    contact_stiffness: float | None = None
+    contact_damping: float | None = None
 
     def __post_init__(self) -> None:
         one_of("geometry", self.geometry, GEOMETRIES)
+        one_of("base_geometry", self.base_geometry, BASES)
+        if self.solver is not None:
+            one_of("solver", self.solver, tuple(SOLVERS))
+        if self.warm_starting is not None and not 0.0 <= self.warm_starting <= 1.0:
+            raise ValueError(f"warm_starting is {self.warm_starting!r}; it must be from 0 to 1")
+        self._check_yielding()
         if self.friction > LARGEST_FRICTION:
             raise ValueError(
                 f"friction is {self.friction!r}; PyBullet allows at most {LARGEST_FRICTION:g}"
             )
+
+    def _check_yielding(self) -> None:
+        pair = (self.contact_stiffness, self.contact_damping)
+        if (pair[0] is None) != (pair[1] is None):
+            raise ValueError(
+                f"contact_stiffness, contact_damping are {pair!r}; "
+                "they must be given together or not at all"
+            )
+        for name in ("contact_stiffness", "contact_damping"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value < math.inf:
+                raise ValueError(f"{name} is {value!r}; it must be positive")
 
 
 PRESETS: Mapping[str, BulletSettings] = {
@@ -128,9 +180,12 @@ class BulletWorld:
         self._gravity = scene.block.gravity
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
-        self._velocity = self._dt = 0.0
+        self._velocity = self._moved = self._dt = 0.0
         self._set_engine(scene.block.p)
-        self._base = self._add(0.0, self._plane(), not self._moving, (0.0, 0.0, 0.0))
+        self._ground = (0.0, 0.0, 0.0)
+        if self.settings.base_geometry == "box":
+            self._ground = (0.0, 0.0, -scene.block.height)
+        self._base = self._add(0.0, self._floor(scene), not self._moving, self._ground)
         centre = (0.0, 0.0, 0.5 * scene.block.height)
         self._body = self._add(scene.mass, self._shape(scene), not self.settings.multibody, centre)
         self._fault = self._set_bodies(scene)
@@ -153,8 +208,15 @@ class BulletWorld:
 
     def _move_base(self, base_kick: float) -> None:
         self._velocity += base_kick
-        velocity = (self._velocity, 0.0, 0.0)
-        self._p.resetBaseVelocity(self._base, velocity, physicsClientId=self._client)
+        if self.settings.base_velocity:
+            velocity = (self._velocity, 0.0, 0.0)
+            self._p.resetBaseVelocity(self._base, velocity, physicsClientId=self._client)
+            return
+        self._moved += self._dt * self._velocity
+        place, upright = (self._moved, *self._ground[1:]), (0.0, 0.0, 0.0, 1.0)
+        self._p.resetBasePositionAndOrientation(
+            self._base, place, upright, physicsClientId=self._client
+        )
 
     def _hold(self, grip: Grip, dt_s: float) -> None:
         """Correct positions in ordinary steps alone: a short one would make a velocity of them."""
@@ -198,10 +260,20 @@ class BulletWorld:
             "frictionERP": s.friction_erp,
             "contactSlop": s.contact_slop,
             "contactBreakingThreshold": threshold,
+            "constraintSolverType": s.solver and getattr(self._p, SOLVERS[s.solver]),
+            "warmStartingFactor": s.warm_starting,
+            "useSplitImpulse": s.split_impulse,
+            "enableConeFriction": s.cone_friction,
+            "enableSAT": s.separating_axis,
         }
-        self._p.setPhysicsEngineParameter(**_given(wanted), physicsClientId=self._client)
+        # the library announces a solver past Python
+        with _silence() if s.solver is not None else contextlib.nullcontext():
+            self._p.setPhysicsEngineParameter(**_given(wanted), physicsClientId=self._client)
 
-    def _plane(self) -> int:
+    def _floor(self, scene: Scene) -> int:
+        if self.settings.base_geometry == "box":
+            block = scene.block
+            return self._box((100.0 * block.height, 100.0 * scene.depth_m, block.height))
         return int(
             self._p.createCollisionShape(
                 self._p.GEOM_PLANE, planeNormal=(0.0, 0.0, 1.0), physicsClientId=self._client
@@ -212,8 +284,13 @@ class BulletWorld:
         p, s = self._p, self.settings
         half = (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
         if s.geometry == "box":
-            box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=self._client)
-            return int(box)
+            return self._box(half)
+        if s.geometry == "hull":
+            vertices = list(itertools.product(*((-size, size) for size in half)))
+            hull = p.createCollisionShape(
+                p.GEOM_MESH, vertices=vertices, physicsClientId=self._client
+            )
+            return int(hull)
         radius = s.corner_radius * scene.block.width
         depths = (0.0,) if s.planar else (-half[1], half[1])
         corners = [(x, y, radius - half[2]) for x in (-half[0], half[0]) for y in depths]
@@ -224,6 +301,10 @@ class BulletWorld:
             physicsClientId=self._client,
         )
         return int(spheres)
+
+    def _box(self, half: tuple[float, float, float]) -> int:
+        p, client = self._p, self._client
+        return int(p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=client))
 
     def _add(self, mass: float, shape: int, rigid: bool, position: tuple[float, ...]) -> int:
         body = self._p.createMultiBody(
@@ -245,10 +326,14 @@ class BulletWorld:
             "linearDamping": s.damping,
             "angularDamping": s.damping,
         }
+        if s.contact_stiffness is not None and s.contact_damping is not None:
+            p = scene.block.p
+            wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
+            wanted["contactDamping"] = s.contact_damping * scene.mass * p
         self._change(self._body, lateralFriction=s.friction, **_given(wanted))
         self._change(self._base, lateralFriction=1.0)
         block, base = self._dynamics(self._body), self._dynamics(self._base)
-        pairs = {
+        pairs: dict[str, tuple[Any, Any]] = {
             "mass": (scene.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
             "friction of the base": (1.0, base[1]),
@@ -258,6 +343,10 @@ class BulletWorld:
         if s.iterations is not None:
             engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
             pairs["numSolverIterations"] = (s.iterations, engine["numSolverIterations"])
+        if s.multibody and s.contact_stiffness is not None:
+            # a body in maximal coordinates takes them, too, but reads zeros
+            pairs["contactDamping"] = (wanted["contactDamping"], block[8])
+            pairs["contactStiffness"] = (wanted["contactStiffness"], block[9])
         return disagreement(pairs)
 
     def _change(self, body: int, **wanted: Any) -> None:

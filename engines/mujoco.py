@@ -1,5 +1,6 @@
 """MuJoCo: how a scene is built, set, read back and stepped."""
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,8 +10,20 @@ import mujoco as mj
 
 from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
 
-OPTIONS = ("cone", "solver", "jacobian", "tolerance", "iterations", "impratio")
+OPTIONS = (
+    "cone",
+    "solver",
+    "jacobian",
+    "tolerance",
+    "iterations",
+    "impratio",
+    "integrator",
+    "noslip_iterations",
+)
 """Settings that are options of the model under their own names."""
+
+INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
+"""Integrators of the library that share the layout of its step."""
 
 PLANAR_JOINTS = (
     '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
@@ -39,7 +52,8 @@ class MujocoSettings:
     Attributes
     ----------
     geometry : str
-        "box", or "corners": small spheres where the corners at the base are.
+        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
+        mesh of the block's eight corners.
     planar : bool
         Give the block two slides and a hinge, and two corners in the middle plane, instead of a
         free joint and four corners at the edges.
@@ -49,14 +63,24 @@ class MujocoSettings:
         p dt.
     corner_radius : float
         Radius of the corner spheres over the width.
-    cone, solver, jacobian, tolerance, iterations, impratio : optional
+    cone, solver, jacobian, tolerance, iterations, impratio, noslip_iterations : optional
         Options of the contact solver.
+    integrator : str or None
+        "Euler", "RK4", "implicit" or "implicitfast".
     damping, sliding_damping : float or None
         b dt along the contact's normal and along the base; both or neither.
     stiffness : float or None
         k dt^2, wherever damping is set.
     impedance : tuple of float or None
-        The five numbers of solimp, wherever damping is set.
+        The five numbers of solimp; needed wherever damping is set.
+    solref : tuple of float or None
+        The contact in the library's other form, in place of damping and stiffness: its time
+        constant over dt and its damping ratio. Both should be positive: the library takes a pair
+        with one zero for its own default, and goes on.
+    margin : float or None
+        Gap, over the width, from which on a contact acts.
+    base_velocity : bool
+        Give a moving base the velocity that friction feels; else it is moved by position alone.
     landing : bool
         Hold each contact as the step needs it: `stiffness` at rest alone, velocities reflected
         while the block turns about a corner, and taken out in the short steps of an impact.
@@ -78,15 +102,31 @@ class MujocoSettings:
     stiffness: float | None = 0.01
     impedance: tuple[float, ...] | None = (0.9999, 0.9999, 0.001, 0.5, 2.0)
     landing: bool = False
+    integrator: str | None = None
+    noslip_iterations: int | None = None
+    solref: tuple[float, float] | None = None
+    margin: float | None = None
+    base_velocity: bool = True
 
     def __post_init__(self) -> None:
         one_of("geometry", self.geometry, GEOMETRIES)
         contact = (self.damping, self.sliding_damping, self.stiffness, self.impedance)
-        if len({value is None for value in contact}) != 1:
+        if len({value is None for value in contact[:3]}) != 1:
             raise ValueError(
-                f"damping, sliding_damping, stiffness, impedance are {contact!r}; "
+                f"damping, sliding_damping, stiffness are {contact[:3]!r}; "
                 "they must be given together or not at all"
             )
+        if self.damping is not None and self.impedance is None:
+            raise ValueError("impedance is None; it must be given wherever damping is")
+        if self.solref is not None and self.damping is not None:
+            raise ValueError(
+                f"solref is {self.solref!r}; it must be None wherever damping is given"
+            )
+        if self.integrator is not None:
+            one_of("integrator", self.integrator, INTEGRATORS)
+        for name in ("noslip_iterations", "margin"):
+            if getattr(self, name) is not None and not 0 <= getattr(self, name) < math.inf:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be 0 or more")
         for name in ("damping", "sliding_damping", "stiffness"):
             if getattr(self, name) is not None and getattr(self, name) <= 0.0:
                 # a reference with one zero would be replaced by the library's default
@@ -178,6 +218,8 @@ class MujocoWorld:
             return
         before, self._dt = self._dt, dt
         self._option.timestep = dt
+        if s.solref is not None:
+            model.pair_solref[:] = model.geom_solref[:] = (s.solref[0] * dt, s.solref[1])
         if s.damping is None or s.sliding_damping is None or s.stiffness is None:
             return
         back = 0.0
@@ -235,7 +277,8 @@ class MujocoWorld:
         before, self._velocity = self._velocity, self._velocity + base_kick
         # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
         # moved with the base before moves with the base after
-        self._model.geom_surfacevel[0, 0] = before + base_kick / self._sliding
+        if self.settings.base_velocity:
+            self._model.geom_surfacevel[0, 0] = before + base_kick / self._sliding
         self._data.mocap_pos[0, 0] = self._moved
         self._moved += dt_s * self._velocity
 
@@ -265,14 +308,28 @@ def model_xml(scene: Scene, settings: MujocoSettings) -> str:
     named = ((name, getattr(s, name)) for name in OPTIONS)
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
     geoms = _geoms(scene, s)
-    parts = (f'<geom name="{name}" {shape} {_friction(s)}/>' for name, shape in geoms.items())
-    pairs = "" if s.impedance is None else "".join(_pair(name, s) for name in geoms)
+    margin = (s.margin or 0.0) * block.width
+    common = f'{_friction(s)} margin="{margin}"'
+    parts = (f'<geom name="{name}" {shape} {common}/>' for name, shape in geoms.items())
+    pairs = "" if s.impedance is None else "".join(_pair(name, s, margin) for name in geoms)
     return (
-        f"<mujoco><option {options}/><worldbody>{_base(scene, s)}"
+        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}"
         f'<body pos="0 0 {0.5 * block.height}">{PLANAR_JOINTS if s.planar else "<freejoint/>"}'
         f'<inertial pos="0 0 0" mass="{scene.mass}" diaginertia="{_row(scene.inertia)}"/>'
         f"{''.join(parts)}</body></worldbody><contact>{pairs}</contact></mujoco>"
     )
+
+
+def _assets(scene: Scene, s: MujocoSettings) -> str:
+    if s.geometry != "hull":
+        return ""
+    corners = itertools.product(*((-size, size) for size in _half(scene)))
+    vertices = _row(tuple(itertools.chain.from_iterable(corners)))
+    return f'<asset><mesh name="hull" vertex="{vertices}"/></asset>'
+
+
+def _half(scene: Scene) -> tuple[float, float, float]:
+    return (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
 
 
 def _base(scene: Scene, s: MujocoSettings) -> str:
@@ -282,13 +339,16 @@ def _base(scene: Scene, s: MujocoSettings) -> str:
     size = _row((100.0 * scene.block.height, 100.0 * scene.depth_m, scene.block.height))
     return (
         f'<body mocap="true" pos="0 0 {-scene.block.height}">'
-        f'<geom name="base" type="box" size="{size}" surfacevel="1 0 0" {_friction(s)}/></body>'
+        f'<geom name="base" type="box" size="{size}" surfacevel="{int(s.base_velocity)} 0 0" '
+        f"{_friction(s)}/></body>"
     )
 
 
 def _geoms(scene: Scene, s: MujocoSettings) -> dict[str, str]:
     """Name and shape of what the block touches its base with."""
-    half = (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
+    half = _half(scene)
+    if s.geometry == "hull":
+        return {"hull": 'type="mesh" mesh="hull"'}
     if s.geometry == "box":
         return {"box": f'type="box" size="{_row(half)}"'}
     radius = s.corner_radius * scene.block.width
@@ -302,11 +362,13 @@ def _friction(s: MujocoSettings) -> str:
     return f'friction="{s.friction} 0.005 0.0001"'
 
 
-def _pair(name: str, s: MujocoSettings) -> str:
+def _pair(name: str, s: MujocoSettings, margin: float) -> str:
     friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
+    # any direct form will do for now: it is set with the first step
+    reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
     return (
-        f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="0" '
-        f'solimp="{_row(s.impedance or ())}" solref="-1 -1" solreffriction="-1 -1"/>'
+        f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
+        f'solimp="{_row(s.impedance or ())}" {reference}/>'
     )
 
 
@@ -316,7 +378,7 @@ def _row(numbers: tuple[float, ...]) -> str:
 
 def _option(option: Any, name: str, wanted: Any) -> tuple[Any, Any]:
     """Return a wanted option as the library numbers it, and the option as it is."""
-    kinds = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_"}
+    kinds = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
     if wanted is None or name not in kinds:
         return wanted, getattr(option, name)
     kind = getattr(mj, f"mjt{name.capitalize()}")

@@ -74,7 +74,7 @@ class Observer:
         self._uplifts: list[float] = []
         self._rests: list[float] = []
         self._impacts: list[Impact] = []
-        self._peak = self._slide = self._give = self._hop = 0.0
+        self._peak = self._slide = self._sink = self._give = self._hop = 0.0
         self._crossed = self._overturned = self._turned = False
         self.lifted = self.done = False
         self.broken = ""
@@ -110,6 +110,7 @@ class Observer:
 
     def _check(self, depth: float) -> None:
         width = 2.0 * self._half_width
+        self._sink = max(self._sink, -depth)
         if depth < -SINK_WIDTHS * width:
             self.broken = f"the pivot sank {-depth:.3g} m into the base"
         elif depth > THROWN_WIDTHS * width:
@@ -202,4 +203,5 @@ class Observer:
             wall_s=wall_s,
             history=None if times is None or self._rows is None else sample(self._rows, times),
             slip_m=self._slide,
+            sink_m=self._sink,
         )

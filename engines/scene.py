@@ -22,8 +22,9 @@ FRAMES = ("base", "world")
 ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
 """Name of an accuracy -> steps of the preset "landing" in a time 1/p."""
 
-GEOMETRIES = ("box", "corners")
-"""What touches the base: the whole block, or small spheres at its corners."""
+GEOMETRIES = ("box", "corners", "hull")
+"""What touches the base: the whole block, small spheres at its corners, or the whole block as the
+convex hull of its corners."""
 
 SettingsT = TypeVar("SettingsT")
 
