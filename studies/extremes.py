@@ -3,12 +3,15 @@
 import math
 from dataclasses import dataclass, replace
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 from analytic import simulate
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
+from engines import ENGINES
+from engines.scene import ACCURACIES
 from studies.cases import free_rocking_window
 from studies.sources import resolve
 
@@ -41,9 +44,8 @@ class Extreme:
     friction : float or None
         None for a preset's own, as below.
     contact : float or None
-        Stiffness of an engine's contact: step over the contact's own time. The part of a
-        penetration that PyBullet takes out in a step; in MuJoCo a critically damped contact of
-        that time.
+        Time T of an engine's contact, in units of 1/p: a contact that holds the block's mass by a
+        spring of m/T^2 with critical damping. None for a preset's own.
     step_s : float or None
         Step [s].
     """
@@ -107,15 +109,28 @@ class Extreme:
             most = BULLET_FRICTION if source.startswith("pybullet") else math.inf
             options["friction"] = min(self.friction, most)
         if self.contact is not None:
-            options["settings"] = contact_settings(source, self.contact)
+            options["settings"] = contact_settings(source, self.contact, own_step(source))
         return options
 
 
-def contact_settings(source: str, ratio: float) -> dict[str, float]:
-    """Return the engine's settings of a contact whose own time is the step over `ratio`."""
+def contact_settings(source: str, time: float, step: float) -> dict[str, float]:
+    """Return the engine's settings of a contact with a time of its own.
+
+    time and step are in units of 1/p; MuJoCo takes stiffness and damping in units of the step.
+    """
     if source.startswith("pybullet"):
-        return {"contact_erp": ratio}
+        return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}
+    ratio = step / time
     return {"stiffness": ratio**2, "damping": 2.0 * ratio}
+
+
+def own_step(source: str) -> float:
+    """Return the ordinary p dt of an engine's tuned preset; nan where the library has its own."""
+    presets = import_module(ENGINES[source.partition(":")[0]]).PRESETS
+    preset = resolve(source).preset
+    if preset == "landing":
+        return 1.0 / ACCURACIES["standard"]
+    return float(presets[preset].step or math.nan)
 
 
 def extremes(quick: bool) -> list[Extreme]:
@@ -134,7 +149,7 @@ QUICK = (
     "density 1e9",
     "friction 1e-3",
     "friction 1",
-    "contact × 10",
+    "contact of 1e-5/p",
     "step 1/30 s",
 )
 
@@ -212,10 +227,10 @@ def _engine_matters() -> tuple[Extreme, ...]:
         Extreme(name="friction 0.3", group="friction", friction=0.3),
         Extreme(name="friction 1", group="friction", friction=1.0),
         Extreme(name="friction 1e9", group="friction", friction=1e9),
-        Extreme(name="contact × 1e-3", group="contact", contact=1e-3),
-        Extreme(name="contact × 0.1", group="contact", contact=0.1),
-        Extreme(name="contact × 1", group="contact", contact=1.0),
-        Extreme(name="contact × 10", group="contact", contact=10.0),
+        Extreme(name="contact of 0.1/p", group="contact", contact=0.1),
+        Extreme(name="contact of 0.01/p", group="contact", contact=0.01),
+        Extreme(name="contact of 1e-3/p", group="contact", contact=1e-3),
+        Extreme(name="contact of 1e-5/p", group="contact", contact=1e-5),
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.energy import growth
-from studies.extremes import Extreme
+from studies.extremes import Extreme, contact_settings
 from studies.jobs import Job, ask
 from studies.journal import Row
 from studies.sources import Source, resolve
@@ -30,7 +30,7 @@ SAMPLES = 400
 LIBRARY_CONTACT_S = 0.02
 """Time constant [s] of MuJoCo's default contact."""
 OWN_CONTACT = 0.01
-"""Time, in units of 1/p, of a MuJoCo contact that does not follow the step."""
+"""Time, in units of 1/p, of a contact that does not follow the step."""
 
 PROBLEMS = (
     Extreme(name="peak before an impact", group="steps", half_cycles=1, onsets=1.5),
@@ -71,7 +71,7 @@ def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
     """Return the contact times [s] to try a source with; nan for one that has none of its own."""
     if source == "mujoco:naive":
         return (LIBRARY_CONTACT_S,)
-    if source == "mujoco:fixed":
+    if source.endswith(":fixed"):
         return (math.nan, OWN_CONTACT / case.block.p)
     return (math.nan,)
 
@@ -133,10 +133,10 @@ def search(job: Job, source: Source, time_limit_s: float) -> Response:
 
 def _at(job: Job, step: float) -> dict[str, Any]:
     """Return the options at a step; a contact with a time of its own does not follow it."""
-    if job.source != "mujoco:fixed" or math.isnan(job.labels["contact_s"]):
+    time = float(job.labels["contact_s"]) * job.block.p
+    if not job.source.endswith(":fixed") or math.isnan(time):
         return {"step": step}
-    ratio = step / job.block.p / job.labels["contact_s"]
-    return {"step": step, "settings": {"stiffness": ratio**2, "damping": 2.0 * ratio}}
+    return {"step": step, "settings": contact_settings(job.source, time, step)}
 
 
 def edge(good: Callable[[float], bool], factor: float) -> float:

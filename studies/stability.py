@@ -40,7 +40,7 @@ METHODS = (
 )
 SAMPLES = 400
 """Samples of the free rocking, from which its energy is read."""
-RUN_SHARE = 0.05
+RUN_SHARE = 0.02
 """Part of the time limit that each run of a search for a step may take."""
 
 
@@ -49,7 +49,7 @@ def command(
     out: Path,
     quick: bool = False,
     jobs: Count | None = None,
-    time_limit: Positive = 60.0,
+    time_limit: Positive = 180.0,
     sources: Annotated[tuple[str, ...], several] = METHODS,
 ) -> int:
     """Put extreme cases to every method.

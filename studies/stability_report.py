@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from studies import provenance
-from studies.largest_step import LARGEST_STEP
+from studies.largest_step import LARGEST_STEP, OWN_CONTACT
 from studies.remedies import NOTHING
 from studies.sensitivity import FRICTION, with_growth
 from studies.verdicts import ACCEPTED, Verdict
@@ -189,19 +189,26 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
             sentences.append(f"{source} {span(accurate)}{never}")
         else:
             sentences.append(f"{source} none")
-    own = steps[(steps["source"] == "mujoco:fixed") & steps["contact_s"].notna()]
-    contact = (
-        "A MuJoCo contact with a time of its own is stable up to steps of "
-        f"{span(own['stable_over_contact'])} of that time and accurate up to "
-        f"{span(own['accurate_over_contact'])} of it."
-    )
     words = f"The largest p dt that is accurate to 1 %: {'; '.join(sentences)}."
-    return [words, contact] if len(own) else [words]
+    return [words, *_on_contacts(steps)]
+
+
+def _on_contacts(steps: pd.DataFrame) -> list[str]:
+    """Say for which steps a contact with a time of its own is stable."""
+    own = steps[steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()]
+    return [
+        f"A contact of {OWN_CONTACT:g}/p in {source} is stable up to steps of "
+        f"{span(group['stable_over_contact'])} of that time and accurate up to "
+        f"{span(group['accurate_over_contact'])} of it."
+        for source, group in own.groupby("source", sort=False)
+    ]
 
 
 def span(values: "pd.Series[float]") -> str:
     """Return the least and the largest of some numbers."""
     low, high = values.min(), values.max()
+    if math.isnan(low):
+        return "none"
     return f"{low:.2g}" if low == high else f"{low:.2g}–{high:.2g}"
 
 

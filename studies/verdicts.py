@@ -107,7 +107,7 @@ def _verdict(
     if found is Outcome.AT_REST and exact.peak_ratio < SMALLEST and right is not found:
         return Verdict.UNSEEN, f"the exact peak is {exact.peak_ratio:.1e} θcr"
     if found is not right:
-        edge = f" only within {EDGE_BAND:g} of this amplitude" if is_at_an_edge(case, right) else ""
+        edge = f", {EDGE_BAND:g} from its edge" if is_at_an_edge(case, right) else ""
         return Verdict.OUTCOME, f"{found.value}; the exact solution: {right.value}{edge}"
     if grown > ENERGY_BAND:
         return Verdict.ENERGY, f"energy grows by {grown:.2g} in free rocking, {peak_error}"

@@ -66,7 +66,7 @@ def test_boundary_lies_between_its_two_cases(name):
 def test_cases_are_asked_of_those_who_have_what_is_extreme():
     assert not named("friction 1").applies("exact")
     assert named("friction 1").applies("mujoco:naive")
-    assert not named("contact × 10").applies("mujoco:naive")
+    assert not named("contact of 1e-5/p").applies("mujoco:naive")
     assert not named("η 0.999, set").applies("pybullet")
     assert named("η 0.999, set").applies("dop853")
     assert not named("step 1/30 s").applies("dop853")
@@ -79,8 +79,10 @@ def test_bullet_is_given_the_friction_that_it_takes():
 
 
 def test_contact_of_a_time_is_critically_damped():
-    settings = contact_settings("mujoco", 0.25)
-    assert settings["damping"] == 2 * math.sqrt(settings["stiffness"])
+    settings = contact_settings("mujoco", 0.01, 0.0025)
+    assert settings == {"stiffness": 0.0625, "damping": 0.5}
+    settings = contact_settings("pybullet", 0.01, 0.0025)
+    assert settings["contact_damping"] == 2 * math.sqrt(settings["contact_stiffness"])
 
 
 @pytest.mark.parametrize(
@@ -168,7 +170,7 @@ def test_a_coarse_step_is_mended_by_a_finer_one():
 
 @pytest.mark.parametrize("source", METHODS)
 def test_remedies_are_other_settings(source):
-    case = named("contact × 10")
+    case = named("contact of 1e-5/p")
     given = (source, case.options(source))
     for sentence, name, options in remedies(case, source):
         assert sentence
