@@ -41,6 +41,11 @@ history, ... measured by putting them back. Writes shares.csv, scenes.csv and re
 Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),
 sensitivity.csv and findings.txt; resumable. A failure is an answer: the exit code is 1 only where
 a source gives no result at all. --quick takes less than a minute on two cores.""",
+    "contact": """Contact models: what each setting of an engine's contact costs and buys.
+
+One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
+contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes some
+minutes on two cores, --quick less than one.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
