@@ -40,7 +40,8 @@ history, ... measured by putting them back. Writes shares.csv, scenes.csv and re
 
 Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),
 sensitivity.csv and findings.txt; resumable. A failure is an answer: the exit code is 1 only where
-a source gives no result at all. --quick takes less than a minute on two cores.""",
+a source gives no result at all. The full study takes about six minutes on two cores, --quick half
+a minute.""",
     "contact": """Contact models: what each setting of an engine's contact costs and buys.
 
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes

@@ -29,13 +29,14 @@ def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
     unbounded = int(wrong["reason"].str.contains("not finite|thrown|BADQACC").sum())
     return [
-        f"Of the extreme cases where the reference holds, right outcome and a peak within 1 %: "
+        "Of the extreme cases where the reference, which is exact itself, holds: right outcome and a "
+        f"peak within 1 % in "
         f"{scores}.",
         f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
         f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
         f"Another setting mends {len(mended)} of {len(wrong)} failures.",
         f"In {void['case'].nunique()} cases an engine differs where the reference itself does not "
-        f"hold ({', '.join(void['case'].unique())}).",
+        f"hold ({'; '.join(void['case'].unique())}).",
     ]
 
 
