@@ -29,9 +29,8 @@ def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
     unbounded = int(wrong["reason"].str.contains("not finite|thrown|BADQACC").sum())
     return [
-        "Of the extreme cases where the reference, which is exact itself, holds: right outcome and a "
-        f"peak within 1 % in "
-        f"{scores}.",
+        "Of the extreme cases where the reference, which is the exact solution, holds, outcome "
+        f"right and peak within 1 %: {scores}.",
         f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
         f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
         f"Another setting mends {len(mended)} of {len(wrong)} failures.",
