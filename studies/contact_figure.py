@@ -30,7 +30,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     for axes, engine in zip(panels, engines, strict=True):
         _one_engine(axes, lines[lines["engine"] == engine])
         axes.set_title(engine)
-    drawing.legend(handles=_handles(), loc="outside lower center", ncols=6, frameon=False)
+    drawing.legend(handles=_handles(), loc="outside lower center", ncols=4, frameon=False)
     return drawing
 
 
@@ -47,19 +47,20 @@ def _one_engine(axes: Axes, lines: pd.DataFrame) -> None:
         text.set(fontsize=8, color=COLOURS[str(line["preset"])])
         if not line["factor"]:
             text.set_fontweight("bold")
-    axes.set_xlabel("error of the peak: line from median to max  [–]")
+    axes.set_xlabel("relative error  [–]")
     axes.grid(axis="x", alpha=0.25)
 
 
 def _ordered(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return the variants from the most accurate to the failed, preset after preset."""
+    """Return the variants from the most accurate in peak and impact to the failed, by preset."""
     broken = (lines["failed"] > 0) | (lines["wrong"] > 0) | lines["max_error"].isna()
     keyed = lines.assign(
         first=lines["preset"].map({name: place for place, name in enumerate(COLOURS)}),
         own=lines["factor"] != "",
         broken=broken,
+        worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
     )
-    return keyed.sort_values(["first", "own", "broken", "max_error"])
+    return keyed.sort_values(["first", "own", "broken", "worst"])
 
 
 def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
@@ -69,6 +70,9 @@ def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
         median = max(float(line["median_error"]), LOWEST)
         axes.plot([median, error], [place, place], color=colour, linewidth=1.4, alpha=0.5)
         axes.plot(error, place, "o", color=colour, markersize=4.5 if line["factor"] else 7)
+    if line["ratio_over_eta"] == line["ratio_over_eta"]:
+        off = min(max(abs(float(line["ratio_over_eta"]) - 1.0), LOWEST), 1.0)
+        axes.plot(off, place, "D", color="#444444", markerfacecolor="none", markersize=3.6)
     if line["failed"]:
         axes.plot(BROKEN, place, "X", color="#000000", markersize=6)
     elif line["wrong"]:
@@ -96,6 +100,9 @@ def _handles() -> list[Line2D]:
     return [
         *(Line2D([], [], color=COLOURS[key], label=name, **plain) for key, name in TITLES.items()),
         Line2D([], [], color="#666666", linestyle="--", label="the preset as it is"),
+        Line2D([], [], color="#666666", marker="o", label="peak, median to largest error"),
+        Line2D([], [], color="#444444", linestyle="none", marker="D", markersize=4,
+               markerfacecolor="none", label="velocity ratio against Housner's η, median"),
         Line2D([], [], color="#000000", linestyle="none", marker="X", label="failed"),
         Line2D([], [], color="#000000", linestyle="none", marker="s", markerfacecolor="none",
                label="wrong outcome"),

@@ -9,6 +9,7 @@ import pandas as pd
 from studies import provenance
 from studies.differences import scientific, with_reference
 from studies.factors import FACTORS
+from studies.stability_report import left_aligned
 from studies.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
 
 KEY = ["engine", "preset", "factor", "level"]
@@ -35,6 +36,7 @@ def report(folder: Path) -> str:
             "Every variant: errors of the peak over typical cases, outcomes over all cases.",
             "moves: by how much it changes a peak of its preset, at most; η: the velocity ratio",
             "over Housner's; e: Newton's coefficient; slip and sink in widths of the block.",
+            "Peaks of half-sine cases come before any impact: a wrong impact shows in η alone.",
             variants_text(lines),
             "\nFor rigid, inelastic, non-sliding contact set this:",
             recommendation_text(lines),
@@ -107,7 +109,7 @@ def variants_text(lines: pd.DataFrame) -> str:
             "why": lines["message"].where(lines["failed"] > 0, lines["trap"]),
         }
     )
-    return shown.to_string(index=False)
+    return left_aligned(shown.astype(str))
 
 
 def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
@@ -128,8 +130,8 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
                     "moves": math.nan if left is None else left["moved"],
                     "turns": math.nan if left is None else left["ratio_moved"],
                     "without": "-" if left is None else _errors(left),
-                    "defaults": _errors(naive),
-                    "alone": _errors(alone),
+                    "defaults": _with_ratio(naive),
+                    "alone": _with_ratio(alone),
                     "weight": _weight(left, alone),
                 }
             )
@@ -146,6 +148,11 @@ def _find(
     if level:
         wanted &= lines["level"] == level
     return lines[wanted].iloc[0] if wanted.any() else None
+
+
+def _with_ratio(line: "pd.Series[Any]") -> str:
+    ratio = float(line["ratio_over_eta"])
+    return _errors(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
 
 
 def _weight(*found: "pd.Series[Any] | None") -> float:
@@ -173,11 +180,11 @@ def recommendation_text(lines: pd.DataFrame) -> str:
             "left at its default it moves a peak by": table["moves"].map(scientific),
             "a velocity ratio by": table["turns"].map(scientific),
             "and the largest error is": table["without"],
-            "set alone, the defaults' largest error": table["defaults"],
+            "set alone, the defaults' largest error (ratio)": table["defaults"],
             "becomes": table["alone"],
         }
     )
-    return shown.to_string(index=False)
+    return left_aligned(shown.astype(str))
 
 
 def findings(lines: pd.DataFrame) -> str:
