@@ -45,8 +45,8 @@ a minute.""",
     "contact": """Contact models: what each setting of an engine's contact costs and buys.
 
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
-contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes some
-minutes on two cores, --quick less than one.""",
+contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
+about four minutes on one core, --quick less than one.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""

@@ -53,7 +53,7 @@ def _one_engine(axes: Axes, lines: pd.DataFrame) -> None:
 
 def _ordered(lines: pd.DataFrame) -> pd.DataFrame:
     """Return the variants from the most accurate in peak and impact to the failed, by preset."""
-    broken = (lines["failed"] > 0) | (lines["wrong"] > 0) | lines["max_error"].isna()
+    broken = lines["worse"] | lines["max_error"].isna()
     keyed = lines.assign(
         first=lines["preset"].map({name: place for place, name in enumerate(COLOURS)}),
         own=lines["factor"] != "",
