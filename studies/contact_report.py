@@ -38,7 +38,7 @@ def report(folder: Path) -> str:
             "moves: by how much it changes a peak of its preset, at most; η: the velocity ratio",
             "over Housner's; e: Newton's coefficient; slip and sink in widths of the block.",
             "Peaks of half-sine cases come before any impact: a wrong impact shows in η alone.",
-            "Cases near overturning, some within a few percent, count for outcomes and moves alone.",
+            "Cases near overturning, some within a few percent, count for outcomes and moves.",
             variants_text(lines),
             "\nFor rigid, inelastic, non-sliding contact set this:",
             recommendation_text(lines),
