@@ -160,16 +160,17 @@ PRESETS: Mapping[str, BulletSettings] = {
     ),
     "fixed": BulletSettings(),
     "landing": BulletSettings(
-        step=None, residual=1e-24, friction_erp=1.0, friction_anchor=True, landing=True
+        step=None, residual=1e-32, friction_erp=1.0, friction_anchor=True, landing=True
     ),
 }
 
 
 class BulletWorld:
-    """A block on a plane in a PyBullet client of its own.
+    """A block on a base in a PyBullet client of its own.
 
-    The plane is a static rigid body, or where it moves a multibody without mass: of the bases
-    PyBullet offers, the only one whose velocity friction feels.
+    The base is a multibody without mass, whether it moves or not: of the bases PyBullet offers,
+    the only one whose velocity friction feels. On a static rigid body the response to the mirrored
+    motion is not the mirror image.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -185,7 +186,7 @@ class BulletWorld:
         self._ground = (0.0, 0.0, 0.0)
         if self.settings.base_geometry == "box":
             self._ground = (0.0, 0.0, -scene.block.height)
-        self._base = self._add(0.0, self._floor(scene), not self._moving, self._ground)
+        self._base = self._add(0.0, self._floor(scene), False, self._ground)
         centre = (0.0, 0.0, 0.5 * scene.block.height)
         self._body = self._add(scene.mass, self._shape(scene), not self.settings.multibody, centre)
         self._fault = self._set_bodies(scene)

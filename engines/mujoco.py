@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco as mj
@@ -36,6 +36,10 @@ and after then cancel at its start, where the contact is, and the scheme is symm
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
+
+NARROWEST_CONE = 0.1
+"""Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
+one."""
 
 CARRY = 1e-4
 """Gap, over the width, up to which landing keeps the corner about which the block turns."""
@@ -151,7 +155,7 @@ PRESETS: Mapping[str, MujocoSettings] = {
         impedance=None,
     ),
     "fixed": MujocoSettings(),
-    "landing": MujocoSettings(step=None, friction=1e3, stiffness=1.0, landing=True),
+    "landing": MujocoSettings(step=None, friction=1e3, stiffness=1.0, impratio=3e3, landing=True),
 }
 
 
@@ -163,7 +167,7 @@ class MujocoWorld:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.settings = s = scene.choose(PRESETS[scene.preset])
+        self.settings = s = settings_of(scene)
         self._moving = scene.frame == "world"
         self._gravity = scene.block.gravity
         self._height = 0.5 * scene.block.height
@@ -295,6 +299,14 @@ class MujocoWorld:
             }
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
         return disagreement({name: pair for name, pair in pairs.items() if pair[0] is not None})
+
+
+def settings_of(scene: Scene) -> MujocoSettings:
+    """Return the settings of a scene; a preset's impratio is kept to what its friction allows."""
+    s = scene.choose(PRESETS[scene.preset])
+    if s.impratio is None or "impratio" in scene.settings:
+        return s
+    return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
 
 
 def build(scene: Scene) -> MujocoWorld:

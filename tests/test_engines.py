@@ -69,8 +69,8 @@ def test_mirror(engine: str, preset: str) -> None:
     )
     assert there.history is not None
     assert back.history is not None
-    # a sequential solver visits the corners in one order, so its remainder is not mirrored
-    tolerance = 1e-6 if preset in TUNED else 1e-3
+    # as it comes, a solver ends its iterations early, and visits the corners in one order
+    tolerance = 1e-9 if preset in TUNED else 1e-3
     assert there.history.theta == pytest.approx(-back.history.theta, abs=tolerance)
     assert there.peak_ratio > 0.01
 
