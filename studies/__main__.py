@@ -47,6 +47,10 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
+    "report": """Every study, and one self-contained page (report.html) about them.
+
+The quick studies take about four minutes on two cores, the full ones about forty. A report that
+was interrupted goes on where it stopped when the same command is given again.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""

@@ -11,15 +11,17 @@ from analytic.response import Outcome, Response
 from studies import provenance
 from studies.arguments import Count, Positive
 from studies.cases import Case, free_rocking_window
-from studies.contact_report import report
-from studies.energy import growth
+from studies.contact_report import headline, pictures, report
+from studies.energy import SAMPLES, energy_drift, growth
 from studies.executors import Executor, Local
 from studies.factors import FACTORS
 from studies.jobs import Job, summary
 from studies.journal import Row
-from studies.precision import COMPARED_IMPACTS, SAMPLES, energy_drift, precision_cases
 from studies.runner import exit_code, fill_folder
+from studies.selection import COMPARED_IMPACTS, chosen_cases
 from studies.variants import OWN_STEP, Variant, variants
+
+__all__ = ["command", "headline", "pictures", "report"]
 
 PRODUCTS = ("contact.csv", "variants.csv", "contact.png", "findings.txt")
 STEP, QUICK_STEP = 1e-3, 2e-3
@@ -87,7 +89,7 @@ def all_variants() -> list[Variant]:
 @functools.cache
 def cases(quick: bool) -> tuple[tuple[str, Case], ...]:
     """Return the cases and their sets: "typical", and in full "near overturning" too."""
-    chosen = [(kind, case) for kind, part in precision_cases(True).items() for case in part]
+    chosen = [(kind, case) for kind, part in chosen_cases(True).items() for case in part]
     if quick:
         chosen = [(k, c) for k, c in chosen if k == "typical" and c.aspect in QUICK_ASPECTS]
     return tuple(chosen)

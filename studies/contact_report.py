@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,9 @@ from studies.differences import scientific, with_reference
 from studies.factors import FACTORS
 from studies.stability_report import left_aligned
 from studies.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
@@ -23,15 +26,11 @@ than the second, both relative, makes no difference worth a sentence."""
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
-    from studies.contact_figure import draw_contact
-    from studies.figures import save
+    from studies.figures import save_all
 
-    words = ("factor", "level", "trap", "message")
-    rows = pd.read_csv(folder / "contact.csv", keep_default_na=False, na_values=["nan"],
-                       dtype=dict.fromkeys(words, str))  # fmt: skip
-    lines = variant_table(rows)
+    lines = variant_table(_read(folder / "contact.csv"))
     provenance.write_text(folder / "variants.csv", lines.to_csv(index=False, na_rep="nan"))
-    save(draw_contact(lines), folder / "contact.png")
+    save_all(pictures(folder), folder)
     text = "\n".join(
         [
             "Every variant: errors of the peak over typical cases, outcomes over all cases.",
@@ -48,6 +47,25 @@ def report(folder: Path) -> str:
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
+
+
+def headline(folder: Path) -> str:
+    """Return, for each engine, its errors with the best settings and with the defaults."""
+    lines = _read(folder / "variants.csv")
+    return " ".join(_overview(lines, engine) for engine in lines["engine"].unique())
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the largest error of every variant of a folder from its variants.csv alone."""
+    from studies.contact_figure import draw_contact
+
+    return {"contact": draw_contact(_read(folder / "variants.csv"))}
+
+
+def _read(path: Path) -> pd.DataFrame:
+    """Read a table back with empty words as such."""
+    words = dict.fromkeys(("factor", "level", "trap", "message"), str)
+    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
 
 
 def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
@@ -200,9 +218,18 @@ def findings(lines: pd.DataFrame) -> str:
     )
 
 
+def _overview(lines: pd.DataFrame, engine: str) -> str:
+    base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
+    of = {line["preset"]: line for _, line in base.iterrows()}
+    return (
+        f"{engine}: largest error {_errors(of[BEST])} at a fixed step, "
+        f"{_errors(of['landing'])} where steps land on impacts, "
+        f"{_errors(of[DEFAULT])} with the library's defaults at the same step."
+    )
+
+
 def _findings(lines: pd.DataFrame, engine: str) -> list[str]:
     mine = lines[lines["engine"] == engine]
-    of = {line["preset"]: line for _, line in mine[mine["factor"] == ""].iterrows()}
     varied = mine[(mine["preset"] == BEST) & (mine["factor"] != "")]
     whole = varied[~varied["worse"]]
     still = (whole["moved"] < NOTABLE) & (whole["ratio_moved"] < NOTABLE_RATIO)
@@ -211,9 +238,7 @@ def _findings(lines: pd.DataFrame, engine: str) -> list[str]:
     broken = varied[varied["worse"]]
     traps = mine[mine["trap"] != ""]
     sentences = [
-        f"{engine}: largest error {_errors(of[BEST])} at a fixed step, "
-        f"{_errors(of['landing'])} where steps land on impacts, "
-        f"{_errors(of[DEFAULT])} with the library's defaults at the same step.",
+        _overview(lines, engine),
         "Peaks move most by " + _listed(costly, "moved") + ".",
         "The impact depends most on " + _listed(bent, "ratio_moved") + ".",
         f"Without visible effect (peaks {NOTABLE:g}, velocity ratios {NOTABLE_RATIO:g}): "

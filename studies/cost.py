@@ -22,8 +22,10 @@ from analytic.response import Response
 from engines import ENGINES, Scene, run
 from studies import provenance
 from studies.cases import HISTORIES, free_rocking_window, sweep_cases
-from studies.differences import scientific
+from studies.cost_report import headline, pictures, report
 from studies.journal import FolderError
+
+__all__ = ["command", "headline", "pictures", "report"]
 
 ENGINE_STEP = {"pybullet": ("pybullet", "stepSimulation"), "mujoco": ("mujoco", "mj_step")}
 """Engine -> module and function that does nothing but the engine's own step."""
@@ -73,16 +75,25 @@ def command(*, out: Path, quick: bool = False) -> int:
     quick
         Shorter timing: a few seconds.
     """
-    budget_s = QUICK_BUDGET_S if quick else BUDGET_S
     try:
         out.mkdir(parents=True, exist_ok=True)
-        shares, scenes, reference = share_table(budget_s), scene_table(budget_s), reference_table()
-        for name, table in (("shares", shares), ("scenes", scenes), ("reference", reference)):
-            provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
+        measure(out, quick)
     except OSError as error:
         raise FolderError(out, f"it must be a folder that can be written ({error})") from error
-    print("\n".join(text(shares, scenes, reference)))
+    print(report(out))
     return 0
+
+
+def measure(folder: Path, quick: bool) -> None:
+    """Measure and write the three tables."""
+    budget_s = QUICK_BUDGET_S if quick else BUDGET_S
+    tables = {
+        "shares": share_table(budget_s),
+        "scenes": scene_table(budget_s),
+        "reference": reference_table(),
+    }
+    for name, table in tables.items():
+        provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
 
 
 def pose_case() -> tuple[RigidBlock, SinePulse]:
@@ -276,42 +287,3 @@ def shortest(action: Callable[[], Any], runs: int = 30) -> float:
         action()
         times.append(time.perf_counter() - began)
     return min(times)
-
-
-def text(shares: pd.DataFrame, scenes: pd.DataFrame, reference: pd.DataFrame) -> list[str]:
-    """Return the three tables as aligned text."""
-    parts = shares.set_index("engine").filter(like="_s") * 1e6
-    own = 1.0 - shares["engine_s"] / shares["step_s"]
-    head = parts.rename(columns=lambda name: name.removesuffix("_s") + " µs").map("{:.2f}".format)
-    head["beside the engine"] = [f"{share:.0%}" for share in own]
-    base = scenes.groupby("engine")["wall_s"].transform("first")
-    shown = pd.DataFrame(
-        {
-            "engine": scenes["engine"].mask(scenes["engine"].duplicated(), ""),
-            "put back": scenes["scene"],
-            "outcome": scenes["outcome"],
-            "error": scenes["error"].map(scientific),
-            "steps": scenes["steps"],
-            "time": (scenes["wall_s"] / base).map("{:.2f} x".format),
-            "step µs": (1e6 * scenes["step_s"]).map("{:.1f}".format),
-            "set-up ms": (1e3 * scenes["setup_s"]).map("{:.2f}".format),
-            "memory KiB": scenes["memory_kib"].map("{:.0f}".format),
-        }
-    )
-    notes = [
-        f"{engine}, {scene}: {message}"
-        for engine, scene, message in scenes[["engine", "scene", "message"]].to_numpy()
-        if message
-    ]
-    exact = pd.DataFrame(
-        {"exact solution": reference["scene"], "µs": (1e6 * reference["wall_s"]).round(1)}
-    )
-    return [
-        "Where the time of a step goes:",
-        head.reset_index().to_string(index=False),
-        "\nWhat a scene leaves out, put back one at a time (time over the scene as it is):",
-        shown.to_string(index=False),
-        *notes,
-        "",
-        exact.to_string(index=False),
-    ]

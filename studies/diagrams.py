@@ -1,4 +1,4 @@
-"""Work-precision diagrams: error against run time, a line for each method."""
+"""Error against run time, a line for each method; error against conditioning, a mark a case."""
 
 import numpy as np
 import pandas as pd
@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.figures import Style
+from studies.figures import Style, style_of
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),
@@ -52,6 +52,71 @@ def draw_precision(table: pd.DataFrame) -> Figure:
     handles = [_handle(name) for name in STYLES if name in set(table["method"])]
     handles.append(Line2D([], [], color="#FFD54A", linewidth=5, alpha=0.6, label="Pareto front"))
     drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    return drawing
+
+
+def draw_conditioning(compared: pd.DataFrame) -> Figure:
+    """Draw the error of every case against the condition number of its peak.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        The columns of errors.csv.
+    """
+    drawing = Figure(figsize=(7.6, 5.2), layout="constrained")
+    axes = drawing.subplots()
+    kappa = compared["kappa"].abs()
+    for source, rows in compared.groupby("source", sort=False):
+        style = style_of(str(source))
+        axes.plot(
+            kappa[rows.index],
+            rows["error"].abs().clip(lower=LOWEST),
+            linestyle="none",
+            marker=style.marker or ".",
+            markersize=4,
+            markerfacecolor="none",
+            color=style.colour,
+            label=str(source),
+        )
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlabel("condition number  |κ| = |∂ln θmax/∂ln a_p|  [–]")
+    axes.set_ylabel("relative error of the peak  [–]")
+    slope = np.array([1.0, max(float(kappa.max()), 10.0)])
+    for level in (1e-6, 1e-4):
+        axes.plot(slope, level * slope, color="#999999", linewidth=0.8, zorder=-1)
+        axes.annotate(f"{level:.0e} κ", (slope[1], level * slope[1]), fontsize=8, color="#666666")
+    axes.legend(loc="upper left", frameon=False)
+    axes.grid(alpha=0.25)
+    return drawing
+
+
+def draw_scenes(scenes: pd.DataFrame) -> Figure:
+    """Draw what each thing put back into a scene costs and changes, a colour for each engine.
+
+    Parameters
+    ----------
+    scenes : DataFrame
+        The columns of scenes.csv.
+    """
+    names = list(scenes["scene"].unique())
+    engines = list(scenes["engine"].unique())
+    drawing = Figure(figsize=(9.6, 1.4 + 0.45 * len(names)), layout="constrained")
+    costs, errors = drawing.subplots(1, 2, sharey=True)
+    thick = 0.8 / len(engines)
+    for number, engine in enumerate(engines):
+        rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
+        places = np.arange(len(names)) + (number - 0.5 * (len(engines) - 1)) * thick
+        colour = style_of(engine).colour
+        costs.barh(places, rows["wall_s"] / rows["wall_s"].iloc[0], thick, color=colour)
+        errors.barh(places, rows["error"].abs(), thick, color=colour, label=engine)
+    costs.set_yticks(range(len(names)), names)
+    costs.invert_yaxis()
+    costs.set_xscale("log")
+    costs.axvline(1.0, color="#555555", linewidth=0.8)
+    costs.set_xlabel("run time over the scene as it is  [–]")
+    errors.set_xscale("log")
+    errors.set_xlabel("relative error of the peak  [–]")
+    drawing.legend(loc="outside lower center", ncols=len(engines), frameon=False)
     return drawing
 
 

@@ -1,12 +1,17 @@
 """The energy of free rocking, read from a history: what a method loses or adds by itself."""
 
 import itertools
+import math
 
 import numpy as np
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Response
+from analytic.response import History, Outcome, Response
+from studies.jobs import Job
+
+SAMPLES = 400
+"""Samples of a history from which energies are read."""
 
 
 def energy(block: RigidBlock, history: History) -> FloatArray:
@@ -57,3 +62,15 @@ def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
     energies = np.concatenate(parts)
     rise = float((energies - np.minimum.accumulate(energies)).max())
     return rise / float(energies.max()) if rise > 0.0 else 0.0
+
+
+def energy_drift(job: Job, response: Response) -> float:
+    """Return how much the energy of free rocking varies between two impacts, relative; or nan.
+
+    The largest over the flights after the ground motion; the energy is the exact model's, over its
+    value at the flight's end, and the samples next to an impact are left out.
+    """
+    if response.outcome is not Outcome.ROCKED:
+        return math.nan
+    drifts = (float(np.ptp(e) / e[-1]) for e in flights(job.block, job.motion, response))
+    return max(drifts, default=math.nan)

@@ -1,7 +1,7 @@
 """Colours, markers and panels; every figure is drawn from the columns of its CSV alone."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -219,3 +219,11 @@ def save(drawing: Figure, path: Path) -> None:
     draft = path.with_name(f".part.{path.name}")
     drawing.savefig(draft, dpi=130)
     draft.replace(path)
+
+
+def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:
+    """Write the figures of a study under their names into its folder; return the files."""
+    paths = [folder / f"{name}{suffix}" for name in drawings]
+    for drawing, path in zip(drawings.values(), paths, strict=True):
+        save(drawing, path)
+    return paths

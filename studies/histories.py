@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pandas as pd
@@ -17,6 +17,9 @@ from studies.findings import Finding, findings_text
 from studies.jobs import Job, summary
 from studies.journal import Row, open_journal
 from studies.runner import exit_code, run_jobs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 DEFAULT_SOURCES = {
     2: ("exact", "rk4", "average-acceleration"),
@@ -77,6 +80,8 @@ def command(
 
 def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Executor) -> list[Row]:
     """Run, store, draw and judge one figure; return its rows."""
+    from studies.figures import save_all
+
     cases = HISTORIES[figure]
     rows = run_jobs(
         [history_job(case, source) for case in cases for source in sources],
@@ -86,7 +91,7 @@ def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Exec
     table = tidy(cases, rows)
     if len(table):
         provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
-        redraw(folder, figure)
+        save_all({f"figure-{figure}": drawn(folder, figure)}, folder)
     text = report(figure, rows, table)
     provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
     print(text, end="\n\n")
@@ -126,13 +131,27 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
-def redraw(folder: Path, figure: int) -> Path:
-    """Draw a figure from its CSV alone."""
-    from studies.figures import draw_histories, save
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw every figure of a folder from its CSV alone."""
+    figures = [n for n in HISTORIES if (folder / f"figure-{n}.csv").is_file()]
+    return {f"figure-{n}": drawn(folder, n) for n in figures}
 
-    path = folder / f"figure-{figure}.png"
-    save(draw_histories(pd.read_csv(path.with_suffix(".csv")), TITLES[figure]), path)
-    return path
+
+def headline(folder: Path) -> str:
+    """Say how many of the paper's statements about its histories hold."""
+    text = "\n".join(path.read_text() for path in sorted(folder.glob("figure-*.txt")))
+    lines = text.splitlines()
+    held, missed = (
+        sum(line.startswith(word) for line in lines) for word in ("holds:", "does not hold:")
+    )
+    return f"Of the paper's {held + missed} statements about its time histories {held} hold."
+
+
+def drawn(folder: Path, figure: int) -> "Figure":
+    """Draw one figure from its CSV alone."""
+    from studies.figures import draw_histories
+
+    return draw_histories(pd.read_csv(folder / f"figure-{figure}.csv"), TITLES[figure])
 
 
 def report(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> str:

@@ -1,29 +1,32 @@
 """Draw a results folder again, from its CSVs alone."""
 
 from pathlib import Path
+from typing import Literal
 
-from studies import histories, sweep
 from studies.arguments import BadInputError
-from studies.cases import HISTORIES
+from studies.chapters import CHAPTERS
 
 
-def command(folder: Path, /) -> int:
+def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
     """Draw the figures of a results folder again, from its CSVs alone.
 
     Parameters
     ----------
     folder
-        Results of `rocking sweep` or `rocking histories`.
+        Results of a study.
+    suffix
+        Format of the files.
     """
-    drawn = sweep.redraw(folder) if (folder / "sweep.csv").is_file() else []
-    drawn += [
-        histories.redraw(folder, figure)
-        for figure in HISTORIES
-        if (folder / f"figure-{figure}.csv").is_file()
+    from studies.figures import save_all
+
+    drawn = [
+        path
+        for chapter in CHAPTERS
+        if any(folder.glob(chapter.source))
+        for path in save_all(chapter.pictures(folder), folder, f".{suffix}")
     ]
     if not drawn:
-        raise BadInputError(
-            f"FOLDER is {str(folder)!r}; it must hold a sweep.csv or the CSV of a figure"
-        )
-    print("\n".join(str(path) for path in drawn))
+        tables = ", ".join(chapter.source for chapter in CHAPTERS)
+        raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
+    print("\n".join(map(str, drawn)))
     return 0

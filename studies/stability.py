@@ -21,8 +21,10 @@ from studies.remedies import Remedied, answer
 from studies.runner import exit_code, fill_folder
 from studies.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 from studies.sources import Source
-from studies.stability_report import report
+from studies.stability_report import headline, pictures, report
 from studies.verdicts import BANDS, friction_of, invalidity, judge
+
+__all__ = ["command", "headline", "pictures", "report"]
 
 PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
 METHODS = (

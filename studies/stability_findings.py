@@ -19,18 +19,25 @@ def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> 
     )
 
 
-def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
+def verdicts_sentence(matrix: pd.DataFrame) -> str:
+    """Return how many of the extreme cases each source gets right."""
     valid = matrix[matrix["verdict"] != "invalid"]
     passed = valid["verdict"].isin(ACCEPTED_WORDS).groupby(valid["source"], sort=False)
     scores = ", ".join(f"{source} {int(good.sum())} of {len(good)}" for source, good in passed)
+    return (
+        "Of the extreme cases where the reference, which is the exact solution, holds, outcome "
+        f"right and peak within 1 %: {scores}."
+    )
+
+
+def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     wrong = failures(matrix)
     tried = wrong[wrong["remedy"] != ""]
     mended = tried[tried["remedy"] != NOTHING]
     void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
     unbounded = int(wrong["reason"].str.contains("not finite|thrown|BADQACC").sum())
     return [
-        "Of the extreme cases where the reference, which is the exact solution, holds, outcome "
-        f"right and peak within 1 %: {scores}.",
+        verdicts_sentence(matrix),
         f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
         f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
         f"Another setting mends {len(mended)} of {len(wrong)} failures.",

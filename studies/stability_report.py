@@ -3,29 +3,31 @@
 import math
 from pathlib import Path
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 from studies import provenance
 from studies.largest_step import LARGEST_STEP
 from studies.sensitivity import with_growth
-from studies.stability_findings import failures, findings
+from studies.stability_findings import failures, findings, verdicts_sentence
 from studies.verdicts import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ORDER = tuple(verdict.value for verdict in Verdict)
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the text, which findings.txt holds too."""
-    from studies.figures import save
-    from studies.stability_figure import draw_matrix
+    from studies.figures import save_all
 
     matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
     moved = with_growth(moved)
     text = moved.to_csv(index=False, na_rep="nan")
     provenance.write_text(folder / "sensitivity.csv", text)
-    save(draw_matrix(matrix), folder / "stability.png")
+    save_all(pictures(folder), folder)
     text = "\n\n".join(
         [
             "Verdicts on the extreme cases:\n" + verdicts_text(matrix),
@@ -40,6 +42,18 @@ def report(folder: Path) -> str:
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
+
+
+def headline(folder: Path) -> str:
+    """Return what the matrix of a folder shows first."""
+    return verdicts_sentence(_table(folder, "stability"))
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the matrix of a folder from its stability.csv alone."""
+    from studies.stability_figure import draw_matrix
+
+    return {"stability": draw_matrix(_table(folder, "stability"))}
 
 
 def _table(folder: Path, name: str) -> pd.DataFrame:

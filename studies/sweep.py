@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
@@ -11,6 +11,7 @@ from studies import provenance
 from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import sweep_cases
 from studies.differences import (
+    scientific,
     summarize,
     summary_text,
     with_reference,
@@ -23,6 +24,9 @@ from studies.jobs import Job
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
 from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PRODUCTS = ("sweep.csv", "summary.csv", "findings.txt", "provenance.json")
 
@@ -128,13 +132,15 @@ def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's sweep.csv; return the summary and the findings as text."""
+    from studies.figures import save_all
+
     rows = read(folder)
     compared = with_reference(rows)
     table = summarize(compared)
     provenance.write_text(folder / "summary.csv", table.to_csv(index=False, na_rep="nan"))
     conclusions = findings_text(findings(compared))
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    redraw(folder)
+    save_all(pictures(folder), folder)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, Δ is absolute, over",
@@ -147,16 +153,26 @@ def report(folder: Path) -> str:
     )
 
 
-def redraw(folder: Path) -> list[Path]:
-    """Draw every figure of a folder from its sweep.csv alone; return the files."""
-    from studies.figures import draw_sweep, save
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw every figure of a folder from its sweep.csv alone."""
+    from studies.figures import draw_sweep
 
     rows = read(folder)
-    paths = []
-    for figure in rows["figure"].unique():
-        paths.append(folder / f"figure-{figure}.png")
-        save(draw_sweep(rows, int(figure)), paths[-1])
-    return paths
+    return {f"figure-{n}": draw_sweep(rows, int(n)) for n in rows["figure"].unique()}
+
+
+def headline(folder: Path) -> str:
+    """Say how many outcomes each source gets right, and its largest error."""
+    summary = pd.read_csv(folder / "summary.csv")
+    last = summary[summary["figure"] == summary["figure"].iloc[-1]]
+    words = [
+        f"{line['source']} {line['agree']} of {line['cases']} ({scientific(line['max_error'])})"
+        for _, line in last[last["source"] != "exact"].iterrows()
+    ]
+    return (
+        "Outcomes that agree with the exact solution, and the largest relative error of a peak "
+        f"that survives in both: {', '.join(words)}."
+    )
 
 
 def read(folder: Path) -> pd.DataFrame:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pandas as pd
@@ -22,7 +22,10 @@ from studies.journal import Row
 from studies.runner import exit_code, fill_folder
 from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
-PRODUCTS = ("validate.csv", "errors.csv", "provenance.json")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PRODUCTS = ("validate.csv", "errors.csv", "findings.txt", "provenance.json")
 
 LEAST_NORMAL = 0.2
 """Cases are kept where the reference's normal force stays above this part of the weight."""
@@ -164,12 +167,15 @@ def report(folder: Path) -> str:
 
     errors.csv has, for each row, the exact peak and outcome, the error and κ.
     """
+    from studies.figures import save_all
+
     rows = pd.read_csv(folder / "validate.csv", dtype={"message": str})
     compared = with_reference(rows).assign(kappa=condition_numbers(rows))
     provenance.write_text(folder / "errors.csv", compared.to_csv(index=False, na_rep="nan"))
+    save_all(pictures(folder), folder)
     sensitivity = compared["kappa"].abs().clip(lower=1.0)
     calm = compared[compared["kappa"].abs() < WELL_CONDITIONED]
-    return "\n".join(
+    text = "\n".join(
         [
             "Relative error of the peak over cases that survive both, outcomes right:",
             summary_text(compared),
@@ -180,6 +186,30 @@ def report(folder: Path) -> str:
             "\nThe largest errors:",
             worst_text(compared),
         ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the errors of a folder against κ, from its errors.csv alone."""
+    from studies.diagrams import draw_conditioning
+
+    return {"validate": draw_conditioning(pd.read_csv(folder / "errors.csv"))}
+
+
+def headline(folder: Path) -> str:
+    """Say how many outcomes each source gets right, and its largest error over κ."""
+    compared = pd.read_csv(folder / "errors.csv")
+    scaled = compared["error"].abs() / compared["kappa"].abs().clip(lower=1.0)
+    words = [
+        f"{source} {int(rows['agrees'].sum())} of {len(rows)} "
+        f"({scientific(float(scaled[rows.index].max()))})"
+        for source, rows in compared.groupby("source", sort=False)
+    ]
+    return (
+        "On random cases, outcomes that agree with the exact solution, and the largest error of a "
+        f"peak over its condition number: {', '.join(words)}."
     )
 
 

@@ -8,21 +8,13 @@ import pytest
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
 from studies.diagrams import STYLES, pareto
+from studies.energy import energy_drift
 from studies.jobs import Job, ask
 from studies.methods import METHODS
 from studies.peers import solve_ivp_response
-from studies.precision import (
-    cheapest,
-    energy_drift,
-    measure,
-    observed_order,
-    precision_cases,
-    precision_jobs,
-    quick_values,
-    reduce,
-    with_errors,
-    work_precision,
-)
+from studies.precision import measure, precision_jobs, quick_values, reduce
+from studies.precision_report import cheapest, observed_order, with_errors, work_precision
+from studies.selection import chosen_cases
 from studies.sources import resolve
 
 
@@ -52,7 +44,7 @@ def test_every_method_answers_at_its_coarsest_setting(name):
 
 
 def test_sets_of_cases_survive_and_one_is_near_overturning():
-    sets = precision_cases(quick=False)
+    sets = chosen_cases(quick=False)
     peaks = {
         kind: [simulate(case.block, case.motion).peak_ratio for case in cases]
         for kind, cases in sets.items()

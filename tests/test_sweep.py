@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from studies import sweep
+from studies import redraw, sweep
 from studies.differences import summarize, with_reference, worst_cases
 from studies.executors import Local
 from studies.findings import findings
@@ -115,7 +115,8 @@ def run_sweep_row(omega_over_p):
 def test_figures_are_drawn_from_the_csv_alone(swept, tmp_path):
     folder = swept[0]
     (tmp_path / "sweep.csv").write_bytes((folder / "sweep.csv").read_bytes())
-    drawn = sweep.redraw(tmp_path)
+    assert redraw.command(tmp_path) == 0
+    drawn = sorted(tmp_path.glob("*.png"))
     assert [path.name for path in drawn] == [f"figure-{n}.png" for n in (6, 7, 8, 9)]
     for path in drawn:
         assert path.read_bytes() == (folder / path.name).read_bytes()
