@@ -6,6 +6,7 @@ are ground times, from the start of the base motion.
 """
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
+from analytic.conditioning import condition_numbers, conditioning
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
 from analytic.response import History, Impact, Outcome, Response
@@ -22,6 +23,8 @@ __all__ = [
     "Response",
     "RigidBlock",
     "SinePulse",
+    "condition_numbers",
+    "conditioning",
     "housner_restitution",
     "integrate",
     "peak_ratios",

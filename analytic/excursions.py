@@ -112,14 +112,20 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
 @kernel
 def highest(
     d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
-) -> float:
-    """Return the maximum of sum d[i] x^i on [0, end] if it exceeds `above`, else `above`."""
+) -> tuple[float, float]:
+    """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
+
+    Else `above` itself, and -1.
+    """
     bound = d[0]
     for i in range(1, order + 1):
         bound += max(d[i], 0.0)
     if bound <= above:
-        return above
-    top = max(above, value(d, order, end))
+        return above, -1.0
+    top, where = above, -1.0
+    last = value(d, order, end)
+    if last > top:
+        top, where = last, end
     rate = work[0]
     shift = max(lead, 1)
     degree = order - shift
@@ -129,12 +135,14 @@ def highest(
         least += min(rate[i], 0.0) if i > 0 else rate[i]
         most += max(rate[i], 0.0) if i > 0 else rate[i]
     if least > 0.0 or most < 0.0:
-        return top
+        return top, where
     x = next_root(rate, degree, 0.0, work[1:])
     while x < end:
-        top = max(top, value(d, order, x))
+        here = value(d, order, x)
+        if here > top:
+            top, where = here, x
         x = next_root(rate, degree, x, work[1:])
-    return top
+    return top, where
 
 
 @kernel
@@ -262,7 +270,7 @@ def march(
         x = first_crossing(d, order, lead, 0.0, spare)
         hit = x <= 1.0
         x = min(x, 1.0)
-        peak = highest(d, order, lead, x, peak, spare)
+        peak, _ = highest(d, order, lead, x, peak, spare)
         fallen = peak >= LYING and first_crossing(d, order, 0, LYING, spare) <= x
         if fallen:
             x = first_crossing(d, order, 0, LYING, spare)

@@ -198,13 +198,7 @@ def peak_ratios(
         If an argument is outside its range or the shapes do not broadcast.
     """
     declared = find_model(model)
-    alpha = np.asarray(alpha, dtype=np.float64)
-    if restitution is None:
-        restitution = np.maximum(np.vectorize(housner_restitution, otypes=[float])(alpha), 0.0)
-    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
-    shape = columns[0].shape
-    cases = np.stack([np.ravel(column).astype(np.float64) for column in columns])
-    check_cases(cases)
+    cases, shape = stack_cases(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
     constants = np.stack(declared.constants(cases[0]))
     exactly = accuracy(TOLERANCE)
     peaks, codes = np.empty(cases.shape[1]), np.empty(cases.shape[1], dtype=np.int8)
@@ -225,6 +219,34 @@ def peak_ratios(
     return peaks.reshape(shape), np.array(OUTCOMES, dtype=object)[codes].reshape(shape)
 
 
+def stack_cases(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    restitution: ArrayLike | None,
+) -> tuple[FloatArray, tuple[int, ...]]:
+    """Return the parameters of `peak_ratios`, checked, one case a column, and their shape."""
+    alpha = np.asarray(alpha, dtype=np.float64)
+    if restitution is None:
+        restitution = np.maximum(np.vectorize(housner_restitution, otypes=[float])(alpha), 0.0)
+    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
+    cases = np.stack([np.ravel(column).astype(np.float64) for column in columns])
+    check_cases(cases)
+    return cases, columns[0].shape
+
+
+@kernel
+def pulse_law(linear: bool, constants: FloatArray, case: FloatArray, segments: FloatArray) -> Law:
+    """Return the law of a column of `stack_cases`, and write its pulse into segments[0]."""
+    k, saddle, factor, alpha, onset = constants
+    _, amplitude, omega, half_cycles, eta = case
+    segments[0, 1] = half_cycles * math.pi / omega
+    segments[0, 2] = amplitude
+    segments[0, 3] = omega
+    return Law(linear, k, saddle, factor, alpha, onset, eta)
+
+
 @kernel
 def solve_pulses(
     linear: bool,
@@ -239,15 +261,10 @@ def solve_pulses(
     segments = np.zeros((1, 7))
     record = Record(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
     for i in range(cases.shape[1]):
-        k, saddle, factor, alpha, onset = constants[:, i]
-        _, amplitude, omega, half_cycles, eta = cases[:, i]
-        segments[0, 1] = half_cycles * math.pi / omega
-        segments[0, 2] = amplitude
-        segments[0, 3] = omega
-        law = Law(linear, k, saddle, factor, alpha, onset, eta)
+        law = pulse_law(linear, constants[:, i], cases[:, i], segments)
         end = march(law, exactly, segments, 0.0, record, work)
         codes[i] = end.outcome
-        peaks[i] = end.peak / alpha
+        peaks[i] = end.peak / law.alpha
         if end.outcome == OVERTURNED:
             peaks[i] = math.inf
         elif end.outcome in (TOO_LONG, BROKEN):

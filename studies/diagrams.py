@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.differences import conditioning_of
 from studies.figures import Style, style_of
 
 STYLES = {
@@ -65,7 +66,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     """
     drawing = Figure(figsize=(7.6, 5.2), layout="constrained")
     axes = drawing.subplots()
-    kappa = compared["kappa"].abs()
+    kappa = conditioning_of(compared)
     for source, rows in compared.groupby("source", sort=False):
         style = style_of(str(source))
         axes.plot(
@@ -79,7 +80,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
             label=str(source),
         )
     axes.set(xscale="log", yscale="log")
-    axes.set_xlabel("condition number  |κ| = |∂ln θmax/∂ln a_p|  [–]")
+    axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
     slope = np.array([1.0, max(float(kappa.max()), 10.0)])
     for level in (1e-6, 1e-4):

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analytic import peak_ratios
+from analytic import condition_numbers, peak_ratios
 from analytic.motion import FloatArray
 from studies.cases import PULSES
 
@@ -55,46 +55,54 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def exact_peaks(cases: pd.DataFrame, scale: float = 1.0) -> tuple[FloatArray, NDArray[Any]]:
-    """Return the exact peaks and outcomes of the cases, their amplitudes multiplied by `scale`.
+def posed_cases(
+    cases: pd.DataFrame,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the first four arguments of `peak_ratios`.
 
     The cases have columns aspect and omega_over_p, amplitude_g or excess_g, half_cycles or pulse.
     """
     steepness = 1.0 / cases["aspect"].to_numpy(float)
     amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
     half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
-    return peak_ratios(
-        np.arctan(steepness),
-        scale * amplitude.to_numpy(float),
-        cases["omega_over_p"].to_numpy(float),
-        half_cycles.to_numpy(),
+    return (
+        np.arctan(steepness, dtype=np.float64),
+        amplitude.to_numpy(np.float64),
+        cases["omega_over_p"].to_numpy(np.float64),
+        half_cycles.to_numpy(np.float64),
     )
 
 
-NUDGE = 1e-5
-"""Relative difference of the amplitude over which a condition number is taken."""
+def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
+    """Return the exact peaks and outcomes of the cases."""
+    return peak_ratios(*posed_cases(cases))
 
 
-def condition_numbers(cases: pd.DataFrame) -> FloatArray:
-    """Return kappa = d ln(peak) / d ln(a_p) of the exact solution, by a central difference.
+def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
+    """Add kappa = d ln(peak)/d ln(a_p) and kappa_eta = d ln(peak)/d ln(eta) of the exact solution.
 
-    It is the factor by which a small relative error of the pulse grows into one of the peak; inf
-    where the block overturns within that difference, nan where it overturns or rests anyway.
+    They are the factors by which a small relative error of the pulse, or of the velocity ratio at
+    impacts, grows into one of the peak; nan where no peak survives.
     """
-    up, down = (exact_peaks(cases, 1.0 + sign * NUDGE)[0] for sign in (1.0, -1.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        kappa: FloatArray = np.log(up / down) / (2.0 * NUDGE)
-    return kappa
+    found = condition_numbers(*posed_cases(cases))
+    return cases.assign(kappa=found.amplitude, kappa_eta=found.restitution)
+
+
+def conditioning_of(cases: pd.DataFrame) -> "pd.Series[float]":
+    """Return the larger of abs(kappa) and abs(kappa_eta), at least 1."""
+    return cases[["kappa", "kappa_eta"]].abs().max(axis=1, skipna=False).clip(lower=1.0)
 
 
 def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the case in which each source errs most, with its condition number kappa."""
+    """Return the case in which each source errs most, with its condition numbers."""
     erring = compared.dropna(subset="error")
     place = erring["error"].abs().groupby(erring["source"]).idxmax()
     order = [source for source in compared["source"].unique() if source in place]
     worst = erring.loc[place.loc[order]]
     columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
-    return worst[columns].assign(kappa=condition_numbers(worst))
+    return with_conditioning(worst[[*columns, "pulse", "excess_g"]])[
+        [*columns, "kappa", "kappa_eta"]
+    ]
 
 
 def worst_text(worst: pd.DataFrame) -> str:
@@ -103,6 +111,7 @@ def worst_text(worst: pd.DataFrame) -> str:
         exact_peak=worst["exact_peak"].map("{:.4f}".format),
         error=worst["error"].map(scientific),
         kappa=worst["kappa"].map("{:.3g}".format),
+        kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
     )
     return shown.rename(
         columns={
@@ -111,6 +120,7 @@ def worst_text(worst: pd.DataFrame) -> str:
             "omega_over_p": "ω/p",
             "exact_peak": "θmax/θcr",
             "kappa": "κ",
+            "kappa_eta": "κη",
         }
     ).to_string(index=False)
 

@@ -7,9 +7,8 @@ from functools import cache
 
 import pandas as pd
 
-from analytic import simulate
+from analytic import conditioning, simulate
 from analytic.response import Response
-from studies.differences import NUDGE
 from studies.extremes import Extreme
 from studies.jobs import Job, summary
 from studies.journal import Row
@@ -18,6 +17,8 @@ from studies.sources import resolve
 QUANTITIES = ("amplitude", "width", "friction")
 DELTAS = tuple(10.0**-n for n in range(9, 2, -1))
 QUICK_DELTAS = (1e-9, 1e-6, 1e-3)
+NUDGE = 1e-5
+"""Relative difference of the width over which a condition number is taken."""
 FRICTION = 1.0
 """Friction that is perturbed: more than these cases need, less than any engine's largest."""
 
@@ -89,13 +90,15 @@ def reduce_sensitivity(job: Job, response: Response) -> Row:
 
 @cache
 def condition_number(case: Extreme, quantity: str) -> float:
-    """Return κ = d ln(peak) / d ln(quantity) of the exact solution, by a central difference.
+    """Return κ = d ln(peak) / d ln(quantity) of the exact solution.
 
-    For the amplitude this is `studies.differences.condition_numbers`; it is zero for friction,
-    which the exact solution does not have.
+    For a width it is a central difference; it is zero for friction, which the exact solution does
+    not have.
     """
     if quantity == "friction":
         return 0.0
+    if quantity == "amplitude":
+        return conditioning(case.block, case.motion)[0]
     up, down = (exact_change(case, quantity, sign * NUDGE) for sign in (1.0, -1.0))
     return (up - down) / (2.0 * NUDGE)
 

@@ -146,7 +146,7 @@ def report(folder: Path) -> str:
             "Difference from exact: errors of the peak θmax/θcr are relative, Δ is absolute, over",
             "cases that both survive; outcomes right, overturned falsely, overturning missed:",
             summary_text(table),
-            "\nThe case in which each source errs most; κ = ∂ln θmax/∂ln a_p there:",
+            "\nThe case where each source errs most; κ = ∂ln θmax/∂ln a_p, κη = ∂ln θmax/∂ln η:",
             worst_text(worst_cases(compared)),
             f"\nThe paper's conclusions:\n{conclusions}",
         ]

@@ -15,7 +15,12 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from studies import provenance
 from studies.arguments import Count, Positive, check_sources, several
-from studies.differences import condition_numbers, scientific, with_reference
+from studies.differences import (
+    conditioning_of,
+    scientific,
+    with_conditioning,
+    with_reference,
+)
 from studies.executors import Executor, Local
 from studies.jobs import Job
 from studies.journal import Row
@@ -170,18 +175,19 @@ def report(folder: Path) -> str:
     from studies.figures import save_all
 
     rows = pd.read_csv(folder / "validate.csv", dtype={"message": str})
-    compared = with_reference(rows).assign(kappa=condition_numbers(rows))
+    compared = with_conditioning(with_reference(rows))
     provenance.write_text(folder / "errors.csv", compared.to_csv(index=False, na_rep="nan"))
     save_all(pictures(folder), folder)
-    sensitivity = compared["kappa"].abs().clip(lower=1.0)
-    calm = compared[compared["kappa"].abs() < WELL_CONDITIONED]
+    sensitivity = conditioning_of(compared)
+    calm = compared[sensitivity < WELL_CONDITIONED]
     text = "\n".join(
         [
             "Relative error of the peak over cases that survive both, outcomes right:",
             summary_text(compared),
-            f"\nThe same where κ = ∂ln θmax/∂ln a_p is below {WELL_CONDITIONED:g}:",
+            "\nThe same where κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|, is below "
+            f"{WELL_CONDITIONED:g}:",
             summary_text(calm),
-            "\nError over κ, the relative error of the pulse that would do as much:",
+            "\nError over κ, the relative error of the pulse or of the impact that does as much:",
             summary_text(compared.assign(error=compared["error"] / sensitivity)),
             "\nThe largest errors:",
             worst_text(compared),
@@ -201,7 +207,7 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say how many outcomes each source gets right, and its largest error over κ."""
     compared = pd.read_csv(folder / "errors.csv")
-    scaled = compared["error"].abs() / compared["kappa"].abs().clip(lower=1.0)
+    scaled = compared["error"].abs() / conditioning_of(compared)
     words = [
         f"{source} {int(rows['agrees'].sum())} of {len(rows)} "
         f"({scientific(float(scaled[rows.index].max()))})"
@@ -238,6 +244,7 @@ def worst_text(compared: pd.DataFrame, count: int = 5) -> str:
         omega_over_p=worst["omega_over_p"].map("{:.3f}".format),
         exact_peak=worst["exact_peak"].map("{:.3g}".format),
         kappa=worst["kappa"].map("{:.3g}".format),
+        kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
     )
     names = {
         "source": "source",
@@ -252,5 +259,6 @@ def worst_text(compared: pd.DataFrame, count: int = 5) -> str:
         "exact_peak": "peak",
         "error": "error",
         "kappa": "κ",
+        "kappa_eta": "κη",
     }
     return shown[list(names)].rename(columns=names).to_string(index=False)

@@ -10,7 +10,7 @@ import pytest
 from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
 from studies.__main__ import run
-from studies.differences import condition_numbers
+from studies.differences import with_conditioning
 from studies.energy import energy, growth
 from studies.executors import Local
 from studies.extremes import QUICK, Extreme, contact_settings, extremes
@@ -24,7 +24,7 @@ from studies.largest_step import (
     search_job,
 )
 from studies.remedies import NOTHING, answer, remedies
-from studies.sensitivity import CASES, condition_number, perturbed, with_growth
+from studies.sensitivity import CASES, condition_number, exact_change, perturbed, with_growth
 from studies.sources import resolve
 from studies.stability import METHODS, matrix_jobs, put, reduce, speechless, stability
 from studies.stability_figure import MARKS
@@ -187,9 +187,10 @@ def test_kappa_is_that_of_the_other_studies(case):
             "half_cycles": [case.half_cycles],
         }
     )
-    # the same central difference, by another way to the peak
-    expected = condition_numbers(table)[0]
-    assert condition_number(case, "amplitude") == pytest.approx(expected, rel=1e-6)
+    expected = with_conditioning(table)["kappa"][0]
+    assert condition_number(case, "amplitude") == pytest.approx(expected, rel=1e-9)
+    up, down = (exact_change(case, "amplitude", sign * 1e-6) for sign in (1, -1))
+    assert (up - down) / 2e-6 == pytest.approx(expected, rel=1e-3)
     assert condition_number(case, "friction") == 0.0
 
 

@@ -1,0 +1,258 @@
+"""How far small errors move a peak: condition numbers, carried along with the solution.
+
+The derivatives of a response by ln(a_p) and by ln(eta) obey the equation of motion linearized
+about it. They start from zero at each uplift, where the block is at rest, jump with the velocity
+at each impact, whose time moves too, and end in the derivative of the peak.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.block import RigidBlock
+from analytic.closed_form import free_peak, work_to
+from analytic.compiled import kernel
+from analytic.excursions import (
+    REST,
+    ROCKED,
+    UPLIFT,
+    Record,
+    expand,
+    highest,
+    march,
+    workspace,
+)
+from analytic.models import Law, find_model
+from analytic.motion import FloatArray, Motion
+from analytic.polynomial import ORDER, slope, value
+from analytic.rest import acceleration, ground
+from analytic.simulate import pulse_law, scaled_segments, stack_cases
+from analytic.taylor import TOLERANCE, Accuracy, accuracy
+
+AMPLITUDE, RESTITUTION = 0, 1
+"""Rows of the derivatives: by ln(a_p), by ln(eta)."""
+RATE = 1
+"""Column of the derivative of the velocity, beside that of the rotation."""
+SMOOTH = 1e-9
+"""An acceleration smaller than this is that of an uplift where the ground passes the onset."""
+
+
+class Conditioning(NamedTuple):
+    """Condition numbers of a peak; nan where the block does not rock and survive.
+
+    amplitude is d ln(peak)/d ln(a_p), a_p being the scale of the ground motion; restitution is d
+    ln(peak)/d ln(eta).
+    """
+
+    amplitude: FloatArray
+    restitution: FloatArray
+
+
+def condition_numbers(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str = "exact",
+    restitution: ArrayLike | None = None,
+) -> Conditioning:
+    """Return the condition numbers of the peaks that `peak_ratios` returns.
+
+    Parameters and errors are those of `peak_ratios`; the arrays have the broadcast shape.
+    """
+    declared = find_model(model)
+    cases, shape = stack_cases(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
+    constants = np.stack(declared.constants(cases[0]))
+    found = np.empty((2, cases.shape[1]))
+    condition_pulses(declared.linear, accuracy(TOLERANCE), constants, cases, found)
+    return Conditioning(*(row.reshape(shape) for row in found))
+
+
+def conditioning(block: RigidBlock, motion: Motion, model: str = "exact") -> tuple[float, float]:
+    """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta."""
+    law = find_model(model).law(block.alpha, block.restitution)
+    segments = scaled_segments(block, motion)
+    found = condition(law, accuracy(TOLERANCE), segments, workspace())
+    return float(found[AMPLITUDE]), float(found[RESTITUTION])
+
+
+@kernel
+def condition_pulses(
+    linear: bool,
+    exactly: Accuracy,
+    constants: FloatArray,
+    cases: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Fill `found` with the condition numbers of each case, a column of `stack_cases`."""
+    work = workspace()
+    segments = np.zeros((1, 7))
+    for i in range(cases.shape[1]):
+        law = pulse_law(linear, constants[:, i], cases[:, i], segments)
+        found[AMPLITUDE, i], found[RESTITUTION, i] = condition(law, exactly, segments, work)
+
+
+@kernel
+def condition(
+    law: Law, accuracy: Accuracy, segments: FloatArray, work: FloatArray
+) -> tuple[float, float]:
+    """Return both condition numbers of one response; nan unless it rocks and survives."""
+    log = np.empty((64, 4))
+    nothing = np.empty(0)
+    while True:
+        record = Record(nothing, np.empty((2, 0)), log, nothing)
+        end = march(law, accuracy, segments, 0.0, record, work)
+        if end.events <= log.shape[0]:
+            break
+        log = np.empty((end.events, 4))
+    if end.outcome != ROCKED:
+        return math.nan, math.nan
+    return follow(law, accuracy, segments, log[: end.events], work)
+
+
+@kernel
+def follow(
+    law: Law, accuracy: Accuracy, segments: FloatArray, log: FloatArray, work: FloatArray
+) -> tuple[float, float]:
+    """Follow the derivatives through the excursions between the events of a march's log."""
+    moved = np.zeros(2)
+    state = np.zeros((2, 2))
+    last = segments[-1, 1]
+    peak = y = v = 0.0
+    j = 0
+    for n in range(log.shape[0]):
+        kind, tau, before, after = log[n]
+        if kind == REST:
+            continue
+        while j < segments.shape[0] and tau >= segments[j, 1]:
+            j += 1
+        a = ground(segments, j, tau)
+        if kind == UPLIFT:
+            side = -math.copysign(1.0, a)
+            lead = 3 if abs(acceleration(law, side, a, 0.0)) < SMOOTH else 2
+            v = 0.0
+            state[:] = 0.0
+        else:
+            side, v, lead = math.copysign(1.0, after), abs(after), 1
+            strike(law, side, a, -abs(before), state)
+            if v == 0.0:
+                side, lead = -math.copysign(1.0, a), 2
+        until = log[n + 1, 1] if n + 1 < log.shape[0] else last
+        y, v, peak = fly(
+            law, accuracy, segments, j, side, tau, until, lead, v, state, peak, moved, work
+        )
+    if log[-1, 0] != REST:
+        peak = come_down(law, y, v, state, peak, moved)
+    return moved[AMPLITUDE] / peak, moved[RESTITUTION] / peak
+
+
+@kernel
+def strike(law: Law, side: float, a: float, before: float, state: FloatArray) -> None:
+    """Take the derivatives through an impact, onto `side`; `before` < 0 is the velocity of y."""
+    here, there = acceleration(law, -side, a, 0.0), acceleration(law, side, a, 0.0)
+    for i in range(2):
+        later = -state[i, 0] / before
+        lost = law.eta * before if i == RESTITUTION else 0.0
+        velocity = -law.eta * (state[i, RATE] + here * later) - lost
+        state[i, 0] = law.eta * before * later
+        state[i, RATE] = velocity - there * later
+
+
+@kernel
+def fly(
+    law: Law,
+    accuracy: Accuracy,
+    segments: FloatArray,
+    j: int,
+    side: float,
+    tau: float,
+    until: float,
+    lead: int,
+    v: float,
+    state: FloatArray,
+    peak: float,
+    moved: FloatArray,
+    work: FloatArray,
+) -> tuple[float, float, float]:
+    """Follow one excursion and its derivatives from the base at `tau` to `until`.
+
+    Returns y, its velocity, and the largest rotation so far, whose derivatives are in `moved`.
+    """
+    series, d, spare = work[0], work[4], work[5:]
+    delta = np.empty((3, ORDER + 1))
+    order, y = accuracy.order, 0.0
+    while tau < until:
+        while tau >= segments[j, 1]:
+            j += 1
+        series[0], series[1] = y, v
+        h = expand(law, accuracy, segments[j], side, tau, lead, work)
+        end = min(segments[j, 1], until)
+        landed = tau + h >= end
+        if landed:
+            h = end - tau
+        expand_derivatives(law, order, work, state, delta)
+        scale = 1.0
+        for i in range(order + 1):
+            d[i] = series[i] * scale
+            delta[0, i] *= scale
+            delta[1, i] *= scale
+            scale *= h
+        peak, where = highest(d, order, lead, 1.0, peak, spare)
+        for i in range(2):
+            if where >= 0.0:
+                moved[i] = value(delta[i], order, where)
+            state[i, 0] = value(delta[i], order, 1.0)
+            state[i, RATE] = slope(delta[i], order, 1.0) / h
+        y, v, lead = value(d, order, 1.0), slope(d, order, 1.0) / h, 0
+        tau = end if landed else tau + h
+    return y, v, peak
+
+
+@kernel
+def expand_derivatives(
+    law: Law, order: int, work: FloatArray, state: FloatArray, delta: FloatArray
+) -> None:
+    """Fill delta[:2] with the series of the derivatives, from those `expand` left in `work`.
+
+    Exact: d'' = (cos z - f sin z) d - cos z df, with df = f for the amplitude and 0 for eta.
+    """
+    f, sine, cosine = work[1], work[2], work[3]
+    stiff = delta[2]
+    delta[:2, 0] = state[:, 0]
+    delta[:2, 1] = state[:, RATE]
+    for n in range(order - 1):
+        forced = law.k * law.k * law.factor * f[n]
+        if not law.linear:
+            forced, stiff[n] = 0.0, cosine[n]
+            for m in range(n + 1):
+                forced += f[m] * cosine[n - m]
+                stiff[n] -= f[m] * sine[n - m]
+        for i in range(2):
+            pulled = law.k * law.k * delta[i, n]
+            if not law.linear:
+                pulled = 0.0
+                for m in range(n + 1):
+                    pulled += stiff[m] * delta[i, n - m]
+            shaken = forced if i == AMPLITUDE else 0.0
+            delta[i, n + 2] = (pulled - shaken) / ((n + 1) * (n + 2))
+
+
+@kernel
+def come_down(
+    law: Law, y: float, v: float, state: FloatArray, peak: float, moved: FloatArray
+) -> float:
+    """Take the derivatives on to the peak of the free rocking after the motion, if it is higher."""
+    ahead = free_peak(law, y, v)
+    if ahead <= peak:
+        return peak
+    kept = law.eta * law.eta if v < 0.0 else 1.0
+    here, there = -acceleration(law, 1.0, 0.0, y), -acceleration(law, 1.0, 0.0, ahead)
+    work = 0.5 * v * v + work_to(law, y)
+    for i in range(2):
+        change = kept * (v * state[i, RATE] + here * state[i, 0])
+        if i == RESTITUTION and v < 0.0:
+            change += 2.0 * kept * work
+        moved[i] = change / there
+    return ahead
