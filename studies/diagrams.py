@@ -85,7 +85,11 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     slope = np.array([1.0, max(float(kappa.max()), 10.0)])
     for level in (1e-6, 1e-4):
         axes.plot(slope, level * slope, color="#999999", linewidth=0.8, zorder=-1)
-        axes.annotate(f"{level:.0e} κ", (slope[1], level * slope[1]), fontsize=8, color="#666666")
+        middle = float(np.sqrt(slope[1]))
+        axes.annotate(
+            f"{level:.0e} κ", (middle, 1.4 * level * middle), fontsize=8, color="#666666", ha="right"
+        )
+    axes.set_ylim(top=10.0 * float(compared["error"].abs().max()))
     axes.legend(loc="upper left", frameon=False)
     axes.grid(alpha=0.25)
     return drawing

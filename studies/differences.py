@@ -66,10 +66,10 @@ def posed_cases(
     amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
     half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
     return (
-        np.arctan(steepness, dtype=np.float64),
-        amplitude.to_numpy(np.float64),
-        cases["omega_over_p"].to_numpy(np.float64),
-        half_cycles.to_numpy(np.float64),
+        np.arctan(np.asarray(steepness, np.float64)),
+        np.asarray(amplitude, np.float64),
+        np.asarray(cases["omega_over_p"], np.float64),
+        np.asarray(half_cycles, np.float64),
     )
 
 
