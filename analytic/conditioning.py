@@ -24,7 +24,7 @@ from analytic.excursions import (
     march,
     workspace,
 )
-from analytic.models import Law, find_model
+from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.polynomial import ORDER, slope, value
 from analytic.rest import acceleration, ground
@@ -55,7 +55,7 @@ def condition_numbers(
     amplitude_g: ArrayLike,
     omega_over_p: ArrayLike,
     half_cycles: ArrayLike,
-    model: str = "exact",
+    model: str | Model = "exact",
     restitution: ArrayLike | None = None,
 ) -> Conditioning:
     """Return the condition numbers of the peaks that `peak_ratios` returns.
@@ -70,7 +70,9 @@ def condition_numbers(
     return Conditioning(*(row.reshape(shape) for row in found))
 
 
-def conditioning(block: RigidBlock, motion: Motion, model: str = "exact") -> tuple[float, float]:
+def conditioning(
+    block: RigidBlock, motion: Motion, model: str | Model = "exact"
+) -> tuple[float, float]:
     """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta."""
     law = find_model(model).law(block.alpha, block.restitution)
     segments = scaled_segments(block, motion)

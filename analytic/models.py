@@ -119,9 +119,16 @@ ONSET_MATCHED = Model(
 MODELS = {model.name: model for model in (EXACT, HOUSNER, MODIFIED, ONSET_MATCHED)}
 
 
-def find_model(name: str) -> Model:
-    """Return the model called `name`; raise ValueError with the allowed names otherwise."""
-    try:
-        return MODELS[name]
-    except KeyError:
-        raise ValueError(f"model is {name!r}; it must be one of {', '.join(MODELS)}") from None
+def find_model(model: str | Model) -> Model:
+    """Return the model of a name, or a model as it is.
+
+    Raises
+    ------
+    ValueError
+        If there is no model of that name; the message lists what there is.
+    """
+    if isinstance(model, Model):
+        return model
+    if model not in MODELS:
+        raise ValueError(f"model is {model!r}; it must be one of {', '.join(MODELS)}")
+    return MODELS[model]

@@ -25,7 +25,7 @@ from analytic.excursions import (
     march,
     workspace,
 )
-from analytic.models import Law, find_model
+from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.taylor import TOLERANCE, Accuracy, accuracy
@@ -48,7 +48,7 @@ CHUNK = 4096
 def simulate(
     block: RigidBlock,
     motion: Motion,
-    model: str = "exact",
+    model: str | Model = "exact",
     *,
     duration: float | None = None,
     times: ArrayLike | None = None,
@@ -165,7 +165,7 @@ def peak_ratios(
     amplitude_g: ArrayLike,
     omega_over_p: ArrayLike,
     half_cycles: ArrayLike,
-    model: str = "exact",
+    model: str | Model = "exact",
     restitution: ArrayLike | None = None,
 ) -> tuple[FloatArray, NDArray[np.object_]]:
     """Solve many responses to sine pulses, on all cores.

@@ -27,7 +27,7 @@ from analytic.excursions import (
     Record,
     note,
 )
-from analytic.models import Law, find_model
+from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
@@ -45,7 +45,7 @@ MAX_STEPS = 50_000_000
 def integrate(
     block: RigidBlock,
     motion: Motion,
-    model: str = "exact",
+    model: str | Model = "exact",
     *,
     method: str = "rk4",
     step: float = STEP,

@@ -36,6 +36,15 @@ resumable. The full study takes about a quarter of an hour on one core, --quick 
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
 history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv.""",
+    "linearizations": """What in a linearization matters: onset, frequency and saddle, each alone.
+
+All eight combinations against the exact solution, on the paper's cases and on a wider grid, and
+the paper's conclusions (a), (b), (c). Writes linearizations.csv, quantiles.csv, a PNG and
+findings.txt. A few seconds.""",
+    "free": """Free rocking: quarter periods and decay of each source against the closed forms.
+
+Over the rotation from which the block falls and over H/B. Writes free.csv, free.png and
+findings.txt; resumable. Less than a minute.""",
     "stability": """Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
 
 Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),

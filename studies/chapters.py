@@ -89,6 +89,23 @@ CHAPTERS: tuple[Chapter, ...] = (
         minutes=(0.1, 0.1),
     ),
     Chapter(
+        study="linearizations",
+        folder="linearizations",
+        question="What in a linearization matters, and do the paper's conclusions hold?",
+        source="linearizations.csv",
+        tables=("linearizations.csv",),
+        quick=(),
+        minutes=(0.1, 0.1),
+    ),
+    Chapter(
+        study="free",
+        folder="free",
+        question="Is free rocking as the closed forms say?",
+        source="free.csv",
+        tables=(),
+        minutes=(0.1, 0.3),
+    ),
+    Chapter(
         study="validate",
         folder="validate",
         question="And cases that nothing was tuned on?",

@@ -1,59 +1,13 @@
-"""Error against run time, a line for each method; error against conditioning, a mark a case."""
+"""Diagrams of errors: against conditioning, their distribution, of free rocking, of omissions."""
+
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from studies.differences import conditioning_of
-from studies.figures import Style, style_of
-
-STYLES = {
-    "Taylor series": Style("#000000", "-", "o", 2.2),
-    "SciPy RK45": Style("#999999", "-", "s"),
-    "SciPy DOP853": Style("#777777", "--", "D"),
-    "SciPy Radau": Style("#bbbbbb", "-.", "v"),
-    "SciPy LSODA": Style("#555555", ":", "^"),
-    "RK4": Style("#56B4E9", "-", "o"),
-    "RK4, contact to 1e-6": Style("#56B4E9", "--", "x"),
-    "average acceleration": Style("#E69F00", "-", "s"),
-    "housner, closed form": Style("#D55E00", "", "*"),
-    "modified, closed form": Style("#0072B2", "", "*"),
-    "onset-matched, closed form": Style("#CC79A7", "", "*"),
-    "pybullet naive": Style("#009E73", ":", "x"),
-    "pybullet fixed": Style("#009E73", "--", "s"),
-    "pybullet landing": Style("#009E73", "-", "o", 2.0),
-    "pybullet fixed, iterations": Style("#009E73", "-.", "+", 0.8),
-    "mujoco naive": Style("#7A4FBF", ":", "x"),
-    "mujoco fixed": Style("#7A4FBF", "--", "v"),
-    "mujoco landing": Style("#7A4FBF", "-", "^", 2.0),
-    "mujoco fixed, iterations": Style("#7A4FBF", "-.", "+", 0.8),
-}
-LOWEST = 1e-16
-"""Errors below are drawn here, on the floor of double precision."""
-
-
-def draw_precision(table: pd.DataFrame) -> Figure:
-    """Draw the median error of the peak against the run time of a case, a panel for each set.
-
-    Parameters
-    ----------
-    table : DataFrame
-        The columns of work-precision.csv.
-    """
-    drawing = Figure(figsize=(11.0, 7.6), layout="constrained")
-    sets = list(table["set"].unique())
-    panels = drawing.subplots(1, len(sets), sharey=True, squeeze=False)[0]
-    for axes, kind in zip(panels, sets, strict=True):
-        _one_set(axes, table[table["set"] == kind])
-        axes.set_title(f"{kind} cases")
-        axes.set_xlabel("run time of a case, set-up apart  [s]")
-    panels[0].set_ylabel("median relative error of the peak  [–]")
-    handles = [_handle(name) for name in STYLES if name in set(table["method"])]
-    handles.append(Line2D([], [], color="#FFD54A", linewidth=5, alpha=0.6, label="Pareto front"))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
-    return drawing
+from studies.figures import LOWEST, style_of
 
 
 def draw_conditioning(compared: pd.DataFrame) -> Figure:
@@ -87,11 +41,85 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
         axes.plot(slope, level * slope, color="#999999", linewidth=0.8, zorder=-1)
         middle = float(np.sqrt(slope[1]))
         axes.annotate(
-            f"{level:.0e} κ", (middle, 1.4 * level * middle), fontsize=8, color="#666666", ha="right"
+            f"{level:.0e} κ",
+            (middle, 1.4 * level * middle),
+            fontsize=8,
+            color="#666666",
+            ha="right",
         )
     axes.set_ylim(top=10.0 * float(compared["error"].abs().max()))
     axes.legend(loc="upper left", frameon=False)
     axes.grid(alpha=0.25)
+    return drawing
+
+
+def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
+    """Draw which part of the cases errs by less than what, a panel for each grid.
+
+    Parameters
+    ----------
+    quantiles : DataFrame
+        Columns grid, changed, quantile, error.
+    titles : mapping
+        Names of the lines by `changed`.
+    """
+    known = {"000": "housner", "100": "onset-matched", "111": "modified"}
+    grids = list(quantiles["grid"].unique())
+    drawing = Figure(figsize=(10.0, 5.6), layout="constrained")
+    panels = drawing.subplots(1, len(grids), sharex=True, sharey=True, squeeze=False)[0]
+    for axes, name in zip(panels, grids, strict=True):
+        for changed, rows in quantiles[quantiles["grid"] == name].groupby("changed", sort=False):
+            style = style_of(known.get(str(changed), ""))
+            axes.plot(
+                rows["error"],
+                rows["quantile"],
+                color=style.colour,
+                linestyle=style.line or (0, (1 + int(str(changed)[1]) * 4, 2)),
+                linewidth=2.0 if changed in known else 0.9,
+                label=titles[str(changed)],
+            )
+        axes.set(xscale="log", xlim=(1e-4, 1e1), title=f"{name} grid")
+        axes.set_xlabel("relative error of the peak  [–]")
+        axes.grid(alpha=0.25)
+    panels[0].set_ylabel("part of the surviving cases that errs by less  [–]")
+    drawing.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False
+    )
+    return drawing
+
+
+def draw_free(rows: pd.DataFrame) -> Figure:
+    """Draw the errors of period and decay over the tilt, a line for each source.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of free.csv.
+    """
+    drawing = Figure(figsize=(10.0, 4.6), layout="constrained")
+    panels = drawing.subplots(1, 2, sharex=True, sharey=True)
+    titles = {"period_error": "time between two impacts", "decay_error": "rotation after an impact"}
+    for axes, (column, title) in zip(panels, titles.items(), strict=True):
+        for source, part in rows.groupby("source", sort=False):
+            style = style_of(str(source))
+            worst = part.groupby("tilt")[column].max().clip(lower=LOWEST)
+            axes.plot(
+                worst.index,
+                worst,
+                style.line or "-",
+                color=style.colour,
+                marker=style.marker or ".",
+                linewidth=style.width if style.line else 0.8,
+                markerfacecolor="none",
+                label=str(source),
+            )
+        axes.set(yscale="log", title=title)
+        axes.set_xlabel("rotation from which the block falls  θ0/α  [–]")
+        axes.grid(alpha=0.25)
+    panels[0].set_ylabel("largest relative error over H/B  [–]")
+    drawing.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False
+    )
     return drawing
 
 
@@ -123,57 +151,3 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     errors.set_xlabel("relative error of the peak  [–]")
     drawing.legend(loc="outside lower center", ncols=len(engines), frameon=False)
     return drawing
-
-
-def _one_set(axes: Axes, table: pd.DataFrame) -> None:
-    axes.set(xscale="log", yscale="log", ylim=(LOWEST / 3.0, 30.0))
-    front = pareto(table)
-    axes.plot(
-        front["wall_s"],
-        front["median_error"].clip(lower=LOWEST),
-        color="#FFD54A",
-        linewidth=7,
-        alpha=0.6,
-        solid_capstyle="round",
-        zorder=0,
-    )
-    for name, line in table.groupby("method", sort=False):
-        style = STYLES.get(str(name), Style("#000000", "-", "."))
-        whole = line[np.isfinite(line["median_error"])]
-        axes.plot(
-            whole["wall_s"],
-            whole["median_error"].clip(lower=LOWEST),
-            color=style.colour,
-            linestyle=style.line or "none",
-            marker=style.marker,
-            linewidth=style.width,
-            markersize=9 if style.marker == "*" else 4.5,
-        )
-        broken = line[~np.isfinite(line["median_error"])]
-        axes.plot(
-            broken["wall_s"],
-            np.full(len(broken), 10.0),
-            color=style.colour,
-            linestyle="none",
-            marker="X",
-            markersize=8,
-        )
-    axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
-    axes.text(0.98, 0.985, "failed, or wrong outcomes", ha="right", va="top", fontsize=8,
-              color="#666666", transform=axes.transAxes)  # fmt: skip
-    axes.grid(alpha=0.25)
-
-
-def pareto(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows that no other row beats in both time and error, by rising time."""
-    ordered = table[np.isfinite(table["median_error"])].sort_values("wall_s")
-    best = ordered["median_error"].cummin().shift(fill_value=np.inf)
-    front: pd.DataFrame = ordered[ordered["median_error"] < best]
-    return front
-
-
-def _handle(name: str) -> Line2D:
-    style = STYLES[name]
-    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name)
-    handle.set(linestyle=style.line or "none", marker=style.marker, markersize=5)
-    return handle

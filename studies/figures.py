@@ -11,6 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+LOWEST = 1e-16
+"""Errors below are drawn here, on the floor of double precision."""
 OVERTURNED = "overturned"
 TOP = 1.2
 """Upper end of the scale of abs(theta)/theta_cr; overturned cases stand in a band above it."""

@@ -62,7 +62,7 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def drawn(folder: Path) -> "Figure":
     """Draw the work-precision diagram of a folder's work-precision.csv."""
-    from studies.diagrams import draw_precision
+    from studies.precision_figure import draw_precision
 
     return draw_precision(pd.read_csv(folder / "work-precision.csv"))
 

@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
-from studies.diagrams import STYLES, pareto
 from studies.energy import energy_drift
 from studies.jobs import Job, ask
 from studies.methods import METHODS
 from studies.peers import solve_ivp_response
 from studies.precision import measure, precision_jobs, quick_values, reduce
+from studies.precision_figure import STYLES, pareto
 from studies.precision_report import cheapest, observed_order, with_errors, work_precision
 from studies.selection import chosen_cases
 from studies.sources import resolve
