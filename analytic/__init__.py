@@ -8,6 +8,7 @@ are ground times, from the start of the base motion.
 from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
+from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
 from analytic.steppers import integrate
@@ -19,6 +20,7 @@ __all__ = [
     "Impact",
     "Motion",
     "Outcome",
+    "Record",
     "Response",
     "RigidBlock",
     "SinePulse",
