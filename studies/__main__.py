@@ -11,7 +11,7 @@ from studies.arguments import BadInputError
 from studies.journal import FolderError
 
 COMMANDS = {
-    "compare": """One block and one pulse through every source, side by side.
+    "compare": """One block and one pulse or record through every source, side by side.
 
 For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), its
 relative difference from the exact solution, the impacts and their velocity ratio beside Housner's
