@@ -12,6 +12,7 @@ from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
 from analytic.steppers import integrate
+from analytic.synthetic import kanai_tajimi, near_fault, ricker
 
 __all__ = [
     "MODELS",
@@ -26,6 +27,9 @@ __all__ = [
     "SinePulse",
     "housner_restitution",
     "integrate",
+    "kanai_tajimi",
+    "near_fault",
     "peak_ratios",
+    "ricker",
     "simulate",
 ]
