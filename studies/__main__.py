@@ -47,6 +47,12 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
+    "ensemble": """Many motions, blocks and intensities: statistics where single responses fail.
+
+Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
+the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
+agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about
+half an hour on one core, --quick half a minute.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
