@@ -62,6 +62,7 @@ class Fragility:
         self.resampled = resampled_fits(self.intensity, overturned, usable, chosen)
 
     def medians(self) -> FloatArray:
+        """Return the medians of the resampled fits."""
         return np.array([fit.median for fit in self.resampled])
 
 
@@ -72,7 +73,7 @@ Fragilities = Mapping[tuple[float, float, str], Fragility]
 def fragilities(rows: pd.DataFrame) -> Fragilities:
     """Fit every block and source."""
     return {
-        (*size.values(), str(source)): Fragility(group)
+        (size["width_m"], size["height_m"], str(source)): Fragility(group)
         for size, block in _blocks(rows)
         for source, group in block.groupby("source", sort=False)
     }
