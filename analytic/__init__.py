@@ -9,9 +9,11 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
 from analytic.conditioning import condition_numbers, conditioning
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
+from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
 from analytic.steppers import integrate
+from analytic.synthetic import kanai_tajimi, near_fault, ricker
 
 __all__ = [
     "MODELS",
@@ -20,6 +22,7 @@ __all__ = [
     "Impact",
     "Motion",
     "Outcome",
+    "Record",
     "Response",
     "RigidBlock",
     "SinePulse",
@@ -27,6 +30,9 @@ __all__ = [
     "conditioning",
     "housner_restitution",
     "integrate",
+    "kanai_tajimi",
+    "near_fault",
     "peak_ratios",
+    "ricker",
     "simulate",
 ]

@@ -26,6 +26,9 @@ LYING = 0.5 * math.pi
 MAX_STEPS = 2_000_000
 VANISHING = 1e-15
 """A step shorter than this part of the time it starts from is lost in rounding."""
+FAR = 1e3
+"""A step out of an impact goes no further than this many times the excursion to be expected:
+a root much closer to the step's begin than its end could be overlooked."""
 LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
@@ -259,6 +262,8 @@ def march(
         h = expand(law, accuracy, segment, side, tau, lead, work)
         if not tau * VANISHING < h < math.inf:
             return End(BROKEN, peak, steps, impacts, events, tau)
+        if lead == 1 and series[2] < 0.0:
+            h = min(h, -FAR * v / series[2])
         landed = tau + h >= boundary
         if landed:
             h = boundary - tau

@@ -8,6 +8,9 @@ from analytic.motion import FloatArray
 
 ANGLE_TOLERANCE = 1e-14
 
+ROUNDING = 1e-12
+"""Part of the onset, and of the length of a straight segment, that counts as nothing."""
+
 
 @kernel
 def ground(segments: FloatArray, j: int, tau: float) -> float:
@@ -44,14 +47,19 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 
 @kernel
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
-    """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly."""
-    start, _, _, _, _, offset, rate = segment
+    """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
+
+    What exceeds it by no more than ROUNDING, and falls, does not; nor what does so only in the
+    last part ROUNDING of the segment: the next one, beginning there, tells.
+    """
+    start, end, _, _, _, offset, rate = segment
     now = offset + rate * (tau - start)
-    if abs(now) > onset:
+    if abs(now) > onset * (1.0 + ROUNDING):
         return tau, False
     if rate == 0.0:
         return math.inf, True
-    return tau + (onset - math.copysign(1.0, rate) * now) / abs(rate), True
+    time = tau + max(onset - math.copysign(1.0, rate) * now, 0.0) / abs(rate)
+    return (time if time < end - ROUNDING * (end - start) else math.inf), True
 
 
 @kernel

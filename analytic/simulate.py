@@ -128,7 +128,7 @@ def respond(
         Whether the response has a history, and limits of the contact forces.
     """
     samples = np.empty((2, sampled.size))
-    log = np.empty((64, 4))
+    log = np.empty((1024, 4))
     began = time.perf_counter()
     while True:
         limits = np.array([1.0, 0.0]) if watched else np.empty(0)

@@ -94,17 +94,21 @@ class LandingSteps:
         return choice
 
     def _at_rest(self) -> Choice:
-        """Step on to the next stop; come slowly where the block may lift."""
+        """Step on through the calm; come slowly where the block may lift.
+
+        Equal steps, whatever corners the base's motion has meanwhile: a change of step would let
+        go of a corner that carries little, near the onset.
+        """
         times = self._times
         if times.loaded:
             self._side = times.load.side
             return Choice(times.even(self._longest()), Grip.REST, self._side)
         self._side = 0.0
-        if not times.lifts_next or times.left > self._dt:
-            return Choice(times.even(self._dt), Grip.REST, 0.0)
+        if not times.lifts_next or times.calm > self._dt:
+            return Choice(times.even_in_calm(self._dt), Grip.REST, 0.0)
         # a short last step, or the first one aloft would feel forces of the time before
-        part = 1.0 if times.left <= UPLIFT_NEAR * self._dt else 1.0 - REMAINDER
-        return Choice(part * times.left, Grip.REST, times.load.side)
+        part = 1.0 if times.calm <= UPLIFT_NEAR * self._dt else 1.0 - REMAINDER
+        return Choice(part * times.calm, Grip.REST, times.load.side)
 
     def _aloft(self, pose: Pose, lifted: bool) -> Choice:
         """Step on until an impact is near."""

@@ -1,12 +1,11 @@
 """What is known of a run before it begins: when the base's motion changes, when it can lift."""
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from analytic.motion import Motion
+from analytic.motion import FloatArray, Motion
 from engines.scene import Scene
 
 ROUNDING = 1e-9
@@ -44,6 +43,7 @@ class Timetable:
         loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
         ends = () if scene.duration is None else (scene.duration,)
         stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
+        self._ends: tuple[float, ...] = (scene.motion.duration, *ends, math.inf)
         self._stops: list[float] = [*sorted(stop for stop in stops if stop > self._same), math.inf]
         self._loads = [*loads, NEVER]
         self._stop = self._load = 0
@@ -63,6 +63,15 @@ class Timetable:
         return self._stops[self._stop] - self._now
 
     @property
+    def calm(self) -> float:
+        """Time [s] left until a block at rest may lift, or the motion or the observation ends."""
+        return self._calm_end() - self._now
+
+    def _calm_end(self) -> float:
+        end = next(end for end in self._ends if end > self._now + self._same)
+        return min(self.load.begin, end)
+
+    @property
     def load(self) -> Load:
         """The present load or else the next."""
         return self._loads[self._load]
@@ -74,14 +83,20 @@ class Timetable:
 
     @property
     def lifts_next(self) -> bool:
-        """Whether a load begins at the next stop."""
-        return self.load.begin == self._stops[self._stop]
+        """Whether what ends the calm is a load."""
+        return self.load.begin == self._calm_end()
 
     def even(self, longest: float) -> float:
         """Longest step [s], up to `longest`, of which a whole number leads to the next stop."""
-        if self.left == math.inf:
-            return longest
-        return self.left / math.ceil(self.left / longest * (1.0 - ROUNDING))
+        return _even(self.left, longest)
+
+    def even_in_calm(self, longest: float) -> float:
+        """Longest step [s], up to `longest`, of which a whole number makes up the calm."""
+        return _even(self.calm, longest)
+
+
+def _even(left: float, longest: float) -> float:
+    return longest if left == math.inf else left / math.ceil(left / longest * (1.0 - ROUNDING))
 
 
 def loads_of(motion: Motion, onset: float) -> list[Load]:
@@ -92,7 +107,7 @@ def loads_of(motion: Motion, onset: float) -> list[Load]:
     for side in (-1.0, 1.0):
         above = -side * acceleration > onset
         changes = np.nonzero(above[1:] != above[:-1])[0]
-        corners = [_crossing(motion, -side, onset, grid[i : i + 2].tolist()) for i in changes]
+        corners = _crossings(motion, -side, onset, grid[changes], grid[changes + 1])
         if above[0]:
             corners.insert(0, 0.0)
         if above[-1]:
@@ -115,13 +130,16 @@ def _turns(motion: Motion) -> list[float]:
     return times
 
 
-def _crossing(motion: Motion, sign: float, onset: float, between: Sequence[float]) -> float:
-    """Bisect for the time [s] at which sign u_g'' passes `onset` between two times."""
-    low, high = between
-    above = sign * float(motion.acceleration(low)) > onset
-    while low < (middle := 0.5 * (low + high)) < high:
-        if (sign * float(motion.acceleration(middle)) > onset) is above:
-            low = middle
-        else:
-            high = middle
-    return high
+def _crossings(
+    motion: Motion, sign: float, onset: float, low: FloatArray, high: FloatArray
+) -> list[float]:
+    """Bisect for the times [s] at which sign u_g'' passes `onset`, each between two times."""
+    above = sign * motion.acceleration(low) > onset
+    while True:
+        middle = 0.5 * (low + high)
+        between = (low < middle) & (middle < high)
+        if not between.any():
+            return [float(time) for time in high]
+        early = (sign * motion.acceleration(middle) > onset) == above
+        low = np.where(between & early, middle, low)
+        high = np.where(between & ~early, middle, high)

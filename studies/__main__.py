@@ -11,7 +11,7 @@ from studies.arguments import BadInputError
 from studies.journal import FolderError
 
 COMMANDS = {
-    "compare": """One block and one pulse through every source, side by side.
+    "compare": """One block and one pulse or record through every source, side by side.
 
 For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), its
 relative difference from the exact solution, the impacts and their velocity ratio beside Housner's
@@ -56,6 +56,12 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
+    "ensemble": """Many motions, blocks and intensities: statistics where single responses fail.
+
+Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
+the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
+agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about
+half an hour on one core, --quick half a minute.""",
     "report": """Every study, and one self-contained page (report.html) about them.
 
 The quick studies take about four minutes on two cores, the full ones about forty. A report that

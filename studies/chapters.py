@@ -138,5 +138,13 @@ CHAPTERS: tuple[Chapter, ...] = (
         tables=("steps.csv",),
         minutes=(0.6, 6.0),
     ),
+    Chapter(
+        study="ensemble",
+        folder="ensemble",
+        question="Are statistics predicted where single responses are not?",
+        source="ensemble.csv",
+        tables=("agreement.csv", "confusion.csv"),
+        minutes=(0.5, 15.0),
+    ),
 )
 """In the order of the report."""

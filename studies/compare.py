@@ -1,7 +1,7 @@
-"""One block, one pulse, every named source side by side."""
+"""One block, one pulse or record, every named source side by side."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Annotated, Literal
@@ -10,8 +10,10 @@ import numpy as np
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
+from analytic.record import Record
 from analytic.response import Response
 from studies import provenance
+from studies.accelerograms import read_record
 from studies.arguments import (
     BadInputError,
     Count,
@@ -35,10 +37,14 @@ def command(
     *,
     width: Positive,
     height: Positive,
-    amplitude: Positive,
-    omega: Positive,
+    amplitude: Positive | None = None,
+    omega: Positive | None = None,
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
+    record: Path | None = None,
+    units: Literal["g", "m/s2", "cm/s2", "gal"] | None = None,
+    scale: Positive | None = None,
+    pga: Positive | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     step: Positive | None = None,
@@ -48,7 +54,7 @@ def command(
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
-    """Compare the sources on one block and one pulse.
+    """Compare the sources on one block and one pulse or record.
 
     Parameters
     ----------
@@ -65,11 +71,20 @@ def command(
         half-sine or full-sine; full-sine unless --half-cycles is given.
     half_cycles
         Number of half cycles, instead of --pulse.
+    record
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, or a table of time [s] and
+        acceleration. It is straight between its samples.
+    units
+        Of the record's acceleration, where the file does not state them.
+    scale
+        Factor on the record's acceleration.
+    pga
+        Scale the record to this largest absolute acceleration [g].
     sources
         exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
         rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in pybullet:naive.
     duration
-        Observe until this time [s], at least the length of the pulse; by default the pulse and
+        Observe until this time [s], at least the length of the motion; by default the motion and
         8/p of free rocking.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
@@ -86,7 +101,15 @@ def command(
     """
     check_sources(sources)
     check_plot(plot)
-    block, motion = _posed(width, height, amplitude, omega, _half_cycles(pulse, half_cycles))
+    block = _block(width, height)
+    shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
+    reading = {"units": units, "scale": scale, "pga": pga}
+    if record is None:
+        _refuse_given(reading, "they belong to --record, which is missing")
+        motion: Motion = _pulse(amplitude, omega, _half_cycles(pulse, half_cycles))
+    else:
+        _refuse_given(shape, "they belong to a pulse, and --record is given")
+        motion = _scaled(read_record(record, units), scale, pga)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
     executor = Local(jobs or provenance.usable_cores(), time_limit)
@@ -113,17 +136,42 @@ def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
     return half_cycles or PULSES[pulse or "full-sine"]
 
 
-def _posed(
-    width: float, height: float, amplitude: float, omega: float, half_cycles: int
-) -> tuple[RigidBlock, SinePulse]:
+def _refuse_given(options: Mapping[str, object], reason: str) -> None:
+    given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
+    if given:
+        raise BadInputError(f"{' and '.join(given)}; {reason}")
+
+
+def _block(width: float, height: float) -> RigidBlock:
     try:
-        block = RigidBlock(width=width, height=height)
-        motion = SinePulse(
+        return RigidBlock(width=width, height=height)
+    except ValueError as error:
+        raise BadInputError(f"--{error}") from error
+
+
+def _pulse(amplitude: float | None, omega: float | None, half_cycles: int) -> SinePulse:
+    if amplitude is None or omega is None:
+        missing = " and ".join(
+            name for name, value in (("--amplitude", amplitude), ("--omega", omega)) if not value
+        )
+        raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
+    try:
+        return SinePulse(
             amplitude=amplitude * STANDARD_GRAVITY, omega=omega, half_cycles=half_cycles
         )
     except ValueError as error:
         raise BadInputError(f"--{error}") from error
-    return block, motion
+
+
+def _scaled(record: Record, scale: float | None, pga: float | None) -> Record:
+    if scale is not None and pga is not None:
+        raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
+    try:
+        if pga is not None:
+            return record.scaled_to(pga * STANDARD_GRAVITY)
+        return record.scaled(1.0 if scale is None else scale)
+    except ValueError as error:
+        raise BadInputError(f"--record: {error}") from error
 
 
 def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
@@ -131,7 +179,7 @@ def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
         return free_rocking_window(block, motion)
     if duration < motion.duration:
         raise BadInputError(
-            f"--duration is {duration:g}; it must be at least the length of the pulse, "
+            f"--duration is {duration:g}; it must be at least the length of the motion, "
             f"{motion.duration:.6g} s"
         )
     return duration

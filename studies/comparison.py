@@ -5,12 +5,14 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse
 from analytic.response import Outcome, Response
+from analytic.simulate import strongest
 from studies.cases import PULSES
 from studies.differences import scientific
 from studies.journal import Row
@@ -26,7 +28,7 @@ def json_lines(rows: list[Row]) -> str:
     return "\n".join(json.dumps(item, allow_nan=False) for item in objects)
 
 
-def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[Row]) -> str:
+def table_text(block: RigidBlock, motion: Motion, window: float, rows: list[Row]) -> str:
     """Return the table with its head, and the messages under it."""
     table = pd.DataFrame(
         {
@@ -46,8 +48,8 @@ def table_text(block: RigidBlock, motion: SinePulse, window: float, rows: list[R
         [
             f"block   B = {block.width:g} m, H = {block.height:g} m: "
             f"α = θcr = {block.alpha:.5g} rad, p = {block.p:.5g} rad/s",
-            f"ground  {pulse_name(motion.half_cycles)}, {motion.amplitude / block.gravity:g} g, "
-            f"{motion.omega:g} rad/s, {motion.duration:.4g} s; observed for {window:.4g} s",
+            f"ground  {motion_name(motion)}, {strongest(motion) / block.gravity:.6g} g, "
+            f"{motion_details(motion)}; observed for {window:.4g} s",
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
             f"valid   {validity(block, motion)}",
@@ -75,6 +77,21 @@ def pulse_name(half_cycles: int) -> str:
     return names.get(half_cycles, f"{half_cycles} half cycles")
 
 
+def motion_name(motion: Motion) -> str:
+    """Return what a ground motion is called."""
+    return pulse_name(motion.half_cycles) if isinstance(motion, SinePulse) else "record"
+
+
+def motion_details(motion: Motion) -> str:
+    """Say what a reader needs to know of a ground motion besides its name and its peak."""
+    if isinstance(motion, SinePulse):
+        return f"{motion.omega:g} rad/s, {motion.duration:.4g} s"
+    times = np.array(motion.breakpoints)
+    speed = float(np.abs(motion.velocity(times)).max())
+    step = motion.duration / (times.size - 1)
+    return f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s, {motion.duration:.4g} s"
+
+
 def _peak(row: Row) -> str:
     return f"{row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
 
@@ -96,16 +113,16 @@ def _duration(seconds: float) -> str:
     return f"{seconds * 1e6:.0f} µs" if seconds < 1e-3 else f"{seconds * 1e3:.1f} ms"
 
 
-def draw(rows: list[Row], block: RigidBlock, motion: SinePulse, path: Path) -> None:
+def draw(rows: list[Row], block: RigidBlock, motion: Motion, path: Path) -> None:
     """Draw the histories of the rows over each other."""
     from studies.figures import draw_histories, save
 
     labels = {
         "panel": "",
-        "pulse": pulse_name(motion.half_cycles),
+        "pulse": motion_name(motion),
         "width_m": block.width,
         "height_m": block.height,
-        "amplitude_g": motion.amplitude / block.gravity,
+        "amplitude_g": strongest(motion) / block.gravity,
     }
     parts = [
         samples(row["response"], block, motion, {**labels, "source": row["source"]})

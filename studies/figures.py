@@ -78,7 +78,7 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
     drawing.suptitle(
         f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     )
-    _legend_below(drawing, sources)
+    legend_below(drawing, sources)
     return drawing
 
 
@@ -140,7 +140,7 @@ def draw_histories(samples: pd.DataFrame, title: str) -> Figure:
         _history_panel(axes, samples[samples["panel"] == name])
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    _legend_below(drawing, sources, ground=True)
+    legend_below(drawing, sources, ground=True)
     return drawing
 
 
@@ -153,9 +153,10 @@ def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
     ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
     axes.set_zorder(ground.get_zorder() + 1)
     axes.patch.set_visible(False)
+    leavers = 0
     for source, points in panel.groupby("source", sort=False):
         _one_history(axes, points, style_of(str(source)))
-        _name_the_leaver(axes, points, style_of(str(source)), limit)
+        leavers += _name_the_leaver(axes, points, style_of(str(source)), limit, leavers)
     axes.axhline(0.0, color="#999999", linewidth=0.6)
     axes.set(ylim=(-limit, limit), ylabel="rotation  θ/θcr  [–]")
     axes.set_xlim(0.0, float(motion["time_s"].max()))
@@ -169,14 +170,18 @@ def _caption(row: "pd.Series[Any]") -> str:
     return f"{label}{size}, {row['amplitude_g']:g} g, {row['pulse']}"
 
 
-def _name_the_leaver(axes: Axes, points: pd.DataFrame, style: Style, limit: float) -> None:
-    """Write "overturned" where the line leaves the panel."""
+def _name_the_leaver(
+    axes: Axes, points: pd.DataFrame, style: Style, limit: float, row: int
+) -> bool:
+    """Write "overturned" where the line leaves the panel, in a row of its own; say if it does."""
     leaving = points[points["theta_ratio"].abs() > limit]
-    if (points["outcome"] == OVERTURNED).any() and len(leaving):
-        first = leaving.iloc[0]
-        level = 0.86 * limit * (1.0 if first["theta_ratio"] > 0.0 else -1.0)
-        place = (first["time_s"], level)
-        axes.annotate(f" {OVERTURNED}", place, color=style.colour, fontsize=8, va="center")
+    if not ((points["outcome"] == OVERTURNED).any() and len(leaving)):
+        return False
+    first = leaving.iloc[0]
+    level = (0.9 - 0.11 * row) * limit * (1.0 if first["theta_ratio"] > 0.0 else -1.0)
+    place = (first["time_s"], level)
+    axes.annotate(f" {OVERTURNED}", place, color=style.colour, fontsize=8, va="center")
+    return True
 
 
 def _one_history(axes: Axes, points: pd.DataFrame, style: Style) -> None:
@@ -201,7 +206,8 @@ def _history_limit(panel: pd.DataFrame) -> float:
     return 1.25 if overturned else 1.15 * max(reach, 1e-6)
 
 
-def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = False) -> None:
+def legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = False) -> None:
+    """Write the legend of the sources under a figure."""
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))

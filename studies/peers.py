@@ -93,7 +93,7 @@ class _March:
 
     def run(self) -> Outcome:
         tau, y, v, side, j = 0.0, 0.0, 0.0, 0.0, 0
-        for _ in range(MOST_EXCURSIONS):
+        for _ in range(MOST_EXCURSIONS + len(self.segments)):
             if side == 0.0:
                 j, tau, side, _ = next_uplift(self.segments, j, tau, self.law.onset)
                 if side == 0.0:

@@ -4,8 +4,10 @@ In seconds, with the rotation unfolded, from the equations as the paper prints t
 the free rocking after the pulse integrated, not decided by energy.
 """
 
+import itertools
 import math
 
+import numpy as np
 from scipy.integrate import solve_ivp
 
 
@@ -70,3 +72,55 @@ def peak_and_impacts(model, block, pulse, after=15.0, rtol=1e-12):
             if len(impacts) == MOST_IMPACTS:
                 return (peak / block.alpha if t > pulse.duration else None), impacts
     return (math.inf if abs(state[0]) > saddle else peak / block.alpha), impacts
+
+
+AT_REST = 1e-7
+"""Angular velocity [rad/s] below which a block pressed down after an impact counts as at rest."""
+
+
+def history_under_samples(model, block, dt, samples, times, rtol=1e-12):
+    """Return (rotations at `times`, first MOST_IMPACTS impact times) under a sampled acceleration.
+
+    Restarted at every sample; between two the acceleration is numpy's interpolation. Times end
+    with the samples.
+    """
+    onset = block.gravity * (math.tan(block.alpha) if model != "housner" else block.alpha)
+    instants = np.arange(len(samples)) * dt
+
+    def ground(time):
+        return float(np.interp(time, instants, samples))
+
+    rotations, impacts, s, state = np.zeros(len(times)), [], 0, [0.0, 0.0]
+    for begin, stop in itertools.pairwise(instants):
+        t = begin
+        while t < stop * (1 - 1e-14):
+            if s == 0:
+                a, b = ground(t), ground(stop)
+                if abs(a) <= onset:
+                    if abs(b) <= onset:
+                        break
+                    # the straight line reaches the onset of its end's sign
+                    t += (stop - t) * (math.copysign(onset, b) - a) / (b - a)
+                s = -int(math.copysign(1, b if abs(a) <= onset else a))
+
+            def equation(time, x, s=s):
+                return [x[1], angular_acceleration(model, block, s, x[0], ground(time))]
+
+            def contact(time, x, s=s):
+                return s * x[0]
+
+            contact.terminal, contact.direction = True, -1
+            path = solve_ivp(
+                equation, (t, stop), state, "DOP853", rtol=rtol, atol=1e-16,
+                events=contact, max_step=0.25 * (stop - begin), dense_output=True,
+            )  # fmt: skip
+            inside = (times > t) & (times <= path.t[-1])
+            if inside.any():
+                rotations[inside] = path.sol(times[inside])[0]
+            t, state = float(path.t[-1]), [float(x) for x in path.y[:, -1]]
+            if path.t_events[0].size:
+                impacts.append(t)
+                s, state = -s, [0.0, block.restitution * state[1]]
+                if abs(state[1]) < AT_REST and abs(ground(t)) < onset:
+                    s, state = 0, [0.0, 0.0]
+    return rotations, impacts[:MOST_IMPACTS]

@@ -1,0 +1,198 @@
+"""Many motions, blocks and intensities: are statistics predicted where single responses are not?"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.record import Record
+from studies import provenance
+from studies.arguments import Count, Positive, check_sources, several
+from studies.ensemble_report import (
+    agreement,
+    claims,
+    confusion,
+    curves,
+    findings,
+    fragilities,
+    stripes,
+)
+from studies.executors import Executor, Local
+from studies.jobs import Job
+from studies.journal import Row
+from studies.motions import FAMILIES
+from studies.runner import exit_code, fill_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SIZES_M = ((0.5, 1.5), (1.0, 2.0), (1.0, 4.0))
+"""Width and height of the blocks."""
+
+INTENSITIES = (1.5, 2.0, 2.5, 3.0, 4.0, 6.0)
+"""Largest ground acceleration over the one that lifts the block, g tan alpha."""
+
+QUICK_SIZES_M = SIZES_M[:1]
+QUICK_INTENSITIES = INTENSITIES[1:4]
+QUICK_MOTIONS = 8
+
+DEFAULT_SOURCES = (
+    *("housner", "modified", "pybullet:naive", "mujoco:naive"),
+    *("pybullet", "mujoco"),
+)
+
+TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
+PRODUCTS = ("ensemble.csv", *TABLES, "ensemble.png", "findings.txt", "provenance.json")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnsembleCase:
+    """A motion of a family, scaled to an intensity for a block."""
+
+    family: str
+    motion: int
+    width_m: float
+    height_m: float
+    intensity: float
+
+    @property
+    def block(self) -> RigidBlock:
+        """The block."""
+        return RigidBlock(width=self.width_m, height=self.height_m)
+
+    def scaled(self, motion: Record) -> Record:
+        """Return a motion scaled to this intensity."""
+        onset = self.block.gravity * self.width_m / self.height_m
+        return motion.scaled_to(self.intensity * onset)
+
+
+def ensemble_cases(
+    family: str,
+    motions: int,
+    seed: int,
+    sizes: Sequence[tuple[float, float]] = SIZES_M,
+    intensities: Sequence[float] = INTENSITIES,
+) -> Iterator[tuple[EnsembleCase, Record]]:
+    """Yield every case with its ground motion; motion i of a seed has the seed 10^6 seed + i."""
+    for i in range(motions):
+        motion = FAMILIES[family](10**6 * seed + i)
+        for width_m, height_m in sizes:
+            for intensity in intensities:
+                case = EnsembleCase(
+                    family=family,
+                    motion=i,
+                    width_m=width_m,
+                    height_m=height_m,
+                    intensity=intensity,
+                )
+                yield case, case.scaled(motion)
+
+
+def command(
+    *,
+    out: Path,
+    family: Literal["noise", "near-fault", "ricker"] = "noise",
+    motions: Count | None = None,
+    seed: Count = 1,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    quick: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Shake blocks by many motions of rising intensity, through every named source.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    family
+        noise: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis and
+        Papageorgiou; ricker: wavelets.
+    motions
+        Number of motions; 40 by default, 8 with --quick.
+    seed
+        Seed of the motions, a positive whole number; another one draws others.
+    sources
+        housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's rk45
+        dop853 radau lsoda, beside the exact solution; an engine takes a preset after a colon.
+    quick
+        One block and three intensities.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    """
+    check_sources(sources)
+    count = motions or (QUICK_MOTIONS if quick else 40)
+    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
+    cases = list(ensemble_cases(family, count, seed, sizes, intensities))
+    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    settings = {"family": family, "seed": seed, "sizes_m": sizes, "intensities": intensities}
+    rows = ensemble(cases, sources, out, executor=executor, settings=settings)
+    print(report(out))
+    return exit_code(rows)
+
+
+def ensemble(
+    cases: Sequence[tuple[EnsembleCase, Record]],
+    sources: Sequence[str],
+    folder: Path,
+    *,
+    executor: Executor,
+    settings: Mapping[str, object],
+) -> list[Row]:
+    """Run the cases that the folder does not hold yet, and write its table.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    asked = list(dict.fromkeys(["exact", *sources]))
+    jobs = [
+        Job(labels=asdict(case), block=case.block, motion=motion, source=source)
+        for case, motion in cases
+        for source in asked
+    ]
+    return fill_folder(
+        folder,
+        "ensemble",
+        jobs,
+        executor=executor,
+        settings=settings,
+        growing={"motion": range(max(case.motion for case, _ in cases) + 1), "source": asked},
+        products=PRODUCTS,
+    )
+
+
+def report(folder: Path) -> str:
+    """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
+    from studies.figures import save_all
+
+    rows = pd.read_csv(folder / "ensemble.csv", dtype={"message": str})
+    fitted = fragilities(rows)
+    tables = (stripes(rows), curves(rows, fitted), agreement(rows, fitted), confusion(rows))
+    for name, table in zip(TABLES, tables, strict=True):
+        provenance.write_text(folder / name, table.to_csv(index=False, na_rep="nan"))
+    text = findings(rows, tables[2], tables[3])
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    save_all(pictures(folder), folder)
+    return text
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw a folder's figure from its tables alone."""
+    from studies.ensemble_figure import draw_ensemble
+
+    rows = pd.read_csv(folder / "ensemble.csv", dtype={"message": str})
+    stripes, curves = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves"))
+    return {"ensemble": draw_ensemble(rows, stripes, curves)}
+
+
+def headline(folder: Path) -> str:
+    """Say what became of the claim that statistics are predicted where responses are not."""
+    agreed = pd.read_csv(folder / "agreement.csv")
+    return " ".join(claims(agreed[agreed["source"] != "exact"]))

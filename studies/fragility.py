@@ -1,0 +1,99 @@
+"""Fragility: the probability of overturning against intensity, with what is not known of it.
+
+A block overturns at the intensity x with the probability Phi(ln(x/median)/beta): capacities are
+lognormal. Fitted by maximum likelihood to the counts at each intensity (Baker 2015, "Efficient
+analytical fragility function fitting using dynamic structural analysis"), with scipy's optimizer
+and its normal distribution; the bounds are quantiles over resampled motions, whole, since what one
+motion does at two intensities is not independent.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import log_ndtr, ndtr
+from scipy.stats import binomtest
+
+from analytic.motion import FloatArray
+
+CONFIDENCE = 0.95
+RESAMPLES = 200
+
+
+class Fit(NamedTuple):
+    """A lognormal capacity: its median, and the standard deviation of its logarithm.
+
+    beta is 0 where every intensity with an overturning lies above every one with a survival; the
+    median is then between the two, or 0 or inf if there is only one of them.
+    """
+
+    median: float
+    beta: float
+
+    def probability(self, intensity: FloatArray) -> FloatArray:
+        """Return the probability of overturning at each intensity."""
+        if self.beta == 0.0 or not 0.0 < self.median < math.inf:
+            return np.where(intensity > self.median, 1.0, 0.0)
+        return np.asarray(ndtr(np.log(intensity / self.median) / self.beta))
+
+
+def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArray) -> Fit:
+    """Fit the capacity to the number overturned of so many cases at each intensity."""
+    survived = cases - overturned
+    if not overturned.any() or not survived.any():
+        return Fit(0.0 if overturned.any() else math.inf, 0.0)
+    strongest, weakest = intensity[survived > 0].max(), intensity[overturned > 0].min()
+    if strongest <= weakest:
+        return Fit(math.sqrt(strongest * weakest), 0.0)
+    logs = np.log(intensity)
+
+    def surprise(unknowns: FloatArray) -> float:
+        z = (logs - unknowns[0]) * math.exp(unknowns[1])
+        return -float(overturned @ log_ndtr(z) + survived @ log_ndtr(-z))
+
+    start = [float(np.average(logs, weights=cases)), math.log(2.0)]
+    best = minimize(surprise, start, method="BFGS")
+    return Fit(math.exp(best.x[0]), math.exp(-best.x[1]))
+
+
+def resampled_fits(
+    intensity: FloatArray, overturned: FloatArray, usable: FloatArray, chosen: NDArray[np.intp]
+) -> list[Fit]:
+    """Fit again to motions drawn with replacement.
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (k,)
+    overturned, usable : ndarray, shape (n, k)
+        Whether each motion overturned the block, and whether there is a result, 0 or 1.
+    chosen : ndarray, shape (r, n)
+        The motions of each sample; the same for two sources makes their difference a paired one.
+    """
+    return [
+        fit_lognormal(intensity, overturned[rows].sum(axis=0), usable[rows].sum(axis=0))
+        for rows in chosen
+    ]
+
+
+def choose(motions: int, seed: int = 0, resamples: int = RESAMPLES) -> NDArray[np.intp]:
+    """Draw the motions of each sample, the same ones for the same seed."""
+    return np.random.default_rng(seed).integers(motions, size=(resamples, motions))
+
+
+def bounds(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the pointwise confidence bounds of rows of values, those of infinite ones included."""
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    # a neighbour instead of an interpolation: between a number and inf there is none
+    low = np.quantile(values, tail, axis=0, method="lower")
+    high = np.quantile(values, 1.0 - tail, axis=0, method="higher")
+    return low, high
+
+
+def share_bounds(successes: int, cases: int) -> tuple[float, float]:
+    """Return the exact confidence bounds of a share (Clopper and Pearson 1934)."""
+    if cases == 0:
+        return 0.0, 1.0
+    interval = binomtest(successes, cases).proportion_ci(CONFIDENCE, method="exact")
+    return float(interval.low), float(interval.high)

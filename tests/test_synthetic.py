@@ -1,0 +1,162 @@
+"""Synthetic ground motions, and what must hold of every ground motion."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.signal import cont2discrete, lfilter, welch
+
+from analytic import (
+    Outcome,
+    Record,
+    RigidBlock,
+    SinePulse,
+    kanai_tajimi,
+    near_fault,
+    ricker,
+    simulate,
+)
+from analytic.synthetic import soil_kernel
+
+MOTIONS = {
+    "half sine": SinePulse(amplitude=3.0, omega=5.0),
+    "sines": SinePulse(amplitude=-2.0, omega=9.0, half_cycles=5),
+    "record": Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25]),
+    "ricker": ricker(4.0, 2.0, dt=0.02),
+    "near-fault": near_fault(0.6, 1.2, 1.7, 0.8, dt=0.05),
+    "noise": kanai_tajimi(3, peak=5.0, duration=1.2, rise=0.3, fall=0.5, dt=0.05),
+}
+
+
+@pytest.fixture(params=MOTIONS)
+def motion(request):
+    return MOTIONS[request.param]
+
+
+def test_it_starts_and_ends_with_its_breakpoints(motion):
+    assert motion.breakpoints[0] == 0
+    assert motion.breakpoints[-1] == motion.duration
+    assert all(np.diff(motion.breakpoints) > 0)
+    assert motion.acceleration([-1e-9, motion.duration + 1e-9]).tolist() == [0, 0]
+
+
+def test_velocity_and_displacement_are_the_integrals(motion):
+    times = np.linspace(0, 1.3 * motion.duration, 6)[1:]
+    for t in times:
+        inside = [b for b in motion.breakpoints if 0 < b < t]
+        options = {"points": inside or None, "limit": 400, "epsabs": 1e-13}
+        velocity, _ = quad(motion.acceleration, 0, t, **options)
+        displacement, _ = quad(motion.velocity, 0, t, **options)
+        assert motion.velocity(t) == pytest.approx(velocity, abs=1e-11)
+        assert motion.displacement(t) == pytest.approx(displacement, abs=1e-11)
+
+
+def test_its_segments_are_its_acceleration(motion):
+    rows = motion.segments()
+    assert rows[0, 0] == 0
+    assert rows[-1, 1] == motion.duration
+    assert (rows[1:, 0] == rows[:-1, 1]).all()
+    for start, end, amplitude, omega, phase, offset, slope in rows:
+        since = np.linspace(0.001, 0.999, 7) * (end - start)
+        expected = amplitude * np.sin(omega * since + phase) + offset + slope * since
+        assert motion.acceleration(start + since) == pytest.approx(expected, abs=1e-12)
+
+
+def test_rickers_velocity_is_its_closed_form():
+    """The trapezoidal rule over 200 steps in a period, its error being (2 pi/200)^2/12."""
+    wavelet = ricker(4.0, 2.0)
+    times = np.array(wavelet.breakpoints)
+    s = times - 0.75
+    expected = 4.0 * s * np.exp(-((2 * math.pi * s) ** 2))
+    assert wavelet.velocity(times) == pytest.approx(expected, abs=2e-4 * np.abs(expected).max())
+    assert wavelet.peak == pytest.approx(4.0, rel=1e-12)
+    assert abs(wavelet.samples[0]) < 1e-7
+
+
+@pytest.mark.parametrize(("gamma", "phase"), [(1.3, 0.0), (2.0, 1.1), (3.4, -2.0)])
+def test_near_fault_velocity_is_the_published_one(gamma, phase):
+    pulse = near_fault(0.7, 1.6, gamma, phase)
+    times = np.array(pulse.breakpoints)
+    s = times - 0.5 * gamma / 1.6
+    envelope = 0.35 * (1 + np.cos(2 * math.pi * 1.6 * s / gamma))
+    expected = envelope * np.cos(2 * math.pi * 1.6 * s + phase)
+    # the trapezoidal rule misses (w dt)^2/12 of each sine, with w up to 1.8 times the carrier's
+    assert pulse.velocity(times) == pytest.approx(expected, abs=5e-4)
+    assert pulse.duration == pytest.approx(gamma / 1.6)
+    assert pulse.acceleration([0, pulse.duration]) == pytest.approx([0, 0], abs=1e-9)
+
+
+def test_a_finer_step_changes_a_peak_by_the_square_of_the_step():
+    block = RigidBlock(width=0.5, height=1.5)
+    for make in (
+        lambda dt: ricker(5.0, 2.0, dt=dt),
+        lambda dt: near_fault(0.5, 1.6, 1.8, 0.5, dt=dt),
+    ):
+        peaks = [simulate(block, make(0.02 / 2**k)).peak_ratio for k in range(6)]
+        assert 0.01 < peaks[0] < 1
+        errors = np.abs(np.array(peaks[:3]) - peaks[5])
+        assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2.0, abs=0.35)
+        # the default step, 200 in a cycle
+        default = simulate(block, make(None)).peak_ratio
+        assert default == pytest.approx(peaks[5], rel=2e-3)
+
+
+def test_noise_is_the_seeds():
+    one, again, other = (kanai_tajimi(seed, peak=2.0) for seed in (1, 1, 2))
+    assert one == again
+    assert one != other
+    assert one.peak == pytest.approx(2.0, rel=1e-15)
+    assert one.duration == pytest.approx(20.0)
+    assert one.samples[0] == 0
+
+
+def test_the_soil_is_scipys_discrete_filter():
+    omega, damping, dt = 15.0, 0.6, 0.02
+    a, b = 2 * damping * omega, omega**2
+    numerator, denominator, _ = cont2discrete(([a, b], [1.0, a, b]), dt, method="zoh")
+    impulse = np.zeros(300)
+    impulse[0] = 1.0
+    expected = lfilter(np.ravel(numerator), denominator, impulse)
+    assert soil_kernel(omega, damping, dt * np.arange(300)) == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_spectrum_is_kanais_and_tajimis():
+    """The mean of 60 periodograms, over bands of frequency, at an eighth of the sampling rate and
+    below, where the noise that is constant over a step has its spectrum flat to 5 %."""
+    omega, damping, dt = 15.0, 0.5, 0.01
+    kernel = soil_kernel(omega, damping, dt * np.arange(1500))
+    draw = np.random.default_rng(0)
+    shaken = np.convolve(draw.normal(size=200_000), kernel)[2000:200_000]
+    frequency, power = welch(shaken, 1 / dt, nperseg=2048)
+    r = 2 * math.pi * frequency / omega
+    expected = (1 + (2 * damping * r) ** 2) / ((1 - r**2) ** 2 + (2 * damping * r) ** 2)
+    bands = np.array_split(np.flatnonzero((frequency > 0.2) & (frequency < 12.5)), 12)
+    ratio = [power[band].mean() / (2 * dt * expected[band].mean()) for band in bands]
+    assert ratio == pytest.approx(np.ones(12), abs=0.12)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: ricker(math.nan, 1.0), "amplitude is nan"),
+        (lambda: ricker(1.0, 0.0), "frequency is 0.0; it must be positive"),
+        (lambda: ricker(1.0, 1.0, dt=-1.0), "dt is -1.0"),
+        (lambda: near_fault(1.0, 1.0, 1.0), "gamma is 1.0; it must be more than 1"),
+        (lambda: near_fault(1.0, 1.0, 2.0, math.inf), "phase is inf"),
+        (lambda: kanai_tajimi(1, peak=0.0), "peak is 0.0"),
+        (lambda: kanai_tajimi(1, peak=1.0, damping=1.0), "damping is 1.0"),
+        (lambda: kanai_tajimi(1, peak=1.0, rise=9.0), "rise is 9.0 and fall 8.0; 0 < rise"),
+        (lambda: kanai_tajimi(1, peak=1.0, duration=5.0), "fall 8.0"),
+    ],
+)
+def test_bad_arguments(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_a_synthetic_motion_shakes_a_block():
+    block = RigidBlock(width=0.5, height=1.5)
+    response = simulate(block, kanai_tajimi(4, peak=0.5 * 9.81))
+    assert response.outcome is not Outcome.AT_REST
+    assert len(response.impacts) > 5
