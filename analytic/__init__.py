@@ -6,6 +6,7 @@ are ground times, from the start of the base motion.
 """
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
+from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
 from analytic.response import History, Impact, Outcome, Response
@@ -17,6 +18,7 @@ __all__ = [
     "STANDARD_GRAVITY",
     "History",
     "Impact",
+    "Modes",
     "Motion",
     "Outcome",
     "Response",
@@ -24,6 +26,7 @@ __all__ = [
     "SinePulse",
     "housner_restitution",
     "integrate",
+    "overturning_modes",
     "peak_ratios",
     "simulate",
 ]
