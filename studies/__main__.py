@@ -47,6 +47,12 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
+    "overturning": """Overturning maps: which pulses overturn a block, after how many impacts.
+
+Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
+beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
+differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
+resumable. The full study takes about four minutes on two cores, --quick less than one.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
