@@ -7,6 +7,7 @@ are ground times, from the start of the base motion.
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
 from analytic.conditioning import condition_numbers, conditioning
+from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
@@ -20,6 +21,7 @@ __all__ = [
     "STANDARD_GRAVITY",
     "History",
     "Impact",
+    "Modes",
     "Motion",
     "Outcome",
     "Record",
@@ -32,6 +34,7 @@ __all__ = [
     "integrate",
     "kanai_tajimi",
     "near_fault",
+    "overturning_modes",
     "peak_ratios",
     "ricker",
     "simulate",

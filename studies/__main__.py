@@ -56,6 +56,12 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
+    "overturning": """Overturning maps: which pulses overturn a block, after how many impacts.
+
+Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
+beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
+differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
+resumable. The full study takes about four minutes on two cores, --quick less than one.""",
     "ensemble": """Many motions, blocks and intensities: statistics where single responses fail.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with

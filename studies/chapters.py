@@ -139,6 +139,14 @@ CHAPTERS: tuple[Chapter, ...] = (
         minutes=(0.6, 6.0),
     ),
     Chapter(
+        study="overturning",
+        folder="overturning",
+        question="Which pulses overturn a block, and who draws that map wrongly?",
+        source="map.csv",
+        tables=("differences.csv", "checks.csv"),
+        minutes=(0.5, 5.0),
+    ),
+    Chapter(
         study="ensemble",
         folder="ensemble",
         question="Are statistics predicted where single responses are not?",

@@ -1,0 +1,226 @@
+"""Where overturning begins and ends: every edge of a map's columns, by bisection.
+
+In a column the outcome is a set of intervals of the amplitude. Three things are looked for, each
+by a search that ends at WIDTH:
+
+- neighbours on the grid of which one survives: the edge between them;
+- neighbours that overturn after different numbers of impacts: an island of survival between them,
+  for a block on the separatrix has lost velocity at the next impact and cannot overturn there, so
+  that one mode does not pass into another. An island narrower than WIDTH is reported as an edge
+  from one mode to the other;
+- a local extremum of the margin towards zero over three neighbours: an island if it crosses zero.
+  The margin is continuous, so an island between two neighbours has one.
+
+What can be missed is an island whose extremum does not show on the grid: of two islands or more
+between the same neighbours, one that is beside another.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from analytic.maps import Modes
+from analytic.motion import FloatArray
+
+WIDTH = 1e-10
+"""Amplitude, over g tan(alpha), to which an edge is known."""
+ISLAND_WIDTH = 1e-8
+"""Amplitude to which an extremum of the margin is followed."""
+ROUNDS = 8
+
+IntArray = NDArray[np.intp]
+
+
+class Solve(Protocol):
+    """Modes at amplitudes, each in the column of that number."""
+
+    def __call__(self, column: IntArray, amplitude: FloatArray) -> Modes:
+        """Solve."""
+
+
+class Points(NamedTuple):
+    """Amplitudes of columns and their modes."""
+
+    column: IntArray
+    amplitude: FloatArray
+    mode: NDArray[np.int16]
+
+
+def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
+    """Return the edges of a number of columns whose grid is `amplitudes`.
+
+    Returns
+    -------
+    DataFrame
+        With `column`, `low` and `high`, the amplitudes that bracket the edge, `below` and `above`,
+        the modes there, and `found`: "grid", or "mode" or "margin" for those of an island that
+        lies between two neighbours of the grid. Ordered by column and amplitude.
+    """
+    grid = np.broadcast_to(amplitudes, (columns, len(amplitudes)))
+    number = np.broadcast_to(np.arange(columns)[:, None], grid.shape)
+    found = solve(number.ravel(), grid.ravel())
+    mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
+    points = Points(number.ravel(), grid.ravel(), found.mode)
+    islands = extrema(solve, grid, mode, margin)
+    origin = np.array(["grid"] * len(points.mode) + ["margin"] * len(islands.mode))
+    points = join(points, islands)
+    for _ in range(ROUNDS):
+        points, origin = ordered(points, origin)
+        between = mode_changes(solve, points)
+        if len(between.mode) == 0:
+            break
+        points = join(points, between)
+        origin = np.append(origin, ["mode"] * len(between.mode))
+    points, origin = ordered(points, origin)
+    return bisect(solve, points, origin)
+
+
+def join(first: Points, second: Points) -> Points:
+    """Return the points of both."""
+    return Points(
+        np.concatenate([first.column, second.column]),
+        np.concatenate([first.amplitude, second.amplitude]),
+        np.concatenate([first.mode, second.mode]),
+    )
+
+
+def ordered(points: Points, origin: NDArray[np.str_]) -> tuple[Points, NDArray[np.str_]]:
+    """Return points and their origins ordered by column and amplitude."""
+    order = np.lexsort((points.amplitude, points.column))
+    ranked = Points(points.column[order], points.amplitude[order], points.mode[order])
+    return ranked, origin[order]
+
+
+def neighbours(points: Points, wanted: NDArray[np.bool_]) -> IntArray:
+    """Return where a point and the next one in its column are wanted."""
+    return np.flatnonzero(wanted & (points.column[1:] == points.column[:-1]))
+
+
+def bisect(solve: Solve, points: Points, origin: NDArray[np.str_]) -> pd.DataFrame:
+    """Bisect every change of the outcome between ordered points."""
+    first, second = points.mode[:-1], points.mode[1:]
+    changes = (first >= 0) != (second >= 0)
+    direct = (first >= 0) & (second >= 0) & (first != second) & _close(points)
+    at = neighbours(points, changes | direct)
+    column = points.column[at]
+    low, high = points.amplitude[at].copy(), points.amplitude[at + 1].copy()
+    below, above = points.mode[at].copy(), points.mode[at + 1].copy()
+    while len(wide := np.flatnonzero(high - low > WIDTH)):
+        middle = 0.5 * (low[wide] + high[wide])
+        mode = solve(column[wide], middle).mode
+        rises = (mode >= 0) == (above[wide] >= 0)
+        up, down = wide[~rises], wide[rises]
+        low[up], below[up] = middle[~rises], mode[~rises]
+        high[down], above[down] = middle[rises], mode[rises]
+    beside = np.where(origin[at] == "grid", origin[at + 1], origin[at])
+    table = {"column": column, "low": low, "high": high, "below": below, "above": above}
+    return pd.DataFrame({**table, "found": beside})
+
+
+def _close(points: Points) -> NDArray[np.bool_]:
+    return np.diff(points.amplitude) <= WIDTH
+
+
+def mode_changes(solve: Solve, points: Points) -> Points:
+    """Return points that survive between neighbours that overturn after other numbers of impacts.
+
+    Where there is none to WIDTH, the two points on either side of the change.
+    """
+    first, second = points.mode[:-1], points.mode[1:]
+    at = neighbours(points, (first >= 0) & (second >= 0) & (first != second) & ~_close(points))
+    column = points.column[at]
+    low, high = points.amplitude[at].copy(), points.amplitude[at + 1].copy()
+    below, above = points.mode[at].copy(), points.mode[at + 1].copy()
+    search = np.arange(len(at))
+    found: list[Points] = []
+    while len(search):
+        middle = 0.5 * (low[search] + high[search])
+        mode = solve(column[search], middle).mode
+        survives = mode < 0
+        found.append(Points(column[search[survives]], middle[survives], mode[survives]))
+        like_below = mode == below[search]
+        up, down = search[~survives & like_below], search[~survives & ~like_below]
+        low[up] = middle[~survives & like_below]
+        high[down], above[down] = middle[~survives & ~like_below], mode[~survives & ~like_below]
+        search = search[~survives]
+        done = high[search] - low[search] <= WIDTH
+        ended = search[done]
+        found += [
+            Points(column[ended], low[ended], below[ended]),
+            Points(column[ended], high[ended], above[ended]),
+        ]
+        search = search[~done]
+    none = Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int16))
+    for part in found:
+        none = join(none, part)
+    return none
+
+
+def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int16], margin: FloatArray) -> Points:
+    """Follow every local extremum of the margin towards zero; return the points beyond zero."""
+    over = mode >= 0
+    alike = (over[:, 1:-1] == over[:, :-2]) & (over[:, 1:-1] == over[:, 2:])
+    # a surviving maximum, or an overturning minimum, is a least distance from the edge
+    distance = np.where(np.isfinite(margin), np.abs(margin), np.inf)
+    here = distance[:, 1:-1]
+    least = (here <= distance[:, :-2]) & (here < distance[:, 2:])
+    column, row = np.nonzero(alike & least & np.isfinite(here))
+    row += 1
+    low, middle, high = grid[column, row - 1], grid[column, row], grid[column, row + 1]
+    best, side = distance[column, row].copy(), over[column, row]
+    middle = middle.copy()
+    search = np.arange(len(column))
+    beyond: list[Points] = [Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int16))]
+    while len(search):
+        right = high[search] - middle[search] > middle[search] - low[search]
+        end = np.where(right, high[search], low[search])
+        trial = 0.5 * (middle[search] + end)
+        found = solve(column[search], trial)
+        crossed = (found.mode >= 0) != side[search]
+        beyond.append(Points(column[search[crossed]], trial[crossed], found.mode[crossed]))
+        size = np.where(np.isfinite(found.margin), np.abs(found.margin), np.inf)
+        better = size < best[search]
+        # the new point is the middle, or it bounds the interval
+        _shrink(low, middle, search, better & right, ~better & ~right, trial)
+        _shrink(high, middle, search, better & ~right, ~better & right, trial)
+        middle[search[better]], best[search[better]] = trial[better], size[better]
+        search = search[~crossed]
+        search = search[high[search] - low[search] > ISLAND_WIDTH]
+    result = beyond[0]
+    for part in beyond[1:]:
+        result = join(result, part)
+    return result
+
+
+def _shrink(
+    bound: FloatArray,
+    middle: FloatArray,
+    search: IntArray,
+    to_middle: NDArray[np.bool_],
+    to_trial: NDArray[np.bool_],
+    trial: FloatArray,
+) -> None:
+    """Move one end of the intervals to the old middle or to the new point."""
+    bound[search[to_middle]] = middle[search[to_middle]]
+    bound[search[to_trial]] = trial[to_trial]
+
+
+def intervals(
+    edges: pd.DataFrame, first: NDArray[np.int16], low: float, high: float
+) -> pd.DataFrame:
+    """Return the intervals between the edges of each column: column, low, high, mode.
+
+    `first` is the mode of each column at its lower end.
+    """
+    columns = len(first)
+    middle = 0.5 * (edges["low"].to_numpy() + edges["high"].to_numpy())
+    column = np.concatenate([np.arange(columns), edges["column"].to_numpy()])
+    start = np.concatenate([np.full(columns, low), middle])
+    mode = np.concatenate([first, edges["above"].to_numpy()])
+    order = np.lexsort((start, column))
+    column, start, mode = column[order], start[order], mode[order]
+    end = np.append(start[1:], high)
+    end[np.append(column[1:] != column[:-1], True)] = high
+    return pd.DataFrame({"column": column, "low": start, "high": end, "mode": mode})

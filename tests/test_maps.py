@@ -1,0 +1,175 @@
+"""Modes of overturning by the million: against `simulate`, the criteria, and what must hold."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    MODELS,
+    Outcome,
+    RigidBlock,
+    SinePulse,
+    overturning_modes,
+    peak_ratios,
+    simulate,
+)
+from analytic.criteria import overturning_amplitude
+from analytic.maps import AT_REST, FAILED, SURVIVES
+
+LINEAR = [name for name, model in MODELS.items() if model.linear]
+
+
+def onset_of(model, alpha):
+    return float(MODELS[model].onset(np.array(alpha)))
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("half_cycles", [1, 2, 3, 6])
+def test_outcomes_are_those_of_the_other_kernel(model, half_cycles):
+    draw = np.random.default_rng(half_cycles)
+    count = 4000
+    alpha = draw.uniform(0.03, 1.2, count)
+    amplitude = np.tan(alpha) * np.exp(draw.uniform(-0.2, 2.5, count)) * draw.choice([-1, 1], count)
+    omega = np.exp(draw.uniform(math.log(0.05), math.log(20.0), count))
+    restitution = np.where(draw.random(count) < 0.5, draw.uniform(0.0, 1.0, count), 0.8)
+    found = overturning_modes(alpha, amplitude, omega, half_cycles, model, restitution)
+    _, outcomes = peak_ratios(alpha, amplitude, omega, half_cycles, model, restitution)
+    expected = {SURVIVES: Outcome.ROCKED, AT_REST: Outcome.AT_REST, FAILED: Outcome.FAILED}
+    named = [expected.get(int(mode), Outcome.OVERTURNED) for mode in found.mode]
+    assert [n for n, (a, b) in enumerate(zip(named, outcomes, strict=True)) if a is not b] == []
+    assert set(named) == {Outcome.ROCKED, Outcome.AT_REST, Outcome.OVERTURNED}
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    alpha=st.floats(0.05, 0.8),
+    excess=st.floats(1.05, 9.0),
+    omega=st.floats(0.2, 9.0),
+    half_cycles=st.integers(1, 5),
+    model=st.sampled_from(list(MODELS)),
+)
+def test_the_mode_is_the_number_of_impacts_of_the_fall(alpha, excess, omega, half_cycles, model):
+    block = RigidBlock(width=1.0, height=1.0 / math.tan(alpha))
+    amplitude = excess * onset_of(model, alpha)
+    pulse = SinePulse(
+        amplitude=amplitude * block.gravity, omega=omega * block.p, half_cycles=half_cycles
+    )
+    found = overturning_modes(alpha, amplitude, omega, half_cycles, model)
+    if abs(found.margin) < 1e-9:
+        return
+    # followed until the block lies on its side, the march meets every impact before
+    fall = simulate(block, pulse, model, duration=pulse.duration + 40.0 / block.p)
+    if fall.outcome is Outcome.OVERTURNED:
+        assert found.mode == len(fall.impacts)
+    else:
+        assert found.mode == SURVIVES
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    alpha=st.floats(0.05, 0.8),
+    omega=st.floats(0.3, 9.0),
+    half_cycles=st.integers(1, 3),
+    model=st.sampled_from(list(MODELS)),
+    data=st.data(),
+)
+def test_bisected_edges_are_those_of_the_other_kernel(alpha, omega, half_cycles, model, data):
+    grid = onset_of(model, alpha) * np.linspace(1.01, 9.0, 60)
+    over = overturning_modes(alpha, grid, omega, half_cycles, model).mode >= 0
+    edges = np.flatnonzero(over[1:] != over[:-1])
+    if len(edges) == 0:
+        return
+    low, high = grid[edges[0]], grid[edges[0] + 1]
+    while high - low > 1e-12 * high:
+        middle = 0.5 * (low + high)
+        beyond = overturning_modes(alpha, middle, omega, half_cycles, model).mode >= 0
+        low, high = (low, middle) if beyond == over[edges[0] + 1] else (middle, high)
+    sides = np.array([low * (1.0 - 1e-10), high * (1.0 + 1e-10)])
+    peaks, _ = peak_ratios(alpha, sides, omega, half_cycles, model)
+    assert list(np.isinf(peaks)) == [over[edges[0]], over[edges[0] + 1]]
+
+
+@pytest.mark.parametrize("omega_over_p", [0.5, 1.0, 2.0, 4.0, 8.0])
+@pytest.mark.parametrize("model", LINEAR)
+@pytest.mark.parametrize("half_cycles", [1, 2])
+def test_overturning_without_impact_begins_where_the_criterion_says(
+    model, omega_over_p, half_cycles
+):
+    alpha = 0.35
+    law = MODELS[model].law(alpha, 0.9)
+    threshold = law.onset * overturning_amplitude(omega_over_p / law.k, half_cycles)
+    sides = threshold * np.array([1.0 - 1e-11, 1.0 + 1e-11])
+    below, above = overturning_modes(alpha, sides, omega_over_p, half_cycles, model).mode
+    assert below != 0
+    assert above == 0
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("half_cycles", [1, 2, 3])
+def test_margin_is_continuous_through_changes_of_the_impact_count(model, half_cycles):
+    alpha, omega = 0.25, 2.0
+    onset = onset_of(model, alpha)
+
+    def margins(amplitudes):
+        found = overturning_modes(alpha, onset * amplitudes, omega, half_cycles, model)
+        assert np.array_equal(found.mode >= 0, found.margin > 0.0)
+        return np.minimum(found.margin, 0.3)
+
+    amplitudes = np.linspace(1.0, 7.0, 2001)
+    steps = np.abs(np.diff(margins(amplitudes)))
+    # the steepest places are steep, like a root at a grazing impact, but no jumps
+    for place in np.argsort(steps)[-3:]:
+        low, high = amplitudes[place], amplitudes[place + 1]
+        for _ in range(36):
+            points = np.array([low, 0.5 * (low + high), high])
+            first, second = np.abs(np.diff(margins(points)))
+            low, high = (points[0], points[1]) if first > second else (points[1], points[2])
+        assert abs(np.diff(margins(np.array([low, high])))[0]) < 2e-3
+
+
+def test_threads_and_chunks_change_no_bit():
+    alpha = np.linspace(0.1, 0.6, 40)[:, None]
+    amplitude = np.tan(alpha) * np.linspace(1.0, 6.0, 1000)
+    one = overturning_modes(alpha, amplitude, 2.5, 2, threads=1)
+    two = overturning_modes(alpha, amplitude, 2.5, 2, threads=2)
+    parts = [overturning_modes(alpha[i], amplitude[i], 2.5, 2) for i in range(40)]
+    for name in ("mode", "margin", "steps"):
+        assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
+        assert getattr(one, name).tobytes() == b"".join(getattr(p, name).tobytes() for p in parts)
+
+
+def test_mirrored_pulses_overturn_alike():
+    amplitude = np.linspace(0.2, 2.0, 500)
+    ahead = overturning_modes(0.25, amplitude, 3.0, 2)
+    back = overturning_modes(0.25, -amplitude, 3.0, 2)
+    np.testing.assert_array_equal(ahead.mode, back.mode)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [((0.0, 1.0, 1.0, 1), "alpha"), ((0.3, 1.0, 0.0, 1), "omega"), ((0.3, 1.0, 1.0, 0.5), "half")],
+)
+def test_bad_input_is_named(arguments, named):
+    with pytest.raises(ValueError, match=named):
+        overturning_modes(*arguments)
+
+
+def test_memory_is_that_of_the_results():
+    code = (
+        "import resource, numpy as np\n"
+        "from analytic import overturning_modes\n"
+        "amplitude = np.linspace(0.25, 2.5, 2000)[:, None]\n"
+        "omega = np.linspace(0.2, 8.0, 2000)\n"
+        "overturning_modes(0.25, amplitude[:1], omega[:1], 1, 'housner')\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "overturning_modes(0.25, amplitude, omega, 1, 'housner')\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    # 14 bytes a case are 55 MiB of results; a stack of the inputs would be another 153
+    assert int(done.stdout) < 90 * 1024
