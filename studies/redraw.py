@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from studies import ensemble, histories, sweep
+from studies import ensemble, histories, sweep, validity
 from studies.arguments import BadInputError
 from studies.cases import HISTORIES
 
@@ -23,6 +23,8 @@ def command(folder: Path, /) -> int:
     ]
     if (folder / "ensemble.csv").is_file():
         drawn.append(ensemble.redraw(folder))
+    if (folder / "map.csv").is_file():
+        drawn.append(validity.redraw(folder))
     if not drawn:
         raise BadInputError(
             f"FOLDER is {str(folder)!r}; it must hold a sweep.csv, an ensemble.csv "
