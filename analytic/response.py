@@ -92,6 +92,8 @@ class Response:
         Largest distance [m] that an engine's contact slid; nan for the reference.
     sink_m : float
         Largest depth [m] of an engine's lowest corner in the base; nan for the reference.
+    hop_m : float
+        Largest height [m] of an engine's lowest corner above the base; nan for the reference.
     """
 
     outcome: Outcome
@@ -109,6 +111,7 @@ class Response:
     friction_needed: float = float("nan")
     slip_m: float = float("nan")
     sink_m: float = float("nan")
+    hop_m: float = float("nan")
 
     @classmethod
     def failure(cls, message: str, *, steps: int = 0, wall_s: float = 0.0) -> "Response":

@@ -74,7 +74,7 @@ class Observer:
         self._uplifts: list[float] = []
         self._rests: list[float] = []
         self._impacts: list[Impact] = []
-        self._peak = self._slide = self._sink = self._give = self._hop = 0.0
+        self._peak = self._slide = self._sink = self._give = self._hop = self._highest = 0.0
         self._crossed = self._overturned = self._turned = False
         self.lifted = self.done = False
         self.broken = ""
@@ -109,8 +109,9 @@ class Observer:
         self._decide(row)
 
     def _check(self, depth: float) -> None:
+        """Look at the lowest corner's height [m] above the base, and at the slide."""
         width = 2.0 * self._half_width
-        self._sink = max(self._sink, -depth)
+        self._sink, self._highest = max(self._sink, -depth), max(self._highest, depth)
         if depth < -SINK_WIDTHS * width:
             self.broken = f"the pivot sank {-depth:.3g} m into the base"
         elif depth > THROWN_WIDTHS * width:
@@ -204,4 +205,5 @@ class Observer:
             history=None if times is None or self._rows is None else sample(self._rows, times),
             slip_m=self._slide,
             sink_m=self._sink,
+            hop_m=self._highest,
         )

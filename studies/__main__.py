@@ -68,6 +68,12 @@ Distributions of the peak, fragility curves with their bounds, and the agreement
 the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
 agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about
 half an hour on one core, --quick half a minute.""",
+    "validity": """Where the reference is valid, and what engines do beyond: slide, lift off.
+
+The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
+on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
+findings.txt; resumable. The full study takes about three minutes on one core, --quick half a
+minute.""",
     "report": """Every study, and one self-contained page (report.html) about them.
 
 The quick studies take about four minutes on two cores, the full ones about forty. A report that

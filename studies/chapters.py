@@ -142,9 +142,17 @@ CHAPTERS: tuple[Chapter, ...] = (
         study="overturning",
         folder="overturning",
         question="Which pulses overturn a block, and who draws that map wrongly?",
-        source="map.csv",
+        source="boundaries.csv",
         tables=("differences.csv", "checks.csv"),
         minutes=(0.5, 5.0),
+    ),
+    Chapter(
+        study="validity",
+        folder="validity",
+        question="Where is the reference itself valid, and what do engines do beyond?",
+        source="validity.csv",
+        tables=(),
+        minutes=(0.5, 3.0),
     ),
     Chapter(
         study="ensemble",

@@ -1,19 +1,17 @@
 """One block, one pulse or record, every named source side by side."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from typing import Annotated, Literal
 
 import numpy as np
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
-from analytic.motion import FloatArray, Motion, SinePulse
-from analytic.record import Record
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from studies import provenance
-from studies.accelerograms import read_record
 from studies.arguments import (
     BadInputError,
     Count,
@@ -22,11 +20,12 @@ from studies.arguments import (
     check_sources,
     several,
 )
-from studies.cases import PULSES, free_rocking_window
+from studies.cases import free_rocking_window
 from studies.comparison import draw, json_lines, table_text
 from studies.executors import Executor, Local
 from studies.jobs import Job, summary
 from studies.journal import Row
+from studies.posing import posed_block, posed_pulse, posed_record, refuse_given
 from studies.runner import exit_code, run_jobs
 from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
@@ -101,15 +100,17 @@ def command(
     """
     check_sources(sources)
     check_plot(plot)
-    block = _block(width, height)
-    shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
-    reading = {"units": units, "scale": scale, "pga": pga}
+    block = posed_block(width, height)
     if record is None:
-        _refuse_given(reading, "they belong to --record, which is missing")
-        motion: Motion = _pulse(amplitude, omega, _half_cycles(pulse, half_cycles))
+        refuse_given(
+            {"units": units, "scale": scale, "pga": pga},
+            "they belong to --record, which is missing",
+        )
+        motion: Motion = posed_pulse(amplitude, omega, pulse, half_cycles)
     else:
-        _refuse_given(shape, "they belong to a pulse, and --record is given")
-        motion = _scaled(read_record(record, units), scale, pga)
+        shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
+        refuse_given(shape, "they belong to a pulse, and --record is given")
+        motion = posed_record(record, units, scale, pga)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
     executor = Local(jobs or provenance.usable_cores(), time_limit)
@@ -126,52 +127,6 @@ def command(
     if plot:
         draw(rows, block, motion, plot)
     return exit_code(rows)
-
-
-def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
-    if pulse and half_cycles:
-        raise BadInputError(
-            f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
-        )
-    return half_cycles or PULSES[pulse or "full-sine"]
-
-
-def _refuse_given(options: Mapping[str, object], reason: str) -> None:
-    given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
-    if given:
-        raise BadInputError(f"{' and '.join(given)}; {reason}")
-
-
-def _block(width: float, height: float) -> RigidBlock:
-    try:
-        return RigidBlock(width=width, height=height)
-    except ValueError as error:
-        raise BadInputError(f"--{error}") from error
-
-
-def _pulse(amplitude: float | None, omega: float | None, half_cycles: int) -> SinePulse:
-    if amplitude is None or omega is None:
-        missing = " and ".join(
-            name for name, value in (("--amplitude", amplitude), ("--omega", omega)) if not value
-        )
-        raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
-    try:
-        return SinePulse(
-            amplitude=amplitude * STANDARD_GRAVITY, omega=omega, half_cycles=half_cycles
-        )
-    except ValueError as error:
-        raise BadInputError(f"--{error}") from error
-
-
-def _scaled(record: Record, scale: float | None, pga: float | None) -> Record:
-    if scale is not None and pga is not None:
-        raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
-    try:
-        if pga is not None:
-            return record.scaled_to(pga * STANDARD_GRAVITY)
-        return record.scaled(1.0 if scale is None else scale)
-    except ValueError as error:
-        raise BadInputError(f"--record: {error}") from error
 
 
 def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
