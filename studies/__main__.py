@@ -78,6 +78,10 @@ minute.""",
 
 The quick studies take about four minutes on two cores, the full ones about forty. A report that
 was interrupted goes on where it stopped when the same command is given again.""",
+    "animate": """A block rocking in several sources side by side, on the same clock, as a film.
+
+For one block and pulse, or for the case of a sweep's results in which the sources differ most. A
+GIF, or an MP4 with the extra [video].""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
