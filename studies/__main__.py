@@ -1,6 +1,7 @@
 """The command line: `rocking`, and `python -m studies`."""
 
 import io
+import itertools
 import os
 import signal
 import sys
@@ -111,6 +112,9 @@ def _version() -> str:
 
 def run(arguments: list[str]) -> int:
     """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
+    for name, value in itertools.pairwise(["", *arguments]):
+        if not value:
+            return _refuse(f"{name} is empty; it must be given")
     try:
         code = make_app()(
             arguments,

@@ -23,9 +23,11 @@ from engines import ENGINES, Scene, run
 from studies import provenance
 from studies.cases import HISTORIES, free_rocking_window, sweep_cases
 from studies.cost_report import headline, pictures, report
-from studies.journal import FolderError
+from studies.runner import own_folder
 
 __all__ = ["command", "headline", "pictures", "report"]
+
+PRODUCTS = ("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt")
 
 ENGINE_STEP = {"pybullet": ("pybullet", "stepSimulation"), "mujoco": ("mujoco", "mj_step")}
 """Engine -> module and function that does nothing but the engine's own step."""
@@ -75,12 +77,9 @@ def command(*, out: Path, quick: bool = False) -> int:
     quick
         Shorter timing: a few seconds.
     """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
+    with own_folder(out, "cost", PRODUCTS, quick=quick):
         measure(out, quick)
-    except OSError as error:
-        raise FolderError(out, f"it must be a folder that can be written ({error})") from error
-    print(report(out))
+        print(report(out))
     return 0
 
 

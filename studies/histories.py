@@ -1,6 +1,5 @@
 """The paper's time histories, figures 2, 4 and 5, and what it says about them."""
 
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,8 +14,8 @@ from studies.comparison import samples
 from studies.executors import Executor, Local
 from studies.findings import Finding, findings_text
 from studies.jobs import Job, summary
-from studies.journal import Row, open_journal
-from studies.runner import exit_code, run_jobs
+from studies.journal import Row
+from studies.runner import exit_code, own_folder, run_jobs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,16 +64,11 @@ def command(
     if sources is not None:
         check_sources(sources)
     executor = Local(jobs or provenance.usable_cores(), time_limit)
-    began = time.perf_counter()
-    identity = provenance.identity("histories", sources=sources)
     products = [f"figure-{number}.csv" for number in HISTORIES]
     rows: list[Row] = []
-    with open_journal(out, identity, products):
-        path = out / "provenance.json"
-        record = provenance.begin(path, identity, {"figures": list(figure)})
+    with own_folder(out, "histories", products, sources=sources):
         for number in figure:
             rows += one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
-        provenance.finish(path, record, began, len(rows))
     return exit_code(rows)
 
 

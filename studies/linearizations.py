@@ -14,10 +14,12 @@ from studies import provenance
 from studies.cases import PULSES, sweep_cases
 from studies.differences import posed_cases, scientific
 from studies.findings import Finding, findings_text
-from studies.journal import FolderError
+from studies.runner import own_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+PRODUCTS = ("linearizations.csv", "quantiles.csv", "linearizations.png", "findings.txt")
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
@@ -89,16 +91,12 @@ def command(*, out: Path) -> int:
     out
         Folder for the results; made if there is none.
     """
-    errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
+    with own_folder(out, "linearizations", PRODUCTS):
+        errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
         tables = {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
         for name, table in tables.items():
             provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-        text = report(out, errors)
-    except OSError as error:
-        raise FolderError(out, f"it must be a folder that can be written ({error})") from error
-    print(text)
+        print(report(out, errors))
     return 0
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 PRODUCTS = (
     *("precision.csv", "work-precision.csv", "precision.png", "findings.txt"),
-    *("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt"),
+    *cost.PRODUCTS,
 )
 BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 """Time [s] spent on timing one case with one setting."""

@@ -140,9 +140,9 @@ def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
     raise FolderError(path.parent, f"{problem} (its provenance.json says otherwise)")
 
 
-def finish(path: Path, record: dict[str, Any], began: float, rows: int) -> None:
-    """Add to the last run how long it took since `began` (`time.perf_counter`), and its rows."""
-    record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), "rows": rows}
+def finish(path: Path, record: dict[str, Any], began: float, **counted: int) -> None:
+    """Add to the last run how long it took since `began` (`time.perf_counter`), and what it did."""
+    record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **counted}
     write_text(path, json.dumps(record, indent=2) + "\n")
 
 

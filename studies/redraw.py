@@ -19,14 +19,16 @@ def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") ->
     """
     from studies.figures import save_all
 
-    drawn = [
-        path
-        for chapter in CHAPTERS
-        if any(folder.glob(chapter.source))
-        for path in save_all(chapter.pictures(folder), folder, f".{suffix}")
-    ]
-    if not drawn:
-        tables = ", ".join(chapter.source for chapter in CHAPTERS)
+    studies = {chapter.study: chapter for chapter in CHAPTERS if any(folder.glob(chapter.source))}
+    if not studies:
+        tables = ", ".join(dict.fromkeys(chapter.source for chapter in CHAPTERS))
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
+    drawn = []
+    for chapter in studies.values():
+        try:
+            drawn += save_all(chapter.pictures(folder), folder, f".{suffix}")
+        except (KeyError, ValueError, FileNotFoundError) as error:
+            problem = f"its results of `rocking {chapter.study}` cannot be drawn ({error})"
+            raise BadInputError(f"FOLDER is {str(folder)!r}; {problem}") from error
     print("\n".join(map(str, drawn)))
     return 0

@@ -2,8 +2,8 @@
 
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -79,8 +79,28 @@ def fill_folder(
             part = [row for row in rows if row[tables] == name] if tables else rows
             text = pd.DataFrame(part).to_csv(index=False, na_rep="nan")
             provenance.write_text(folder / f"{name}.csv", text)
-        provenance.finish(path, record, began, len(rows))
+        provenance.finish(path, record, began, rows=len(rows))
     return rows
+
+
+@contextmanager
+def own_folder(
+    folder: Path, study: str, products: Sequence[str], **settings: Any
+) -> Iterator[None]:
+    """Hold a results folder for a study that is done in one go, and write its provenance.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    began = time.perf_counter()
+    identity = provenance.identity(study, **settings)
+    with open_journal(folder, identity, products):
+        path = folder / "provenance.json"
+        record = provenance.begin(path, identity, {})
+        yield
+        provenance.finish(path, record, began)
 
 
 def _short(values: Sequence[Any]) -> Any:

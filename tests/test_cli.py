@@ -10,6 +10,7 @@ import pytest
 
 from analytic.response import Response
 from studies.__main__ import COMMANDS, run
+from studies.chapters import CHAPTERS
 from studies.sources import SOURCES, Effort, Source
 
 ROOT = Path(__file__).parent.parent
@@ -71,6 +72,12 @@ BAD_INPUT = [
     (["histories", "--figure", "3", "--out", "DIR"], "--figure", "'3'", "2, 4, 5"),
     (["redraw", "DIR"], "FOLDER", "DIR", "sweep.csv"),
     (["weep"], "weep", "", "sweep"),
+    (["contact", "--out", ""], "--out", "empty", "given"),
+    (["precision", "--out", "DIR", "--time-limit", "nan"], "--time-limit", "'nan'", "positive"),
+    (["stability", "--out", "DIR", "--sources", "exact", "exact"], "--sources", "exact", "once"),
+    (["free", "--out", "DIR", "--jobs", "1.5"], "--jobs", "'1.5'", "whole"),
+    (["report", "--out", "/dev/null"], "--out", "'/dev/null'", "folder"),
+    (["cost", "--out", "/dev/null"], "--out", "'/dev/null'", "folder"),
 ]
 
 
@@ -209,3 +216,15 @@ def test_accuracy_and_step_reach_only_the_sources_they_are_for():
     assert effort.options("rk4") == {"step": 1e-3}
     assert effort.options("pybullet:fixed") == {"step": 1e-3}
     assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}
+
+
+@pytest.mark.parametrize("study", [chapter.study for chapter in CHAPTERS if chapter.quick])
+def test_a_table_of_unknown_origin_is_left_alone(study, tmp_path, capsys):
+    chapter = next(chapter for chapter in CHAPTERS if chapter.study == study)
+    table = tmp_path / chapter.source
+    table.write_text("mine")
+    assert run(chapter.command_line(tmp_path, full=False)) == 2
+    assert "unknown origin" in capsys.readouterr().err
+    assert table.read_text() == "mine"
+    assert run(["redraw", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
