@@ -261,6 +261,10 @@ def _claims(agreed: pd.DataFrame) -> list[str]:
             f"distributions differ (p < 0.05) at {rejected} of {tests} intensities."
         )
     lines.append(
+        "exact at 1.01 is the exact solution of motions 1 % stronger: what a small uncertainty of "
+        "the motion does to the response itself."
+    )
+    lines.append(
         "The two distributions are of the same motions, so that the test of Kolmogorov and Smirnov "
         "errs on the side of calling them equal; McNemar's and the capacity's ratio are paired."
     )

@@ -187,7 +187,7 @@ def test_the_command_writes_its_tables_and_resumes(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "single responses predicted" in text
     lines = (tmp_path / "journal.jsonl").read_text().splitlines()
-    assert len(lines) == 1 + 3 * 3 * 2
+    assert len(lines) == 1 + 3 * 3 * 3
     assert run([*arguments, "--sources", "modified", "housner"]) == 0
     assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(lines)] == lines
     for name in ("ensemble", "stripes", "curves", "agreement", "confusion"):
