@@ -49,12 +49,18 @@ def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArr
         return Fit(math.sqrt(strongest * weakest), 0.0)
     logs = np.log(intensity)
 
-    def surprise(unknowns: FloatArray) -> float:
-        z = (logs - unknowns[0]) * math.exp(unknowns[1])
-        return -float(overturned @ log_ndtr(z) + survived @ log_ndtr(-z))
+    def surprise(unknowns: FloatArray) -> tuple[float, FloatArray]:
+        """Return the negative logarithm of the likelihood, and its gradient."""
+        steepness = math.exp(unknowns[1])
+        z = (logs - unknowns[0]) * steepness
+        below, above = log_ndtr(z), log_ndtr(-z)
+        bell = -0.5 * z * z - 0.5 * math.log(2.0 * math.pi)
+        growth = overturned * np.exp(bell - below) - survived * np.exp(bell - above)
+        gradient = np.array([steepness * growth.sum(), -growth @ z])
+        return -float(overturned @ below + survived @ above), gradient
 
     start = [float(np.average(logs, weights=cases)), math.log(2.0)]
-    best = minimize(surprise, start, method="BFGS")
+    best = minimize(surprise, start, jac=True, method="BFGS")
     return Fit(math.exp(best.x[0]), math.exp(-best.x[1]))
 
 
