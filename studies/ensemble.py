@@ -10,18 +10,13 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.record import Record
 from studies import provenance
+from studies.agreement import agreement, confusion
 from studies.arguments import Count, Positive, check_sources, several
 from studies.ensemble_figure import draw_ensemble
-from studies.ensemble_report import (
-    agreement,
-    confusion,
-    curves,
-    findings,
-    fragilities,
-    stripes,
-)
+from studies.ensemble_report import curves, findings, stripes
 from studies.executors import Executor, Local
 from studies.figures import save
+from studies.fragility import fragilities
 from studies.jobs import Job
 from studies.journal import Row
 from studies.motions import FAMILIES

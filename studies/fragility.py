@@ -8,15 +8,20 @@ motion does at two intensities is not independent.
 """
 
 import math
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
 from scipy.stats import binomtest
 
 from analytic.motion import FloatArray
+
+BLOCK = ["width_m", "height_m"]
+"""Columns that tell blocks apart."""
 
 CONFIDENCE = 0.95
 RESAMPLES = 200
@@ -103,3 +108,40 @@ def share_bounds(successes: int, cases: int) -> tuple[float, float]:
         return 0.0, 1.0
     interval = binomtest(successes, cases).proportion_ci(CONFIDENCE, method="exact")
     return float(interval.low), float(interval.high)
+
+
+def by_block(rows: pd.DataFrame) -> Iterator[tuple[dict[str, float], pd.DataFrame]]:
+    """Yield the size of each block, by its columns, with its rows."""
+    for _, group in rows.groupby(BLOCK, sort=False):
+        yield {name: float(group[name].iloc[0]) for name in BLOCK}, group
+
+
+class Fragility:
+    """The fit of one block and source, and those of resampled motions."""
+
+    def __init__(self, group: pd.DataFrame) -> None:
+        table = group.pivot(index="motion", columns="intensity", values="outcome")
+        self.intensity = table.columns.to_numpy(float)
+        usable = (table != "failed").to_numpy(float)
+        overturned = (table == "overturned").to_numpy(float)
+        self.fit = fit_lognormal(self.intensity, overturned.sum(axis=0), usable.sum(axis=0))
+        # the same draw for every source, so that their ratios are of the same motions
+        chosen = choose(len(table))
+        self.resampled = resampled_fits(self.intensity, overturned, usable, chosen)
+
+    def medians(self) -> FloatArray:
+        """Return the medians of the resampled fits."""
+        return np.array([fit.median for fit in self.resampled])
+
+
+Fragilities = Mapping[tuple[float, float, str], Fragility]
+"""Width and height of a block [m] and a source -> what is known of its overturning."""
+
+
+def fragilities(rows: pd.DataFrame) -> Fragilities:
+    """Fit every block and source."""
+    return {
+        (size["width_m"], size["height_m"], str(source)): Fragility(group)
+        for size, block in by_block(rows)
+        for source, group in block.groupby("source", sort=False)
+    }

@@ -9,9 +9,18 @@ from scipy.stats import CensoredData, binomtest, lognorm, norm
 
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies.__main__ import run
+from studies.agreement import agreement, confusion
 from studies.ensemble import ensemble_cases
-from studies.ensemble_report import agreement, confusion, curves, fragilities, stripes
-from studies.fragility import Fit, bounds, choose, fit_lognormal, resampled_fits, share_bounds
+from studies.ensemble_report import curves, stripes
+from studies.fragility import (
+    Fit,
+    bounds,
+    choose,
+    fit_lognormal,
+    fragilities,
+    resampled_fits,
+    share_bounds,
+)
 from studies.motions import FAMILIES
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
