@@ -1,7 +1,7 @@
 """One block, one pulse or record, every named source side by side."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from typing import Annotated, Literal
@@ -13,13 +13,14 @@ from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Response
 from studies import provenance
-from studies.accelerograms import read_record
+from studies.accelerograms import Units, read_record
 from studies.arguments import (
     BadInputError,
     Count,
     Positive,
     check_plot,
     check_sources,
+    refuse_given,
     several,
 )
 from studies.cases import PULSES, free_rocking_window
@@ -42,7 +43,7 @@ def command(
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
     record: Path | None = None,
-    units: Literal["g", "m/s2", "cm/s2", "gal"] | None = None,
+    units: Units | None = None,
     scale: Positive | None = None,
     pga: Positive | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
@@ -105,10 +106,10 @@ def command(
     shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
     reading = {"units": units, "scale": scale, "pga": pga}
     if record is None:
-        _refuse_given(reading, "they belong to --record, which is missing")
+        refuse_given(reading, "only with --record")
         motion: Motion = _pulse(amplitude, omega, _half_cycles(pulse, half_cycles))
     else:
-        _refuse_given(shape, "they belong to a pulse, and --record is given")
+        refuse_given(shape, "only without --record")
         motion = _scaled(read_record(record, units), scale, pga)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
@@ -134,12 +135,6 @@ def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
             f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
         )
     return half_cycles or PULSES[pulse or "full-sine"]
-
-
-def _refuse_given(options: Mapping[str, object], reason: str) -> None:
-    given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
-    if given:
-        raise BadInputError(f"{' and '.join(given)}; {reason}")
 
 
 def _block(width: float, height: float) -> RigidBlock:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,8 +11,17 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.record import Record
 from studies import provenance
+from studies.accelerograms import Units, read_record
 from studies.agreement import agreement, confusion
-from studies.arguments import Count, Positive, check_sources, several
+from studies.arguments import (
+    BadInputError,
+    Count,
+    Positive,
+    check_sources,
+    refuse_given,
+    refuse_repeats,
+    several,
+)
 from studies.ensemble_figure import draw_ensemble
 from studies.ensemble_report import curves, findings, stripes
 from studies.executors import Executor, Local
@@ -67,34 +77,50 @@ class EnsembleCase:
         return motion.scaled_to(self.strength * self.intensity * onset)
 
 
+def drawn(family: str, count: int, seed: int) -> list[Record]:
+    """Draw motions of a family; motion i of a seed has the seed 10^6 seed + i."""
+    return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
+
+
+def recorded(paths: Sequence[Path], units: str | None) -> list[Record]:
+    """Read records, all of the same units where they state none.
+
+    Raises
+    ------
+    BadInputError
+        If one cannot be read, or does not move.
+    """
+    motions = [read_record(path, units, "--records") for path in paths]
+    for path, motion in zip(paths, motions, strict=True):
+        if motion.peak == 0.0:
+            raise BadInputError(
+                f"--records is {str(path)!r}; it is zero throughout, and must not be"
+            )
+    return motions
+
+
 def ensemble_cases(
     family: str,
-    motions: int,
-    seed: int,
+    motions: Sequence[Record],
     sizes: Sequence[tuple[float, float]] = SIZES_M,
     intensities: Sequence[float] = INTENSITIES,
 ) -> Iterator[tuple[EnsembleCase, Record]]:
-    """Yield every case with its ground motion; motion i of a seed has the seed 10^6 seed + i."""
-    for i in range(motions):
-        motion = FAMILIES[family](10**6 * seed + i)
-        for width_m, height_m in sizes:
-            for intensity in intensities:
-                case = EnsembleCase(
-                    family=family,
-                    motion=i,
-                    width_m=width_m,
-                    height_m=height_m,
-                    intensity=intensity,
-                )
-                yield case, case.scaled(motion)
+    """Yield every case with its ground motion."""
+    for i, (width_m, height_m), intensity in product(range(len(motions)), sizes, intensities):
+        case = EnsembleCase(
+            family=family, motion=i, width_m=width_m, height_m=height_m, intensity=intensity
+        )
+        yield case, case.scaled(motions[i])
 
 
 def command(
     *,
     out: Path,
-    family: Literal["noise", "near-fault", "ricker"] = "noise",
+    family: Literal["noise", "near-fault", "ricker"] | None = None,
     motions: Count | None = None,
-    seed: Count = 1,
+    seed: Count | None = None,
+    records: Annotated[tuple[Path, ...], several] = (),
+    units: Units | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
@@ -107,12 +133,16 @@ def command(
     out
         Folder for the results; made if there is none.
     family
-        noise: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis and
-        Papageorgiou; ricker: wavelets.
+        noise, the default: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis
+        and Papageorgiou; ricker: wavelets.
     motions
         Number of motions; 40 by default, 8 with --quick.
     seed
-        Seed of the motions, a positive whole number; another one draws others.
+        Seed of the motions, a positive whole number, 1 by default; another one draws others.
+    records
+        Recorded accelerograms instead of a family, PEER AT2 files or tables; at best several.
+    units
+        Of the records' acceleration, where the files do not state them.
     sources
         housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's rk45
         dop853 radau lsoda, beside the exact solution; an engine takes a preset after a colon.
@@ -124,11 +154,19 @@ def command(
         Wall-clock time [s] after which an engine's case is given up.
     """
     check_sources(sources)
-    count = motions or (QUICK_MOTIONS if quick else 40)
+    if records:
+        refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
+        refuse_repeats("--records", records)
+        name, ground = "records", recorded(records, units)
+    else:
+        refuse_given({"units": units}, "only with --records")
+        name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
+        ground = drawn(name, count, seed or 1)
     sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
-    cases = list(ensemble_cases(family, count, seed, sizes, intensities))
+    cases = list(ensemble_cases(name, ground, sizes, intensities))
     executor = Local(jobs or provenance.usable_cores(), time_limit)
-    settings = {"family": family, "seed": seed, "sizes_m": sizes, "intensities": intensities}
+    origin = [path.name for path in records] or [name, str(seed or 1)]
+    settings = {"motions": origin, "sizes_m": sizes, "intensities": intensities}
     rows = ensemble(cases, sources, out, executor=executor, settings=settings)
     print(report(out))
     return exit_code(rows)

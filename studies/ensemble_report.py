@@ -59,7 +59,7 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
     """Say what the tables say: single responses, distributions, fragility, and the claim."""
     motions, levels = rows["motion"].nunique(), sorted(rows["intensity"].unique())
     head = (
-        f"{motions} motions of the family {rows['family'].iloc[0]!r} at {len(levels)} intensities "
+        f"{motions} motions of {rows['family'].iloc[0]!r} at {len(levels)} intensities "
         f"(PGA over g tan α: {', '.join(f'{level:g}' for level in levels)})."
     )
     parts = [head]

@@ -10,7 +10,7 @@ from scipy.stats import CensoredData, binomtest, lognorm, norm
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies.__main__ import run
 from studies.agreement import agreement, confusion
-from studies.ensemble import ensemble_cases
+from studies.ensemble import drawn, ensemble_cases
 from studies.ensemble_report import curves, stripes
 from studies.fragility import (
     Fit,
@@ -36,13 +36,13 @@ def test_a_family_is_reproducible_and_of_unit_peak(family):
 
 
 def test_cases_are_scaled_to_their_intensity():
-    cases = list(ensemble_cases("near-fault", 3, 1))
+    cases = list(ensemble_cases("near-fault", drawn("near-fault", 3, 1)))
     assert len(cases) == 3 * 3 * 6
     for case, motion in cases[::7]:
         block = RigidBlock(width=case.width_m, height=case.height_m)
         onset = 9.81 * math.tan(block.alpha)
         assert motion.peak == pytest.approx(case.intensity * onset, rel=1e-12)
-    gentle = next(ensemble_cases("noise", 1, 1, intensities=[0.999]))
+    gentle = next(ensemble_cases("noise", drawn("noise", 1, 1), intensities=[0.999]))
     assert simulate(gentle[0].block, gentle[1]).outcome is Outcome.AT_REST
 
 
@@ -202,3 +202,44 @@ def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys):
     (tmp_path / "ensemble.png").unlink()
     assert run(["redraw", str(tmp_path)]) == 0
     assert (tmp_path / "ensemble.png").stat().st_size > 20_000
+
+
+def test_records_of_the_users_own(tmp_path, capsys):
+    paths = []
+    for seed in (1, 2):
+        motion = FAMILIES["ricker"](seed)
+        table = np.column_stack([motion.breakpoints, motion.samples])
+        paths.append(str(tmp_path / f"{seed}.csv"))
+        np.savetxt(paths[-1], table, header="units: m/s2", fmt="%.12g")
+    arguments = ["ensemble", "--quick", "--sources", "housner", "--out", str(tmp_path / "out")]
+    assert run([*arguments, "--records", *paths]) == 0
+    assert "2 motions of 'records'" in capsys.readouterr().out
+    rows = pd.read_csv(tmp_path / "out" / "ensemble.csv")
+    block = RigidBlock(width=0.5, height=1.5)
+    first = rows[(rows["source"] == "exact") & (rows["strength"] == 1)].iloc[0]
+    motion = FAMILIES["ricker"](1).scaled_to(first["intensity"] * 9.81 / 3)
+    # the file holds twelve digits
+    assert first["peak_ratio"] == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--records", "FILE", "--seed", "2"], "--seed is 2; it may be given only without --rec"),
+        (["--records", "FILE", "--family", "noise"], "--family is noise"),
+        (["--records", "FILE", "FILE"], "twice"),
+        (["--records", "FILE"], "it is zero throughout"),
+        (["--records", "/nowhere"], "--records is '/nowhere'; it must be a file"),
+        (["--units", "g"], "--units is g; it may be given only with --records"),
+        (["--family", "wind"], "--family"),
+    ],
+)
+def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
+    path = tmp_path / "still.csv"
+    path.write_text("# units: g\n0 0\n0.1 0\n0.2 0\n")
+    given = [str(path) if option == "FILE" else option for option in options]
+    assert run(["ensemble", "--out", str(tmp_path / "out"), *given]) == 2
+    errors = capsys.readouterr().err
+    assert len(errors.splitlines()) == 1
+    assert words in errors
+    assert not (tmp_path / "out").exists()
