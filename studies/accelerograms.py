@@ -8,12 +8,15 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from analytic.block import STANDARD_GRAVITY
 from analytic.record import Record
 from studies.arguments import BadInputError
+
+Units = Literal["g", "m/s2", "cm/s2", "gal"]
 
 UNITS: Mapping[str, float] = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01}
 """Unit of acceleration -> m/s2."""
@@ -33,7 +36,7 @@ STATED = re.compile(
 """A unit as a header states it: in brackets, after an underscore, or after the word units."""
 
 
-def read_record(path: Path, units: str | None = None) -> Record:
+def read_record(path: Path, units: str | None = None, argument: str = "--record") -> Record:
     """Read a recorded ground acceleration.
 
     Parameters
@@ -44,6 +47,8 @@ def read_record(path: Path, units: str | None = None) -> Record:
         without a line of names, comments beginning with # or %. The first time becomes zero.
     units : str, optional
         One of UNITS; needed where the file does not state its own.
+    argument : str, optional
+        What a refusal names.
 
     Raises
     ------
@@ -54,18 +59,20 @@ def read_record(path: Path, units: str | None = None) -> Record:
     try:
         lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
-        raise _refused(path, f"it must be a file that can be read ({error.strerror})") from error
+        raise _refused(
+            argument, path, f"it must be a file that can be read ({error.strerror})"
+        ) from error
     try:
         for number, line in enumerate(lines):
             if found := COUNT_NAMED.search(line) or COUNT_FIRST.match(line):
                 return _peer(lines, number, int(found[1]), float(found[2]), units)
         return _table(lines, units)
     except ValueError as problem:
-        raise _refused(path, str(problem)) from problem
+        raise _refused(argument, path, str(problem)) from problem
 
 
-def _refused(path: Path, problem: str) -> BadInputError:
-    return BadInputError(f"--record is {str(path)!r}; {problem}")
+def _refused(argument: str, path: Path, problem: str) -> BadInputError:
+    return BadInputError(f"{argument} is {str(path)!r}; {problem}")
 
 
 def _peer(lines: Sequence[str], last: int, count: int, dt: float, units: str | None) -> Record:

@@ -12,12 +12,19 @@ from analytic.block import RigidBlock
 from analytic.motion import Motion
 from analytic.response import Outcome
 from studies import provenance
-from studies.arguments import BadInputError, Count, Positive, check_sources, several
+from studies.arguments import (
+    BadInputError,
+    Count,
+    Positive,
+    check_sources,
+    refuse_given,
+    several,
+)
 from studies.cases import Case, free_rocking_window
 from studies.executors import Local
 from studies.jobs import Job, summary
 from studies.journal import Row
-from studies.posing import posed_block, posed_pulse, refuse_given
+from studies.posing import posed_block, posed_pulse
 from studies.runner import exit_code, run_jobs
 
 DEFAULT_SOURCES = ("exact", "housner", "pybullet:naive", "mujoco:naive", "pybullet", "mujoco")
@@ -107,7 +114,7 @@ def _posed(
             **{"width": width, "height": height, "amplitude": amplitude, "omega": omega},
             **{"pulse": pulse, "half-cycles": half_cycles},
         },
-        "--results is given, too: give one or the other",
+        "only without --results",
     )
     case = most_different(results, sources)
     return case.block, case.motion

@@ -1,7 +1,7 @@
 """What the command line accepts: numbers with their range, sources, folders; one line if not."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -78,6 +78,13 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
     for number, value in enumerate(values):
         if value in values[:number]:
             raise BadInputError(f"{argument} names {value!r} twice; each may be named once")
+
+
+def refuse_given(options: Mapping[str, object], allowed: str) -> None:
+    """Raise BadInputError if one of the options, named without dashes, was given a value."""
+    given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
+    if given:
+        raise BadInputError(f"{' and '.join(given)}; it may be given {allowed}")
 
 
 def check_plot(path: Path | None) -> None:

@@ -12,12 +12,14 @@ from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from studies import provenance
+from studies.accelerograms import Units
 from studies.arguments import (
     BadInputError,
     Count,
     Positive,
     check_plot,
     check_sources,
+    refuse_given,
     several,
 )
 from studies.cases import free_rocking_window
@@ -25,7 +27,7 @@ from studies.comparison import draw, json_lines, table_text
 from studies.executors import Executor, Local
 from studies.jobs import Job, summary
 from studies.journal import Row
-from studies.posing import posed_block, posed_pulse, posed_record, refuse_given
+from studies.posing import posed_block, posed_pulse, posed_record
 from studies.runner import exit_code, run_jobs
 from studies.sources import DEFAULT_EFFORT, Accuracy, Effort
 
@@ -41,7 +43,7 @@ def command(
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
     record: Path | None = None,
-    units: Literal["g", "m/s2", "cm/s2", "gal"] | None = None,
+    units: Units | None = None,
     scale: Positive | None = None,
     pga: Positive | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
@@ -104,12 +106,12 @@ def command(
     if record is None:
         refuse_given(
             {"units": units, "scale": scale, "pga": pga},
-            "they belong to --record, which is missing",
+            "only with --record",
         )
         motion: Motion = posed_pulse(amplitude, omega, pulse, half_cycles)
     else:
         shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
-        refuse_given(shape, "they belong to a pulse, and --record is given")
+        refuse_given(shape, "only without --record")
         motion = posed_record(record, units, scale, pga)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from studies.figures import legend_below, style_of
+from studies.figures import style_of
 
 LEAST, BEYOND = 1e-2, 3.0
 """Ends of the scale of the peaks: less is drawn at its foot, and overturned blocks at its top."""
@@ -37,7 +38,12 @@ def draw_ensemble(rows: pd.DataFrame, stripes: pd.DataFrame, curves: pd.DataFram
         strict=True,
     ):
         axes.set_title("\n".join(filter(None, (title, axes.get_title()))), fontsize=11)
-    legend_below(drawing, sources)
+    drawing.legend(
+        handles=[_handle(source) for source in sources],
+        loc="outside lower center",
+        ncols=math.ceil(len(sources) / 2),
+        frameon=False,
+    )
     return drawing
 
 
@@ -133,3 +139,11 @@ def _fragility(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> None:
 def _line(source: str) -> str:
     """Return the line of a source: an engine's is dotted where it is used as it comes."""
     return style_of(source).line or (":" if ":" in source else "-")
+
+
+def _handle(source: str) -> Line2D:
+    style = style_of(source)
+    handle = Line2D([], [], color=style.colour, linewidth=style.width, markersize=5, label=source)
+    handle.set(linestyle=_line(source), marker=style.marker or ".")
+    handle.set_markerfacecolor("none" if style.marker else style.colour)
+    return handle

@@ -78,7 +78,7 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
     drawing.suptitle(
         f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     )
-    legend_below(drawing, sources)
+    _legend_below(drawing, sources)
     return drawing
 
 
@@ -140,7 +140,7 @@ def draw_histories(samples: pd.DataFrame, title: str) -> Figure:
         _history_panel(axes, samples[samples["panel"] == name])
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    legend_below(drawing, sources, ground=True)
+    _legend_below(drawing, sources, ground=True)
     return drawing
 
 
@@ -206,8 +206,7 @@ def _history_limit(panel: pd.DataFrame) -> float:
     return 1.25 if overturned else 1.15 * max(reach, 1e-6)
 
 
-def legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = False) -> None:
-    """Write the legend of the sources under a figure."""
+def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = False) -> None:
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))

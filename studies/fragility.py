@@ -8,15 +8,20 @@ motion does at two intensities is not independent.
 """
 
 import math
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
 from scipy.stats import binomtest
 
 from analytic.motion import FloatArray
+
+BLOCK = ["width_m", "height_m"]
+"""Columns that tell blocks apart."""
 
 CONFIDENCE = 0.95
 RESAMPLES = 200
@@ -49,12 +54,18 @@ def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArr
         return Fit(math.sqrt(strongest * weakest), 0.0)
     logs = np.log(intensity)
 
-    def surprise(unknowns: FloatArray) -> float:
-        z = (logs - unknowns[0]) * math.exp(unknowns[1])
-        return -float(overturned @ log_ndtr(z) + survived @ log_ndtr(-z))
+    def surprise(unknowns: FloatArray) -> tuple[float, FloatArray]:
+        """Return the negative logarithm of the likelihood, and its gradient."""
+        steepness = math.exp(unknowns[1])
+        z = (logs - unknowns[0]) * steepness
+        below, above = log_ndtr(z), log_ndtr(-z)
+        bell = -0.5 * z * z - 0.5 * math.log(2.0 * math.pi)
+        growth = overturned * np.exp(bell - below) - survived * np.exp(bell - above)
+        gradient = np.array([steepness * growth.sum(), -growth @ z])
+        return -float(overturned @ below + survived @ above), gradient
 
     start = [float(np.average(logs, weights=cases)), math.log(2.0)]
-    best = minimize(surprise, start, method="BFGS")
+    best = minimize(surprise, start, jac=True, method="BFGS")
     return Fit(math.exp(best.x[0]), math.exp(-best.x[1]))
 
 
@@ -97,3 +108,40 @@ def share_bounds(successes: int, cases: int) -> tuple[float, float]:
         return 0.0, 1.0
     interval = binomtest(successes, cases).proportion_ci(CONFIDENCE, method="exact")
     return float(interval.low), float(interval.high)
+
+
+def by_block(rows: pd.DataFrame) -> Iterator[tuple[dict[str, float], pd.DataFrame]]:
+    """Yield the size of each block, by its columns, with its rows."""
+    for _, group in rows.groupby(BLOCK, sort=False):
+        yield {name: float(group[name].iloc[0]) for name in BLOCK}, group
+
+
+class Fragility:
+    """The fit of one block and source, and those of resampled motions."""
+
+    def __init__(self, group: pd.DataFrame) -> None:
+        table = group.pivot(index="motion", columns="intensity", values="outcome")
+        self.intensity = table.columns.to_numpy(float)
+        usable = (table != "failed").to_numpy(float)
+        overturned = (table == "overturned").to_numpy(float)
+        self.fit = fit_lognormal(self.intensity, overturned.sum(axis=0), usable.sum(axis=0))
+        # the same draw for every source, so that their ratios are of the same motions
+        chosen = choose(len(table))
+        self.resampled = resampled_fits(self.intensity, overturned, usable, chosen)
+
+    def medians(self) -> FloatArray:
+        """Return the medians of the resampled fits."""
+        return np.array([fit.median for fit in self.resampled])
+
+
+Fragilities = Mapping[tuple[float, float, str], Fragility]
+"""Width and height of a block [m] and a source -> what is known of its overturning."""
+
+
+def fragilities(rows: pd.DataFrame) -> Fragilities:
+    """Fit every block and source."""
+    return {
+        (size["width_m"], size["height_m"], str(source)): Fragility(group)
+        for size, block in by_block(rows)
+        for source, group in block.groupby("source", sort=False)
+    }

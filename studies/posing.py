@@ -1,6 +1,5 @@
 """From the options of a command line to a block and the motion of its base."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
@@ -17,13 +16,6 @@ def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
             f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
         )
     return half_cycles or PULSES[pulse or "full-sine"]
-
-
-def refuse_given(options: Mapping[str, object], reason: str) -> None:
-    """Raise BadInputError if one of the options is given."""
-    given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
-    if given:
-        raise BadInputError(f"{' and '.join(given)}; {reason}")
 
 
 def posed_block(width: float, height: float) -> RigidBlock:

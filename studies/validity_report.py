@@ -40,6 +40,8 @@ def findings(beside: pd.DataFrame, table: pd.DataFrame) -> str:
             "",
             "Engines with a part of the friction that the reference needs (its pivot stays down):",
             _verdict_text(low, low["friction_factor"].map("{:g}".format)),
+            "",
+            "The slide is read up to θcr: that of a block on its way over is not.",
         ]
     )
 

@@ -113,7 +113,10 @@ BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--record", "FILE", "--omega", "3"], "--omega is 3.0; they belong to a pulse"),
+        (
+            ["--record", "FILE", "--omega", "3"],
+            "--omega is 3.0; it may be given only without --record",
+        ),
         (["--record", "FILE", "--pulse", "half-sine"], "--pulse is half-sine"),
         (["--record", "FILE", "--half-cycles", "2"], "--half-cycles is 2"),
         (["--record", "FILE", "--scale", "2", "--pga", "1"], "give one or the other"),
@@ -123,7 +126,7 @@ BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
         (["--record", "/nowhere/at.all"], "it must be a file that can be read"),
         (["--amplitude", "0.4"], "--omega missing"),
         (["--omega", "3"], "--amplitude missing"),
-        (["--amplitude", "0.4", "--omega", "3", "--pga", "1"], "belong to --record"),
+        (["--amplitude", "0.4", "--omega", "3", "--pga", "1"], "given only with --record"),
     ],
 )
 def test_contradictions_are_one_clear_line(options, words, tmp_path, capsys):

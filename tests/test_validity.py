@@ -11,14 +11,8 @@ from analytic.response import Response
 from studies import respond
 from studies.__main__ import run
 from studies.jobs import Job
-from studies.validity import (
-    LIFTED_WIDTHS,
-    SLID_WIDTHS,
-    ValidityCase,
-    _reduce,
-    grid,
-    reference_map,
-)
+from studies.validity import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
+from studies.validity_cases import ValidityCase, grid, reference_map
 
 G = 9.81
 
