@@ -163,7 +163,8 @@ def overturning(
 
 def mapped(window: Window, model: str) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the edges of a model and the intervals between them, a strip of columns at a time."""
-    x, amplitudes = window.centres(window.columns), window.amplitudes(window.rows)
+    x, inner = window.centres(window.columns), window.amplitudes(window.rows)
+    amplitudes = np.concatenate([[LEAST_ONSETS], inner, [window.onsets]])
     width = max(STRIP // window.rows, 1)
     edges, spans = [], []
     for start in range(0, window.columns, width):
