@@ -11,7 +11,6 @@ import numpy as np
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
-from studies import provenance
 from studies.arguments import (
     BadInputError,
     Count,
@@ -22,7 +21,7 @@ from studies.arguments import (
 )
 from studies.cases import PULSES, free_rocking_window
 from studies.comparison import draw, json_lines, table_text
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.runner import exit_code, run_jobs
@@ -47,6 +46,7 @@ def command(
     json: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Compare the sources on one block and one pulse.
 
@@ -83,13 +83,15 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     check_plot(plot)
     block, motion = _posed(width, height, amplitude, omega, _half_cycles(pulse, half_cycles))
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = compare(
         block,
         motion,

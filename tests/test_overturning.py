@@ -11,7 +11,7 @@ from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
 from studies.edges import WIDTH, find_edges, intervals
-from studies.engine_edges import Bisected, choose, edge_jobs, threshold
+from studies.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
 from studies.overturning import mapped
 from studies.overturning_checks import checks
 from studies.overturning_report import model_differences, modes_at, read, redraw
@@ -160,7 +160,7 @@ def test_a_point_of_the_plane_is_the_case_that_sources_get(over):
 
 def test_a_threshold_is_found_where_it_is():
     edges, _ = mapped(WINDOW, "exact")
-    chosen, narrow = choose(edges, [4.0])
+    chosen, narrow = chosen_edges(edges, [4.0])
     assert len(chosen) >= 1
     assert len(chosen) + narrow == (edges["x"] == chosen["x"].iloc[0]).sum()
     jobs = [j for j in edge_jobs(WINDOW, ["exact"], chosen) if j.labels["table"] == "thresholds"]
