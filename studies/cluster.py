@@ -12,6 +12,7 @@ import logging
 import multiprocessing
 import platform
 import queue
+import socket
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
@@ -140,6 +141,7 @@ def connect(address: str) -> "Client":
     for name in ("distributed", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        _knock(address)
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         problem = f"it must be the address of a running Dask scheduler ({one_line(error)})"
@@ -150,6 +152,14 @@ def connect(address: str) -> "Client":
         client.close(timeout=1.0)
         raise
     return client
+
+
+def _knock(address: str) -> None:
+    """Raise OSError or ValueError unless somebody listens; a client that fails leaves threads."""
+    from distributed.comm.addressing import get_address_host_port
+
+    with socket.create_connection(get_address_host_port(address, strict=True), CONNECT_S):
+        pass
 
 
 def _refuse_unfit(client: "Client", address: str) -> None:
