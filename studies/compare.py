@@ -11,7 +11,6 @@ import numpy as np
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from studies import provenance
 from studies.accelerograms import Units
 from studies.arguments import (
     BadInputError,
@@ -24,7 +23,7 @@ from studies.arguments import (
 )
 from studies.cases import free_rocking_window
 from studies.comparison import draw, json_lines, table_text
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.posing import posed_block, posed_pulse, posed_record
@@ -54,6 +53,7 @@ def command(
     json: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Compare the sources on one block and one pulse or record.
 
@@ -99,6 +99,8 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     check_plot(plot)
@@ -115,7 +117,7 @@ def command(
         motion = posed_record(record, units, scale, pga)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = compare(
         block,
         motion,

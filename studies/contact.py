@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from analytic.response import Outcome, Response
-from studies import provenance
 from studies.arguments import Count, Positive
 from studies.cases import Case, free_rocking_window
 from studies.contact_report import headline, pictures, report
 from studies.energy import SAMPLES, energy_drift, growth
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.factors import FACTORS
 from studies.jobs import Job, summary
 from studies.journal import Row
@@ -37,6 +36,7 @@ def command(
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Compare contact models: each setting alone, from the best setting and from the defaults.
 
@@ -54,8 +54,10 @@ def command(
         Processes; by default the number of cores.
     time_limit
         Wall-clock time [s] after which a case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = contact(out, quick=quick, executor=executor)
     print(report(out))
     return exit_code([row for row in rows if not row["factor"]])

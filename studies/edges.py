@@ -9,10 +9,11 @@ by a search that ends at WIDTH:
   that one mode does not pass into another. An island narrower than WIDTH is reported as an edge
   from one mode to the other;
 - a local extremum of the margin towards zero over three neighbours: an island if it crosses zero.
-  The margin is continuous, so an island between two neighbours has one.
+  The margin is continuous, so an island between two neighbours has one. Islands crowd, so the
+  cells beside an edge are looked at again on a grid of SAMPLES points, FINE_ROUNDS times.
 
-What can be missed is an island whose extremum does not show on the grid: of two islands or more
-between the same neighbours, one that is beside another.
+The first two are certain. What the third can miss is an island far from any edge whose extremum
+does not show on the grid, or one of several between the same two points of the finest grid.
 """
 
 from typing import NamedTuple, Protocol
@@ -24,11 +25,15 @@ from numpy.typing import NDArray
 from analytic.maps import Modes
 from analytic.motion import FloatArray
 
+SAMPLES = 17
+"""Points at which a cell beside an edge is looked at, and looked at again."""
+FINE_ROUNDS = 6
 WIDTH = 1e-10
 """Amplitude, over g tan(alpha), to which an edge is known."""
 ISLAND_WIDTH = 1e-8
 """Amplitude to which an extremum of the margin is followed."""
-ROUNDS = 8
+ROUNDS = 100
+"""Of searches between modes, each of which may show more of them."""
 
 IntArray = NDArray[np.intp]
 
@@ -65,16 +70,53 @@ def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFra
     points = Points(number.ravel(), grid.ravel(), found.mode)
     islands = extrema(solve, grid, mode, margin)
     origin = np.array(["grid"] * len(points.mode) + ["margin"] * len(islands.mode))
-    points = join(points, islands)
+    points, origin = ordered(join(points, islands), origin)
+    fine = 0
     for _ in range(ROUNDS):
-        points, origin = ordered(points, origin)
-        between = mode_changes(solve, points)
-        if len(between.mode) == 0:
-            break
-        points = join(points, between)
-        origin = np.append(origin, ["mode"] * len(between.mode))
-    points, origin = ordered(points, origin)
-    return bisect(solve, points, origin)
+        edges = bisect(solve, points, origin)
+        ends = _ends(edges)
+        points, origin = ordered(join(points, ends), np.append(origin, np.tile(edges["found"], 2)))
+        new, name = mode_changes(solve, points), "mode"
+        if len(new.mode) == 0 and fine < FINE_ROUNDS:
+            new, name, fine = beside_edges(solve, points, edges), "margin", fine + 1
+        if len(new.mode) == 0:
+            return edges
+        points, origin = ordered(join(points, new), np.append(origin, [name] * len(new.mode)))
+    raise RuntimeError(f"islands within islands after {ROUNDS} rounds")
+
+
+def beside_edges(solve: Solve, points: Points, edges: pd.DataFrame) -> Points:
+    """Sample the cells beside edges, where islands crowd, and follow the extrema there.
+
+    Return the points that have another outcome than the cell in which they lie.
+    """
+    known = np.sort(_keys(edges["column"].to_numpy(), edges["low"].to_numpy()))
+    ends = np.sort(_keys(edges["column"].to_numpy(), edges["high"].to_numpy()))
+    key = _keys(points.column, points.amplitude)
+    touches = np.isin(key[:-1], ends) | np.isin(key[1:], known)
+    wide = np.diff(points.amplitude) > SAMPLES * ISLAND_WIDTH
+    alike = (points.mode[:-1] >= 0) == (points.mode[1:] >= 0)
+    at = neighbours(points, touches & wide & alike)
+    owner, low, high = points.column[at], points.amplitude[at], points.amplitude[at + 1]
+    grid = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
+    number = np.broadcast_to(owner[:, None], grid.shape)
+    found = solve(number.ravel(), grid.ravel())
+    mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
+    other = (mode >= 0) != (points.mode[at] >= 0)[:, None]
+    seen = Points(number[other], grid[other], mode[other])
+    beyond = extrema(lambda i, amplitude: solve(owner[i], amplitude), grid, mode, margin)
+    return join(seen, beyond._replace(column=owner[beyond.column]))
+
+
+def _keys(column: IntArray, amplitude: FloatArray) -> NDArray[np.complex128]:
+    return column + 1j * amplitude
+
+
+def _ends(edges: pd.DataFrame) -> Points:
+    """Return the points on both sides of edges, which may show modes that the grid does not."""
+    low = Points(*(edges[name].to_numpy() for name in ("column", "low", "below")))
+    high = Points(*(edges[name].to_numpy() for name in ("column", "high", "above")))
+    return join(low, high)
 
 
 def join(first: Points, second: Points) -> Points:

@@ -74,7 +74,7 @@ def _job(window: Window, source: str, x: float, onsets: float, labels: Row) -> J
     )
 
 
-def choose(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
+def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
     """Return the edges of the columns nearest to positions that have room; and how many have not.
 
     `edges` has an `x`; an edge has room where the next ones are further than ROOM.

@@ -23,7 +23,7 @@ from studies.arguments import (
     several,
 )
 from studies.ensemble_report import claims, curves, findings, stripes
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.fragility import fragilities
 from studies.jobs import Job
 from studies.journal import Row
@@ -126,6 +126,7 @@ def command(
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Shake blocks by many motions of rising intensity, through every named source.
 
@@ -153,6 +154,8 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     if records:
@@ -165,7 +168,7 @@ def command(
         ground = drawn(name, count, seed or 1)
     sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     origin = [path.name for path in records] or [name, str(seed or 1)]
     settings = {"motions": origin, "sizes_m": sizes, "intensities": intensities}
     rows = ensemble(cases, sources, out, executor=executor, settings=settings)

@@ -1,4 +1,4 @@
-"""Where jobs are run: so far on the machine at hand; a cluster is one more class."""
+"""Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
 import signal
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -10,6 +10,7 @@ from typing import Protocol
 from pebble import ProcessExpired, ProcessPool
 
 from analytic.response import Response
+from studies import provenance
 from studies.jobs import Job, ask, one_line
 from studies.sources import Source, resolve
 
@@ -71,20 +72,44 @@ class Local:
                 for number, job in jobs.items()
             }
             for task in as_completed(tasks):
-                yield tasks[task], self._outcome(task.result)
+                yield tasks[task], outcome_of(task.result, self.time_limit_s)
         finally:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
 
-    def _outcome(self, result: Callable[[], Response]) -> Response:
-        try:
-            return result()
-        except TimeoutError:
-            return Response.failure(f"no result within the time limit of {self.time_limit_s:g} s")
-        except ProcessExpired as error:
-            return Response.failure(_cause_of_death(error.exitcode))
-        except Exception as error:
-            return Response.failure(one_line(error))
+
+def choose(
+    jobs: int | None,
+    time_limit_s: float,
+    cluster: str | None,
+    ask: Callable[[Job, Source], Response] = ask,
+) -> Executor:
+    """Return the executor that the command line's --jobs, --time-limit and --cluster ask for.
+
+    Raises
+    ------
+    studies.cluster.ClusterError
+        If the cluster cannot be used.
+    """
+    if cluster is None:
+        return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
+    from studies.cluster import Cluster
+
+    chosen = Cluster(cluster, time_limit_s, ask)
+    chosen.check()
+    return chosen
+
+
+def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
+    """Return the result of a process, or the failure as which it ended."""
+    try:
+        return result()
+    except TimeoutError:
+        return Response.failure(f"no result within the time limit of {time_limit_s:g} s")
+    except ProcessExpired as error:
+        return Response.failure(_cause_of_death(error.exitcode))
+    except Exception as error:
+        return Response.failure(one_line(error))
 
 
 def _cause_of_death(exitcode: int) -> str:

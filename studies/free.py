@@ -17,7 +17,7 @@ from analytic.response import Outcome, Response
 from studies import provenance
 from studies.arguments import Count, Positive, check_sources, several
 from studies.differences import scientific
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
@@ -47,6 +47,7 @@ def command(
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Hold free rocking of each source against the closed forms.
 
@@ -67,9 +68,11 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = free(sources, out, quick=quick, executor=executor)
     print(report(out))
     return exit_code(rows)

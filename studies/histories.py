@@ -11,7 +11,7 @@ from studies import provenance
 from studies.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases import HISTORIES, HistoryCase, free_rocking_window
 from studies.comparison import samples
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.findings import Finding, findings_text
 from studies.jobs import Job, summary
 from studies.journal import Row
@@ -41,6 +41,7 @@ def command(
     sources: Annotated[tuple[str, ...] | None, several] = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Draw the paper's time histories and test what it says about them.
 
@@ -59,11 +60,13 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     refuse_repeats("--figure", figure)
     if sources is not None:
         check_sources(sources)
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     products = [f"figure-{number}.csv" for number in HISTORIES]
     rows: list[Row] = []
     with own_folder(out, "histories", products, sources=sources):

@@ -13,8 +13,8 @@ from analytic.motion import FloatArray
 from studies import provenance
 from studies.arguments import BadInputError, Count, Positive, check_sources, several
 from studies.edges import find_edges, intervals
-from studies.engine_edges import choose, edge_jobs, grid_jobs, put, reduce
-from studies.executors import Executor, Local
+from studies.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
+from studies.executors import Executor, choose
 from studies.journal import Row
 from studies.overturning_report import headline, pictures, report
 from studies.runner import exit_code, fill_folder
@@ -60,6 +60,7 @@ def command(
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 120.0,
+    cluster: str | None = None,
 ) -> int:
     """Map which pulses overturn a block.
 
@@ -93,6 +94,8 @@ def command(
     time_limit
         Wall-clock time [s] after which an engine's case, or its search for a threshold, is given
         up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     check_mapped(sources)
@@ -112,7 +115,7 @@ def command(
         )
     except ValueError as error:
         raise BadInputError(f"--{error}") from error
-    executor = Local(jobs or provenance.usable_cores(), time_limit, put)
+    executor = choose(jobs, time_limit, cluster, put)
     found = overturning(window, sources, out, quick=quick, executor=executor)
     print(report(out, window))
     return exit_code(found)
@@ -144,7 +147,9 @@ def overturning(
     boundaries = pd.concat([edges for edges, _ in maps.values()])
     exact = boundaries[boundaries["model"] == "exact"]
     parts = QUICK_POSITIONS if quick else POSITIONS
-    chosen, _ = choose(exact, [window.low + part * (window.high - window.low) for part in parts])
+    chosen, _ = chosen_edges(
+        exact, [window.low + part * (window.high - window.low) for part in parts]
+    )
     count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
     rows = fill_folder(
         folder,
@@ -165,7 +170,8 @@ def overturning(
 
 def mapped(window: Window, model: str) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the edges of a model and the intervals between them, a strip of columns at a time."""
-    x, amplitudes = window.centres(window.columns), window.amplitudes(window.rows)
+    x, inner = window.centres(window.columns), window.amplitudes(window.rows)
+    amplitudes = np.concatenate([[LEAST_ONSETS], inner, [window.onsets]])
     width = max(STRIP // window.rows, 1)
     edges, spans = [], []
     for start in range(0, window.columns, width):

@@ -19,9 +19,9 @@ PIXELS = 900
 # the palette of Okabe and Ito, lightened where a whole area is filled
 MODE_COLOURS = {
     "survives": "#FFFFFF",
-    "no impact": "#0072B2",
-    "after 1": "#E69F00",
-    "after 2": "#009E73",
+    "no impact": "#8CC7EE",
+    "after 1": "#F5D58A",
+    "after 2": "#7FCDB8",
     "after 3 or more": "#CC79A7",
 }
 DIFFERENCE_COLOURS = {
@@ -85,10 +85,8 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
         axes.set_title(f"{source}, {len(part)} cells", fontsize=10)
     for axes in panels[count:]:
         axes.set_visible(False)
-    for axes in panels[:count]:
-        _frame(axes, window, labelled=False)
-    drawing.supxlabel(window.label, fontsize=10)
-    drawing.supylabel("amplitude of the pulse  $a_p$ / (g tan α)  [–]", fontsize=10)
+    for number, axes in enumerate(panels[:count]):
+        _frame(axes, window, below=number + across >= count, left=number % across == 0)
     drawing.suptitle(f"Difference from the exact solution: {window.title}", fontsize=11)
     drawing.legend(
         handles=[
@@ -133,8 +131,10 @@ def _paint(axes: Axes, codes: FloatArray, colours: dict[str, str], window: Windo
     return {names[int(code)] for code in np.unique(codes)}
 
 
-def _frame(axes: Axes, window: Window, *, labelled: bool = True) -> None:
+def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True) -> None:
     axes.set(xlim=(window.low, window.high), ylim=(LEAST_ONSETS, window.onsets))
-    if labelled:
+    if below:
         axes.set_xlabel(window.label)
+        axes.tick_params(labelbottom=True)
+    if left:
         axes.set_ylabel("amplitude of the pulse  $a_p$ / (g tan α)  [–]")

@@ -193,11 +193,11 @@ def edges_text(edges: pd.DataFrame) -> str:
     for model, group in edges.groupby("model", sort=False):
         found = group["found"].value_counts()
         direct = int(((group["below"] >= 0) & (group["above"] >= 0)).sum())
+        width = (group["high"] - group["low"]).max()
+        between, inside = found.get("mode", 0), found.get("margin", 0)
         lines.append(
-            f"  {model}: {len(group)}, each within {(group['high'] - group['low']).max():.1e}; "
-            f"{found.get('mode', 0)} of islands between two modes and {found.get('margin', 0)} of "
-            f"islands at an extremum of the margin lie between neighbours of the grid; "
-            f"{direct} passages from mode to mode without an island"
+            f"  {model}: {len(group)} within {width:.1e}; {between} by a change of the mode and "
+            f"{inside} by the margin between neighbours of the grid; {direct} from mode to mode"
         )
     return "\n".join(lines)
 

@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from analytic.response import Outcome, Response
 from studies import provenance
+from studies.arguments import BadInputError
 from studies.executors import Executor
 from studies.jobs import Job, summary
 from studies.journal import FolderError, Journal, Row, open_journal
@@ -72,14 +73,16 @@ def fill_folder(
         record = provenance.begin(path, identity, {k: _short(v) for k, v in growing.items()})
         try:
             rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
-        except KeyboardInterrupt as stop:
+            for name in dict.fromkeys(row[tables] for row in rows) if tables else [study]:
+                part = [row for row in rows if row[tables] == name] if tables else rows
+                text = pd.DataFrame(part).to_csv(index=False, na_rep="nan")
+                provenance.write_text(folder / f"{name}.csv", text)
+            provenance.finish(path, record, began, rows=len(rows))
+        except (KeyboardInterrupt, BadInputError, OSError) as stop:
             kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
-            raise KeyboardInterrupt(f"{kept}; the same command goes on from there") from stop
-        for name in dict.fromkeys(row[tables] for row in rows) if tables else [study]:
-            part = [row for row in rows if row[tables] == name] if tables else rows
-            text = pd.DataFrame(part).to_csv(index=False, na_rep="nan")
-            provenance.write_text(folder / f"{name}.csv", text)
-        provenance.finish(path, record, began, rows=len(rows))
+            words = f"{stop}; " if str(stop) else ""
+            kind = KeyboardInterrupt if isinstance(stop, KeyboardInterrupt) else BadInputError
+            raise kind(f"{words}{kept}; the same command goes on from there") from stop
     return rows
 
 

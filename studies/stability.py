@@ -9,9 +9,8 @@ import numpy as np
 
 from analytic import simulate
 from analytic.response import Response
-from studies import provenance
 from studies.arguments import Count, Positive, check_sources, several
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.extremes import Extreme, extremes
 from studies.jobs import Job, summary
 from studies.jobs import ask as plain
@@ -52,6 +51,7 @@ def command(
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 180.0,
+    cluster: str | None = None,
     sources: Annotated[tuple[str, ...], several] = METHODS,
 ) -> int:
     """Put extreme cases to every method.
@@ -67,13 +67,15 @@ def command(
     time_limit
         Wall-clock time [s] after which an engine's case, its remedies included, or its search for
         the largest step is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     sources
         exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
         rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
     """
     check_sources(sources)
     ask = functools.partial(put, time_limit_s=time_limit)
-    executor = Local(jobs or provenance.usable_cores(), time_limit, ask)
+    executor = choose(jobs, time_limit, cluster, ask)
     rows = stability(sources, out, quick=quick, executor=executor)
     print(report(out))
     return exit_code(speechless(rows))

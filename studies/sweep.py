@@ -18,7 +18,7 @@ from studies.differences import (
     worst_cases,
     worst_text,
 )
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.findings import findings, findings_text
 from studies.jobs import Job
 from studies.journal import Row
@@ -43,6 +43,7 @@ def command(
     accuracy: Accuracy | None = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Run the paper's sensitivity analysis.
 
@@ -63,10 +64,12 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     refuse_repeats("--figure", figure)
     check_sources(sources)
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = sweep(figure, sources, out, executor=executor, effort=Effort(step, accuracy))
     print(report(out))
     return exit_code(rows)

@@ -21,7 +21,7 @@ from studies.differences import (
     with_conditioning,
     with_reference,
 )
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.jobs import Job
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
@@ -99,6 +99,7 @@ def command(
     accuracy: Accuracy | None = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Hold the sources against the exact solution on random cases.
 
@@ -121,9 +122,11 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = validate(cases, seed, sources, out, executor=executor, effort=Effort(step, accuracy))
     print(report(out))
     return exit_code(rows)

@@ -12,7 +12,7 @@ from analytic import simulate
 from analytic.response import Response
 from studies import provenance
 from studies.arguments import BadInputError, Count, Positive, check_sources, several
-from studies.executors import Executor, Local
+from studies.executors import Executor, choose
 from studies.jobs import Job, summary
 from studies.journal import Row
 from studies.runner import exit_code, fill_folder
@@ -52,6 +52,7 @@ def command(
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
+    cluster: str | None = None,
 ) -> int:
     """Map where the reference is valid, and see what engines do beyond.
 
@@ -67,6 +68,8 @@ def command(
         Processes for the engines; by default the number of cores.
     time_limit
         Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     for name in sources:
@@ -75,7 +78,7 @@ def command(
     every = 2 if quick else 1
     onsets, omegas = ONSETS[::every], OMEGAS[::every]
     factors = QUICK_FACTORS if quick else FACTORS
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    executor = choose(jobs, time_limit, cluster)
     rows = validity(list(grid(onsets, omegas)), factors, sources, out, executor=executor)
     table = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
     provenance.write_text(out / "map.csv", table.to_csv(index=False, na_rep="nan"))

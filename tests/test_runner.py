@@ -4,6 +4,7 @@ import fcntl
 import json
 import math
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -49,6 +50,12 @@ def raises(block, motion, *, duration, times):
 def slow(block, motion, *, duration, times):
     time.sleep(0.005)
     return simulate(block, motion, duration=duration, times=times)
+
+
+def full_sweep(folder, room):
+    """What a run on a full disk runs: no file may grow beyond `room` bytes."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+    slow_sweep(folder)
 
 
 def slow_sweep(folder):
@@ -132,8 +139,8 @@ def lines_of(folder):
     return (folder / "journal.jsonl").read_bytes().splitlines()
 
 
-def start_slow_sweep(folder):
-    program = f"import test_runner; test_runner.slow_sweep({str(folder)!r})"
+def start_slow_sweep(folder, call="slow_sweep({!r})"):
+    program = f"import test_runner; test_runner.{call.format(str(folder))}"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parent)])}
     return subprocess.Popen(
         [sys.executable, "-c", program],
@@ -182,6 +189,40 @@ def test_an_interrupted_run_says_how_to_go_on(tmp_path):
     assert len(errors.splitlines()) == 1
     assert "the same command goes on" in errors
     assert len(lines_of(tmp_path)) >= 30
+
+
+def test_a_full_disk_loses_nothing_that_finished(tmp_path):
+    with start_slow_sweep(tmp_path, "full_sweep({!r}, 20_000)") as first:
+        output, errors = first.communicate(timeout=60.0)
+    assert (first.returncode, output) == (2, "")
+    assert len(errors.splitlines()) == 1
+    assert "the disk is full" in errors
+    assert "the same command goes on" in errors
+    # the last line may be torn; the ones before are whole
+    finished = lines_of(tmp_path)[:-1]
+    assert 30 <= len(finished) < 241
+    assert not (tmp_path / "sweep.csv").exists()
+    with start_slow_sweep(tmp_path) as second:
+        _, errors = second.communicate(timeout=60.0)
+    assert (second.returncode, errors) == (0, "")
+    lines = lines_of(tmp_path)
+    assert lines[: len(finished)] == finished
+    keys = [json.loads(line)["key"] for line in lines[1:]]
+    assert len(keys) == len(set(keys)) == 240
+
+
+def test_a_second_run_is_refused_and_the_first_goes_on(tmp_path):
+    with start_slow_sweep(tmp_path) as first:
+        wait_for_rows(tmp_path, first, 5)
+        with start_slow_sweep(tmp_path) as second:
+            _, errors = second.communicate(timeout=30.0)
+        assert second.returncode == 2
+        assert len(errors.splitlines()) == 1
+        assert "in use by another run" in errors
+        _, errors = first.communicate(timeout=60.0)
+    assert (first.returncode, errors) == (0, "")
+    keys = [json.loads(line)["key"] for line in lines_of(tmp_path)[1:]]
+    assert len(keys) == len(set(keys)) == 240
 
 
 def test_two_runs_never_share_a_folder(tmp_path):
