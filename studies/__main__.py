@@ -47,18 +47,18 @@ a minute.""",
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
 about four minutes on one core, --quick less than one.""",
-    "ensemble": """Many motions, blocks and intensities: statistics where single responses fail.
+    "ensemble": """Many motions, blocks and intensities: single responses and their statistics.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
 the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
-agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about
-half an hour on one core, --quick half a minute.""",
+agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about a
+quarter of an hour on one core, --quick half a minute.""",
     "validity": """Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
 on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
-findings.txt; resumable. The full study takes about three minutes on one core, --quick half a
-minute.""",
+findings.txt; resumable. The full study takes about a minute on one core, --quick a quarter of
+one.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
