@@ -13,7 +13,8 @@ FloatArray = NDArray[np.float64]
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
 """Columns of `Motion.segments`: on [start, end] the ground acceleration is
-amplitude sin(omega (t - start) + phase) + offset + slope (t - start)."""
+amplitude sin(omega (t - start) + phase) + offset + slope (t - start). A row is a sine or a straight
+line: uplifts are found for either, not for their sum."""
 
 
 class Motion(Protocol):

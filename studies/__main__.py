@@ -63,18 +63,18 @@ Amplitude over frequency, slenderness or size, for each model; the engines on a 
 beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
 differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
 resumable. The full study takes about four minutes on two cores, --quick less than one.""",
-    "ensemble": """Many motions, blocks and intensities: statistics where single responses fail.
+    "ensemble": """Many motions, blocks and intensities: single responses and their statistics.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
 the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
-agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about
-half an hour on one core, --quick half a minute.""",
+agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about a
+quarter of an hour on one core, --quick half a minute.""",
     "validity": """Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
 on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
-findings.txt; resumable. The full study takes about three minutes on one core, --quick half a
-minute.""",
+findings.txt; resumable. The full study takes about a minute on one core, --quick a quarter of
+one.""",
     "report": """Every study, and one self-contained page (report.html) about them.
 
 The quick studies take about four minutes on two cores, the full ones about forty. A report that
