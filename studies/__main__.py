@@ -53,6 +53,10 @@ Amplitude over frequency, slenderness or size, for each model; the engines on a 
 beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
 differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
 resumable. The full study takes about four minutes on two cores, --quick less than one.""",
+    "throughput": """Cases per second of an overturning map, beside general-purpose integrators.
+
+A million cases of each pulse through every model, on all cores and on one; SciPy's DOP853 and
+heyoka.py, where it is installed, on a sample of them. Writes throughput.csv.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""
