@@ -15,7 +15,7 @@ Axis = Literal["frequency", "slenderness", "size"]
 AXES = {
     "frequency": (0.2, 8.0, "frequency of the pulse  ω/p  [–]"),
     "slenderness": (0.05, 0.6, "slenderness  α  [rad]"),
-    "size": (0.1, 1.5, "size of the block, as its frequency parameter  p/2π  [Hz]"),
+    "size": (0.1, 0.8, "size of the block, as its frequency parameter  p/2π  [Hz]"),
 }
 """What a map's columns may be, their range and label."""
 LEAST_ONSETS = 1.0
