@@ -12,6 +12,8 @@ from analytic.motion import FloatArray
 
 SERIES_BELOW = 1.0
 """Below this argument the two differences of functions are summed from their series."""
+LOST = 1e-17
+"""Part of a sum below which a term, and the smaller ones after it, change no digit."""
 
 
 @kernel
@@ -27,6 +29,8 @@ def sine_minus_sinh(x: float, u: float) -> float:
         pu *= u * u
         factorial *= 2 * i * (2 * i + 1)
         total += (px - pu) / factorial
+        if abs(px) + pu <= LOST * factorial * abs(total):
+            break
     return total
 
 
@@ -43,6 +47,8 @@ def cosh_minus_cosine(x: float, u: float) -> float:
         pu *= u * u
         factorial *= (2 * i + 1) * (2 * i + 2)
         total += (pu - px) / factorial
+        if abs(px) + pu <= LOST * factorial * abs(total):
+            break
     return total
 
 

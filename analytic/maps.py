@@ -29,6 +29,10 @@ from analytic.swings import (
 AT_REST, SURVIVES, FAILED = -2, -1, -3
 """Modes that are no number of impacts."""
 
+QUIET = 5e-4
+"""Velocity, over the one that just overturns a block from its base, that a map takes for rest
+after the last uplift; the margin is then -1 to within twice as much."""
+
 CHUNK = 16384
 """Cases that are held as columns of floats at a time."""
 
@@ -70,6 +74,17 @@ def next_lift(phase: float, level: float, end: float) -> float:
 
 
 @kernel
+def is_quiet(law: Law, v: float, left: float) -> bool:
+    """Tell whether a block that the ground lifts no more, on its base at v, is sure to survive.
+
+    Below the onset y'' <= k^2 y, k^2 = 1/cos(alpha) for the exact model; so no velocity, of this
+    swing or a later one, is above v e^(k t).
+    """
+    k = law.k if law.linear else 1.0 / math.sqrt(math.cos(law.alpha))
+    return v * math.exp(k * left) <= QUIET * math.sqrt(2.0 * work_to(law, law.saddle))
+
+
+@kernel
 def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
     """Return mode and margin of a block at (y, v) when the pulse ends."""
     barrier = math.sqrt(2.0 * work_to(law, law.saddle))
@@ -103,7 +118,7 @@ def pulse_mode(
             side = 1.0 if math.floor(phase / math.pi) % 2.0 == 1.0 else -1.0
             lifted = math.pi * (math.floor(phase / math.pi) + 1.0) - level
         if law.linear:
-            swing = swing_linear(law, pulse, phase, v, side, lifted, segment)
+            swing = swing_linear(law, pulse, phase, v, side, level, segment)
         else:
             swing = swing_exact(law, pulse, phase, v, side, lifted, series, f, sine, cosine)
         steps += swing.steps
@@ -116,6 +131,8 @@ def pulse_mode(
             return FAILED, math.nan, steps
         impacts += 1
         phase, side, v, lifted = swing.phase, -side, -law.eta * swing.v, 0.0
+        if phase >= pulse.end - level and is_quiet(law, v, (pulse.end - phase) / pulse.omega):
+            return SURVIVES, -1.0, steps
         a = pulse.amplitude * math.sin(phase)
         wait = time_to_rest(law, side, v, a)
         rested = phase + pulse.omega * wait
@@ -125,6 +142,16 @@ def pulse_mode(
         elif v == 0.0:
             # no velocity is left, but the ground lifts the block again at once
             side = 0.0
+
+
+compiled_restitution = kernel(housner_restitution)
+
+
+@kernel
+def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
+    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness."""
+    for i in range(alpha.size):
+        eta[i] = max(compiled_restitution(alpha[i]), 0.0)
 
 
 @kernel
@@ -179,16 +206,16 @@ def overturning_modes(
         If an argument is outside its range or the shapes do not broadcast.
     """
     declared = find_model(model)
-    alpha = np.asarray(alpha, dtype=np.float64)
-    if restitution is None:
-        restitution = np.maximum(np.vectorize(housner_restitution, otypes=[float])(alpha), 0.0)
-    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
+    ratio = 0.0 if restitution is None else restitution
+    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, ratio)
     shape, size = columns[0].shape, columns[0].size
     found = Modes(np.empty(size, np.int16), np.empty(size), np.empty(size, np.int32))
 
     def solve(start: int) -> None:
         part = slice(start, min(start + CHUNK, size))
         cases = np.array([column.flat[part] for column in columns], dtype=np.float64)
+        if restitution is None:
+            fill_restitution(cases[0], cases[4])
         check_cases(cases)
         constants = np.stack(declared.constants(cases[0]))
         solve_modes(

@@ -4,7 +4,8 @@ A map needs no peak and no history, so a swing is followed by as few evaluations
 rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g, and
 phase = omega x time. No impact is stepped over: from (y, v) the block cannot land before
 y + v h - M h^2/2 = 0 where M bounds -y'', and the steps that this allows converge to the impact
-quadratically. In the same way no step passes beyond the rotation at which the block lies.
+quadratically; the linear models know more about theirs. In the same way no step passes beyond the
+rotation at which the block lies.
 """
 
 import math
@@ -16,6 +17,7 @@ from analytic.excursions import LYING, MAX_STEPS
 from analytic.models import Law
 from analytic.motion import FloatArray
 from analytic.polynomial import slope, value
+from analytic.rest import ANGLE_TOLERANCE
 from analytic.taylor import expand_exact
 
 LANDED, OVERTURNED, LEFT_OVER, STUCK = 0, 1, 2, 3
@@ -84,64 +86,118 @@ def half_cycle_end(phase: float, end: float) -> float:
     return min((math.floor(phase / math.pi) + 1.0) * math.pi, end)
 
 
+class Arc(NamedTuple):
+    """A swing of a linear model from (0, v) at a phase, y = c + w sin + P e^(k t) + Q e^(-k t)."""
+
+    start: float
+    side: float
+    v: float
+    lead: int
+    wave: float
+    rising: float
+    falling: float
+
+
+@kernel
+def begin_arc(law: Law, pulse: Pulse, start: float, v: float, side: float) -> Arc:
+    """Return the closed form of a swing (paper, equations 6 to 10 and 17 to 21, corrected)."""
+    k, omega = law.k, pulse.omega
+    wave = side * law.factor * pulse.amplitude * k * k / (k * k + omega * omega)
+    total = -law.saddle - wave * math.sin(start)
+    gap = (v - wave * omega * math.cos(start)) / k
+    pushed = law.factor * pulse.amplitude * abs(math.sin(start))
+    lead = 3 if v == 0.0 and pushed <= law.saddle * (1.0 + CONTACT) else 1
+    return Arc(start, side, v, lead, wave, 0.5 * (total + gap), 0.5 * (total - gap))
+
+
+@kernel
+def arc_at(
+    law: Law, pulse: Pulse, segment: FloatArray, arc: Arc, t: float, phase: float
+) -> tuple[float, float, float]:
+    """Return rotation, velocity and rounding error at the time t of a swing.
+
+    Where the terms of the closed form would cancel, in short swings, by `linear_state`.
+    """
+    k, omega = law.k, pulse.omega
+    if t * max(k, omega) < SHORT:
+        begin = arc.start / omega
+        y, v = linear_state(law, segment, arc.side, begin, arc.lead, 0.0, arc.v, t)
+        return y, v, 0.0
+    grown = math.exp(k * t)
+    rising, falling = arc.rising * grown, arc.falling / grown
+    y = law.saddle + arc.wave * math.sin(phase) + rising + falling
+    v = arc.wave * omega * math.cos(phase) + k * (rising - falling)
+    return y, v, ROUNDING * (law.saddle + abs(rising))
+
+
+@kernel
+def stretch(side: float, phase: float, level: float, end: float) -> tuple[bool, bool, float]:
+    """Tell whether the ground pushes outwards and lifts from a phase on, and until which phase.
+
+    It lifts where its outward acceleration is beyond the onset, `level` from the ends of a half
+    cycle.
+    """
+    base = math.pi * math.floor(phase / math.pi)
+    within = phase - base
+    if not pushes_out(side, phase):
+        return False, False, min(base + math.pi, end)
+    if within < level - ANGLE_TOLERANCE:
+        return True, False, min(base + level, end)
+    if within < math.pi - level - ANGLE_TOLERANCE:
+        return True, True, min(base + math.pi - level, end)
+    return True, False, min(base + math.pi, end)
+
+
 @kernel
 def swing_linear(
-    law: Law, pulse: Pulse, start: float, v: float, side: float, lifted: float, segment: FloatArray
+    law: Law, pulse: Pulse, start: float, v: float, side: float, level: float, segment: FloatArray
 ) -> Swing:
     """Follow a swing of a linear model from (0, v), by the closed form.
 
-    y = c + s C sin(phase) + P e^(k t) + Q e^(-k t) (paper, equations 6 to 10 and 17 to 21,
-    corrected); short swings by `linear_state`, where these terms would cancel. Up to the phase
-    `lifted` the ground keeps pushing the block up. `segment` is the pulse as `linear_state` takes
-    it.
+    Where the ground lifts, y is convex: tangents never pass the impact, and a block that moves up
+    goes on to. Where it does not lift, a block that would be below the ground accelerates
+    downwards and does not return: a positive end is proof that there was no impact, and from a
+    negative one tangents lead back to it without passing it.
     """
-    k, c, omega = law.k, law.saddle, pulse.omega
-    wave = side * law.factor * pulse.amplitude * k * k / (k * k + omega * omega)
-    total = -c - wave * math.sin(start)
-    first = v
-    gap = (v - wave * omega * math.cos(start)) / k
-    P, Q = 0.5 * (total + gap), 0.5 * (total - gap)
-    push = law.factor * pulse.amplitude
-    lead = 3 if lifted > start and v == 0.0 and abs(push * math.sin(start)) <= c else 1
-    short = SHORT / max(k, omega)
+    c, omega = law.saddle, pulse.omega
+    arc = begin_arc(law, pulse, start, v, side)
+    push, square = law.factor * pulse.amplitude, law.k * law.k
     t, phase, y, top, noise, steps = 0.0, start, 0.0, 0.0, 0.0, 0
-    # time is counted from the start of the swing, which may be short; phases are those aimed at
-    ahead = max(min(lifted, pulse.end), start)
-    aim = (ahead - start) / omega
-    while True:
-        if aim > t:
-            steps += 1
-            t, phase = aim, ahead
-            if t < short:
-                y, v = linear_state(law, segment, side, start / omega, lead, 0.0, first, t)
-            else:
-                grown = math.exp(k * t)
-                rising, falling = P * grown, Q / grown
-                y = c + wave * math.sin(phase) + rising + falling
-                v = wave * omega * math.cos(phase) + k * (rising - falling)
-                noise = ROUNDING * (c + abs(rising))
-            top = max(top, y)
+    while steps < MAX_STEPS:
+        out, lifts, stop = stretch(side, phase, level, pulse.end)
+        onward = out and c <= LYING and phase >= pulse.end - math.pi
+        if onward and y >= c and v >= 0.0:
+            return Swing(OVERTURNED, phase, y, v, steps)
+        if lifts:
+            h = math.inf if v >= 0.0 else max(y, 0.0) / -v
+        else:
+            # as if the acceleration stayed: any guess will do
+            fall = square * (c - y - push * abs(math.sin(phase)) * (1.0 if out else -1.0))
+            h = safe_fall(max(y, 0.0), v, fall) if fall > 0.0 else math.inf
+        if not (onward or (lifts and v >= 0.0)):
+            force = push * strongest_ahead(phase) if out else 0.0
+            h = min(h, safe_rise(y, v, square * max(LYING - c + force, 0.0)))
+        t += max(h, CONTACT * t)
+        phase = max(start + omega * t, phase)
+        if phase >= stop:
+            t, phase = (stop - start) / omega, stop
+        steps += 1
+        y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+        top = max(top, y)
         if LYING - y <= CONTACT:
             return Swing(OVERTURNED, phase, y, v, steps)
-        if y <= max(CONTACT * top, noise) and v <= 0.0:
+        contact = max(CONTACT * top, noise)
+        while y < -contact and v < 0.0 and not lifts and steps < MAX_STEPS:
+            steps += 1
+            t -= y / v
+            phase = start + omega * t
+            y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+            contact = max(CONTACT * max(abs(v) * t, top), noise)
+        if y <= contact and v <= 0.0:
             return Swing(LANDED, phase, 0.0, v, steps)
         if phase >= pulse.end:
             return Swing(LEFT_OVER, phase, y, v, steps)
-        if steps == MAX_STEPS:
-            return Swing(STUCK, phase, y, v, steps)
-        out, stop = pushes_out(side, phase), half_cycle_end(phase, pulse.end)
-        onward = out and stop >= pulse.end and c <= LYING
-        if onward and y >= c and v >= 0.0:
-            return Swing(OVERTURNED, phase, y, v, steps)
-        force = push * strongest_ahead(phase)
-        h = safe_fall(max(y, 0.0), v, k * k * (c if out else c + force))
-        if not onward:
-            most = max(LYING - c + (force if out else 0.0), 0.0)
-            h = min(h, safe_rise(y, v, k * k * most))
-        aim = t + max(h, CONTACT * t)
-        ahead = max(start + omega * aim, phase)
-        if ahead >= stop:
-            aim, ahead = max((stop - start) / omega, t + CONTACT * t), stop
+    return Swing(STUCK, phase, y, v, steps)
 
 
 @kernel

@@ -83,6 +83,10 @@ was interrupted goes on where it stopped when the same command is given again.""
 
 For one block and pulse, or for the case of a sweep's results in which the sources differ most. A
 GIF, or an MP4 with the extra [video].""",
+    "throughput": """Cases per second of an overturning map, beside general-purpose integrators.
+
+A million cases of each pulse through every model, on all cores and on one; SciPy's DOP853 and
+heyoka.py, where it is installed, on a sample of them. Writes throughput.csv.""",
     "redraw": "Draw a results folder again, from its CSVs alone.",
 }
 """Each is the function `command` of the module of that name, loaded when it is asked for."""

@@ -108,7 +108,7 @@ class Cluster:
             except queue.Empty:
                 if client.status != "running":
                     raise ClusterError(self.address, "its scheduler has gone") from None
-            if client.scheduler_info(n_workers=-1)["workers"]:
+            if client.nthreads():
                 alone_since = time.monotonic()
             elif time.monotonic() - alone_since > PATIENCE_S:
                 raise ClusterError(self.address, "its workers have all gone; start another one")

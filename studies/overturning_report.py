@@ -38,7 +38,8 @@ def report(folder: Path, window: Window) -> str:
             f"Overturning map: {window.title}; parts of the area of the map, exact mode by mode:",
             modes_text(areas, window),
             "\nAgainst the exact solution, parts of the area (engines: of the cells of a coarse",
-            "grid): false overturning, missed overturning, overturning after other impacts:",
+            "grid): false overturning, missed overturning, overturning after other impacts; and",
+            "between which abscissae nine tenths of each lie:",
             differences_text(differences),
             "\nEdges of the models:",
             edges_text(read(folder, "boundaries")),
@@ -109,11 +110,23 @@ def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, obj
     for model, part in areas.groupby("model", sort=False):
         if model == "exact":
             continue
-        shares = np.array([_compare(exact[x], group) for x, group in part.groupby("x")])
+        x = np.unique(part["x"])
+        shares = np.array([_compare(exact[at], group) for at, group in part.groupby("x")])
         false, missed, other = shares.mean(axis=0) / (window.onsets - LEAST_ONSETS)
         counts = {"source": model, "false": false, "missed": missed, "other_mode": other}
-        rows.append({**counts, "cells": math.nan, "failed": 0})
+        places = {
+            f"{name}_{end}": _quantile(x, shares[:, i], share)
+            for i, name in enumerate(("false", "missed"))
+            for end, share in (("from", 0.05), ("to", 0.95))
+        }
+        rows.append({**counts, "cells": math.nan, "failed": 0, **places})
     return rows
+
+
+def _quantile(x: FloatArray, weights: FloatArray, part: float) -> float:
+    """Return the abscissa up to which a part of the weights lies; nan without any."""
+    total = np.cumsum(weights)
+    return float(x[np.searchsorted(total, part * total[-1])]) if total[-1] > 0.0 else math.nan
 
 
 def _compare(exact: pd.DataFrame, model: pd.DataFrame) -> tuple[float, float, float]:
@@ -183,6 +196,9 @@ def differences_text(differences: pd.DataFrame) -> str:
     shown = differences.copy()
     for name in ("false", "missed", "other_mode"):
         shown[name] = shown[name].map(lambda part: "-" if math.isnan(part) else f"{part:.4%}")
+    for name in ("false_from", "false_to", "missed_from", "missed_to"):
+        if name in shown:
+            shown[name] = shown[name].map(lambda x: "-" if math.isnan(x) else f"{x:.2f}")
     shown["cells"] = shown["cells"].map(lambda count: "-" if math.isnan(count) else f"{count:.0f}")
     return shown.to_string(index=False) if len(shown) else "  no other source"
 

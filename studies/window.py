@@ -15,7 +15,7 @@ Axis = Literal["frequency", "slenderness", "size"]
 AXES = {
     "frequency": (0.2, 8.0, "frequency of the pulse  ω/p  [–]"),
     "slenderness": (0.05, 0.6, "slenderness  α  [rad]"),
-    "size": (0.1, 1.5, "size of the block, as its frequency parameter  p/2π  [Hz]"),
+    "size": (0.1, 0.8, "size of the block, as its frequency parameter  p/2π  [Hz]"),
 }
 """What a map's columns may be, their range and label."""
 LEAST_ONSETS = 1.0
@@ -109,11 +109,14 @@ class Window:
             return self.pulse_hz / x
         return np.full_like(x, self.omega_over_p)
 
-    def modes(self, x: FloatArray, onsets: FloatArray, model: str = "exact") -> Modes:
+    def modes(
+        self, x: FloatArray, onsets: FloatArray, model: str = "exact", threads: int | None = None
+    ) -> Modes:
         """Return what happens at points of the plane, broadcast."""
         alpha = self.alpha(x)
         amplitude = onsets * np.tan(alpha)
-        return overturning_modes(alpha, amplitude, self.ratio(x), self.half_cycles, model)
+        ratio, cycles = self.ratio(x), self.half_cycles
+        return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
 
     def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
         """Return the block and the pulse of a point, for sources other than the models."""

@@ -19,6 +19,7 @@ from studies.__main__ import run
 from studies.cluster import Cluster, ClusterError
 from studies.executors import Local
 from studies.jobs import Job, summary
+from studies.journal import Journal
 from studies.runner import run_jobs
 from studies.sources import SOURCES, Source
 
@@ -156,27 +157,6 @@ def test_workers_are_needed_and_a_nanny_is_refused(tmp_path, monkeypatch):
             Cluster(address, 1.0).check()
 
 
-def test_a_dead_workers_cases_are_done_again_and_a_deadly_case_is_a_row(tmp_path, monkeypatch):
-    monkeypatch.setitem(SOURCES, "slow", Source("model", slow))
-    monkeypatch.setitem(SOURCES, "deadly", Source("model", exits))
-    with scheduler(tmp_path) as (address, _), ExitStack() as stack:
-        first, second = (stack.enter_context(worker(address)) for _ in range(2))
-        wait_for_workers(address, 2)
-        answers = Cluster(address, 10.0)(jobs_of("slow", 60))
-        got = [next(answers)]
-        first.send_signal(signal.SIGKILL)
-        got += list(answers)
-        assert sorted(number for number, _ in got) == list(range(60))
-        assert {response.outcome.value for _, response in got} == {"rocked"}
-        third = stack.enter_context(worker(address))
-        wait_for_workers(address, 2)
-        deadly = Cluster(address, 10.0)(jobs_of("deadly"))
-        ((_, response),) = deadly
-        assert response.outcome.value == "failed"
-        assert "died" in response.message
-        assert {second.wait(timeout=10.0), third.wait(timeout=10.0)} == {3}
-
-
 def wait_for_workers(address, count):
     from distributed import Client
 
@@ -184,27 +164,33 @@ def wait_for_workers(address, count):
         client.wait_for_workers(count, timeout=40.0)
 
 
-def test_a_killed_scheduler_loses_nothing_that_finished(tmp_path, monkeypatch, capsys):
+def killing(running, count, append):
+    """Return a Journal.append that kills a process after so many rows."""
+
+    def counted(self, key, row):
+        append(self, key, row)
+        if len(self.rows) == count:
+            running.kill()
+
+    return counted
+
+
+def test_a_killed_worker_and_a_killed_scheduler_lose_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(SOURCES, "slow", Source("model", slow))
     folder = tmp_path / "out"
     arguments = ["sweep", "--figure", "6", "--sources", "slow", "--out", str(folder)]
-    with scheduler(tmp_path) as (address, running), worker(address):
+    with scheduler(tmp_path) as (address, running), worker(address) as first, worker(address):
+        wait_for_workers(address, 2)
+        answers = Cluster(address, 10.0)(jobs_of("slow", 60))
+        got = [next(answers)]
+        first.send_signal(signal.SIGKILL)
+        got += list(answers)
+        assert sorted(number for number, _ in got) == list(range(60))
+        assert {response.outcome.value for _, response in got} == {"rocked"}
 
-        def kill_after(count):
-            from studies.journal import Journal
-
-            append = Journal.append
-
-            def counted(self, key, row):
-                append(self, key, row)
-                if len(self.rows) == count:
-                    running.kill()
-
-            return counted
-
-        monkeypatch.setattr("studies.journal.Journal.append", kill_after(20))
-        assert run([*arguments, "--cluster", address]) == 2
-        monkeypatch.undo()
+        with monkeypatch.context() as patch:
+            patch.setattr(Journal, "append", killing(running, 20, Journal.append))
+            assert run([*arguments, "--cluster", address]) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1
     assert "scheduler has gone" in error
@@ -217,3 +203,14 @@ def test_a_killed_scheduler_loses_nothing_that_finished(tmp_path, monkeypatch, c
     assert lines[: len(kept)] == kept
     keys = [json.loads(line)["key"] for line in lines[1:]]
     assert len(keys) == len(set(keys)) == 240
+
+
+@pytest.mark.slow
+def test_a_case_that_kills_every_worker_is_a_row(tmp_path, monkeypatch):
+    monkeypatch.setitem(SOURCES, "deadly", Source("model", exits))
+    with scheduler(tmp_path) as (address, _), worker(address) as first, worker(address) as second:
+        wait_for_workers(address, 2)
+        ((_, response),) = Cluster(address, 10.0)(jobs_of("deadly"))
+        assert response.outcome.value == "failed"
+        assert "died" in response.message
+        assert {first.wait(timeout=10.0), second.wait(timeout=10.0)} == {3}

@@ -171,7 +171,7 @@ def test_a_threshold_is_found_where_it_is():
         assert abs(found.shift) < 1e-6
 
 
-def test_the_command_maps_resumes_and_redraws(tmp_path, capsys):
+def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "40"]
     arguments += ["--quick", "--sources", "exact", "housner"]
     assert run(arguments) == 0

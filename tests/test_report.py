@@ -32,7 +32,7 @@ def test_a_chapter_is_a_study_with_pictures_and_a_headline(chapter):
 
 
 def test_every_study_is_a_chapter():
-    beside = {"compare", "cost", "report", "redraw", "animate"}
+    beside = {"compare", "cost", "report", "redraw", "animate", "throughput"}
     assert {chapter.study for chapter in CHAPTERS} | beside == set(COMMANDS)
 
 

@@ -191,7 +191,7 @@ def test_an_interrupted_run_says_how_to_go_on(tmp_path):
     assert len(lines_of(tmp_path)) >= 30
 
 
-def test_a_full_disk_loses_nothing_that_finished(tmp_path):
+def test_a_full_disk_and_another_run_lose_nothing_that_finished(tmp_path):
     with start_slow_sweep(tmp_path, "full_sweep({!r}, 20_000)") as first:
         output, errors = first.communicate(timeout=60.0)
     assert (first.returncode, output) == (2, "")
@@ -202,26 +202,19 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
     finished = lines_of(tmp_path)[:-1]
     assert 30 <= len(finished) < 241
     assert not (tmp_path / "sweep.csv").exists()
+    # there is room again; a third run is refused, and the second goes on
     with start_slow_sweep(tmp_path) as second:
+        wait_for_rows(tmp_path, second, len(finished) + 5)
+        with start_slow_sweep(tmp_path) as third:
+            _, errors = third.communicate(timeout=30.0)
+        assert third.returncode == 2
+        assert len(errors.splitlines()) == 1
+        assert "in use by another run" in errors
         _, errors = second.communicate(timeout=60.0)
     assert (second.returncode, errors) == (0, "")
     lines = lines_of(tmp_path)
     assert lines[: len(finished)] == finished
     keys = [json.loads(line)["key"] for line in lines[1:]]
-    assert len(keys) == len(set(keys)) == 240
-
-
-def test_a_second_run_is_refused_and_the_first_goes_on(tmp_path):
-    with start_slow_sweep(tmp_path) as first:
-        wait_for_rows(tmp_path, first, 5)
-        with start_slow_sweep(tmp_path) as second:
-            _, errors = second.communicate(timeout=30.0)
-        assert second.returncode == 2
-        assert len(errors.splitlines()) == 1
-        assert "in use by another run" in errors
-        _, errors = first.communicate(timeout=60.0)
-    assert (first.returncode, errors) == (0, "")
-    keys = [json.loads(line)["key"] for line in lines_of(tmp_path)[1:]]
     assert len(keys) == len(set(keys)) == 240
 
 
