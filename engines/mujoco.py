@@ -30,9 +30,14 @@ PLANAR_JOINTS = (
     '<joint type="hinge" axis="0 1 0"/>'
 )
 
-REFLECTION = 0.99
-"""Part of a contact's velocity that landing returns in an ordinary step: the velocities before
-and after then cancel at its start, where the contact is, and the scheme is symmetric."""
+MOST_REFLECTION = 2.0
+"""Landing returns a contact's velocity in proportion to the steps before and after: the two then
+cancel where the contact is, and the scheme is symmetric. A step that is much longer than the one
+before returns no more than this part, ..."""
+
+LOST_REFLECTION = 1.0
+"""... and all return by this many p dt less, so that what an impact leaves behind dies out before
+the next: more would cost energy, less would blur the velocities at impacts."""
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
@@ -176,6 +181,7 @@ class MujocoWorld:
         self._pull, self._option = self._model.opt.gravity, self._model.opt
         self.dt_s = scene.ordinary_step(s.step, self._option.timestep)
         self._velocity = self._moved = self._dt = self._time = 0.0
+        self._elastic = max(1.0 - LOST_REFLECTION * scene.block.p * self.dt_s, 0.0)
         self._sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
         self._set_reach(scene)
         self._fault = self._read_back(scene)
@@ -228,7 +234,7 @@ class MujocoWorld:
             return
         back = 0.0
         if s.landing and before and step.grip in (Grip.SWING, Grip.APPROACH):
-            back = REFLECTION * min(1.0, dt / before)
+            back = self._elastic * min(dt / before, MOST_REFLECTION)
         firm = FEEBLE if s.landing and (step.side or step.grip is not Grip.REST) else s.stiffness
         self._sliding = s.sliding_damping + back
         # the library divides both numbers by the impedance, the first one twice
