@@ -52,7 +52,7 @@ about four minutes on one core, --quick less than one.""",
 Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
 beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
 differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
-resumable. The full study takes about four minutes on two cores, --quick less than one.""",
+resumable. The full study takes about two minutes on one core, --quick a quarter of one.""",
     "throughput": """Cases per second of an overturning map, beside general-purpose integrators.
 
 A million cases of each pulse through every model, on all cores and on one; SciPy's DOP853 and

@@ -198,7 +198,7 @@ def edges_text(edges: pd.DataFrame) -> str:
         between, inside = found.get("mode", 0), found.get("margin", 0)
         lines.append(
             f"  {model}: {len(group)} within {width:.1e}; {between} by a change of the mode and "
-            f"{inside} by the margin between neighbours of the grid; {direct} from mode to mode"
+            f"{inside} by the margin between neighbours of the grid; {direct} narrower islands"
         )
     return "\n".join(lines)
 
