@@ -23,7 +23,8 @@ def report(folder: Path, window: Window) -> str:
         [*model_differences(areas, window), *engine_differences(engines, window)]
     )
     checked = checks(window)
-    provenance.write_text(folder / "differences.csv", differences.to_csv(index=False))
+    if len(differences):
+        provenance.write_text(folder / "differences.csv", differences.to_csv(index=False))
     provenance.write_text(folder / "checks.csv", checked.to_csv(index=False))
     redraw(folder)
     text = "\n".join(
@@ -178,6 +179,8 @@ NAMES = {-1: "survives", 0: "no impact", 1: "after 1", 2: "after 2", 3: "after 3
 
 def differences_text(differences: pd.DataFrame) -> str:
     """Return the differences as an aligned table."""
+    if not len(differences):
+        return "  no other source"
     shown = differences.copy()
     for name in ("false", "missed", "other_mode"):
         shown[name] = shown[name].map(lambda part: "-" if math.isnan(part) else f"{part:.4%}")
@@ -185,7 +188,7 @@ def differences_text(differences: pd.DataFrame) -> str:
         if name in shown:
             shown[name] = shown[name].map(lambda x: "-" if math.isnan(x) else f"{x:.2f}")
     shown["cells"] = shown["cells"].map(lambda count: "-" if math.isnan(count) else f"{count:.0f}")
-    return shown.to_string(index=False) if len(shown) else "  no other source"
+    return shown.to_string(index=False)
 
 
 def edges_text(edges: pd.DataFrame) -> str:
