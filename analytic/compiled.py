@@ -1,6 +1,8 @@
 """One decorator for every compiled kernel of the reference."""
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
@@ -16,3 +18,26 @@ def kernel(function: Function) -> Function:
     """
     compile_ = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
     return cast(Function, compile_(function))
+
+
+def forget_what_changed(folder: Path) -> None:
+    """Delete a folder's compiled kernels if one of its modules has changed since.
+
+    numba sees a change of a kernel's own module, not of a kernel that it calls in another one.
+    """
+    text = b"\0".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
+    stamp, cache = hashlib.sha256(text).hexdigest(), folder / "__pycache__"
+    mark = cache / "kernels.txt"
+    try:
+        if mark.is_file() and mark.read_text() == stamp:
+            return
+        for kept in cache.glob("*.nb[ci]"):
+            kept.unlink(missing_ok=True)
+        cache.mkdir(exist_ok=True)
+        mark.write_text(stamp)
+    except OSError:
+        # a folder that cannot be written holds no kernels of an earlier version either
+        return
+
+
+forget_what_changed(Path(__file__).parent)

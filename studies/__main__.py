@@ -62,7 +62,7 @@ about four minutes on one core, --quick less than one.""",
 Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
 beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
 differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
-resumable. The full study takes about four minutes on two cores, --quick less than one.""",
+resumable. The full study takes about two minutes on one core, --quick a quarter of one.""",
     "ensemble": """Many motions, blocks and intensities: single responses and their statistics.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with

@@ -30,7 +30,8 @@ def report(folder: Path, window: Window) -> str:
         [*model_differences(areas, window), *engine_differences(engines, window)]
     )
     checked = checks(window)
-    provenance.write_text(folder / "differences.csv", differences.to_csv(index=False))
+    if len(differences):
+        provenance.write_text(folder / "differences.csv", differences.to_csv(index=False))
     provenance.write_text(folder / "checks.csv", checked.to_csv(index=False))
     save_all(pictures(folder), folder)
     text = "\n".join(
@@ -193,6 +194,8 @@ NAMES = {-1: "survives", 0: "no impact", 1: "after 1", 2: "after 2", 3: "after 3
 
 def differences_text(differences: pd.DataFrame) -> str:
     """Return the differences as an aligned table."""
+    if not len(differences):
+        return "  no other source"
     shown = differences.copy()
     for name in ("false", "missed", "other_mode"):
         shown[name] = shown[name].map(lambda part: "-" if math.isnan(part) else f"{part:.4%}")
@@ -200,7 +203,7 @@ def differences_text(differences: pd.DataFrame) -> str:
         if name in shown:
             shown[name] = shown[name].map(lambda x: "-" if math.isnan(x) else f"{x:.2f}")
     shown["cells"] = shown["cells"].map(lambda count: "-" if math.isnan(count) else f"{count:.0f}")
-    return shown.to_string(index=False) if len(shown) else "  no other source"
+    return shown.to_string(index=False)
 
 
 def edges_text(edges: pd.DataFrame) -> str:
@@ -213,7 +216,7 @@ def edges_text(edges: pd.DataFrame) -> str:
         between, inside = found.get("mode", 0), found.get("margin", 0)
         lines.append(
             f"  {model}: {len(group)} within {width:.1e}; {between} by a change of the mode and "
-            f"{inside} by the margin between neighbours of the grid; {direct} from mode to mode"
+            f"{inside} by the margin between neighbours of the grid; {direct} narrower islands"
         )
     return "\n".join(lines)
 

@@ -188,6 +188,14 @@ def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
     assert "settings" in capsys.readouterr().err
 
 
+def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
+    arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "20"]
+    assert run([*arguments, "--pulse", "half-sine", "--sources", "exact"]) == 0
+    assert "no other source" in capsys.readouterr().out
+    assert (tmp_path / "map.png").exists()
+    assert not (tmp_path / "differences.png").exists()
+
+
 @pytest.mark.slow
 def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "100"]
