@@ -36,7 +36,8 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
         (share of cases with the right outcome and, if rocked, a peak right within CLOSE);
         ks, the largest distance between the distributions of the peaks over the intensities, ks_p
         its p-value and ks_rejected the intensities with one below 0.05; mcnemar_p, of as many
-        overturnings too many as too few; the fitted capacity and its ratio to the exact one.
+        overturnings too many as too few; the fitted capacity and its ratio to the exact
+        one of the same cases.
     """
     lines = []
     for size, block in by_block(with_exact(rows)):
@@ -92,9 +93,10 @@ def _in_distribution(usable: pd.DataFrame) -> dict[str, object]:
 
 
 def _capacity(here: Fragility, exact: Fragility) -> dict[str, float]:
+    beside = exact.where(here.usable)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = float(np.divide(here.fit.median, exact.fit.median))
-        low, high = bounds(here.medians() / exact.medians())
+        ratio = float(np.divide(here.fit.median, beside.fit.median))
+        low, high = bounds(here.medians() / beside.medians())
         own_low, own_high = bounds(here.medians())
     return {
         "capacity": here.fit.median,

@@ -9,6 +9,9 @@ from studies.agreement import CLOSE
 from studies.differences import scientific
 from studies.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
 
+DISORDER = 1.0
+"""beta from which on the intensity hardly orders the overturnings."""
+
 POINTS = 60
 """Points of a fragility curve."""
 
@@ -68,6 +71,8 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
         title = f"\nBlock {size['width_m']:g} m x {size['height_m']:g} m; exact capacity "
         parts.append(f"{title}{_interval(exact, 'capacity')} onsets, β = {exact['beta']:.3f}:")
         parts.append(_block_table(block.iloc[1:]))
+        if exact["beta"] > DISORDER:
+            parts.append("A stronger motion often spares the block: the fit says little here.")
     parts.append("\nOutcomes beside the exact ones, all blocks and intensities:")
     totals = confused.groupby(["source", "exact_outcome", "outcome"], sort=False)["cases"].sum()
     parts.append(totals.unstack(fill_value=0).to_string())

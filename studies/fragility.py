@@ -117,17 +117,35 @@ def by_block(rows: pd.DataFrame) -> Iterator[tuple[dict[str, float], pd.DataFram
 
 
 class Fragility:
-    """The fit of one block and source, and those of resampled motions."""
+    """The fit of one block and source, and those of resampled motions.
 
-    def __init__(self, group: pd.DataFrame) -> None:
-        table = group.pivot(index="motion", columns="intensity", values="outcome")
-        self.intensity = table.columns.to_numpy(float)
-        usable = (table != "failed").to_numpy(float)
-        overturned = (table == "overturned").to_numpy(float)
-        self.fit = fit_lognormal(self.intensity, overturned.sum(axis=0), usable.sum(axis=0))
+    Parameters
+    ----------
+    intensity : ndarray, shape (k,)
+    overturned, usable : ndarray, shape (n, k)
+        Whether each motion overturned the block, and whether there is a result, 0 or 1.
+    """
+
+    def __init__(self, intensity: FloatArray, overturned: FloatArray, usable: FloatArray) -> None:
+        self.intensity, self.overturned, self.usable = intensity, overturned, usable
+        self.fit = fit_lognormal(intensity, overturned.sum(axis=0), usable.sum(axis=0))
         # the same draw for every source, so that their ratios are of the same motions
-        chosen = choose(len(table))
-        self.resampled = resampled_fits(self.intensity, overturned, usable, chosen)
+        chosen = choose(len(overturned))
+        self.resampled = resampled_fits(intensity, overturned, usable, chosen)
+
+    @classmethod
+    def of(cls, group: pd.DataFrame) -> "Fragility":
+        """Return that of the rows of one block and source."""
+        table = group.pivot(index="motion", columns="intensity", values="outcome")
+        overturned = (table == "overturned").to_numpy(float)
+        usable = (table != "failed").to_numpy(float)
+        return cls(table.columns.to_numpy(float), overturned, usable)
+
+    def where(self, usable: FloatArray) -> "Fragility":
+        """Return that of the cases in which another source has a result too."""
+        if usable.all():
+            return self
+        return Fragility(self.intensity, self.overturned * usable, self.usable * usable)
 
     def medians(self) -> FloatArray:
         """Return the medians of the resampled fits."""
@@ -141,7 +159,7 @@ Fragilities = Mapping[tuple[float, float, str], Fragility]
 def fragilities(rows: pd.DataFrame) -> Fragilities:
     """Fit every block and source."""
     return {
-        (size["width_m"], size["height_m"], str(source)): Fragility(group)
+        (size["width_m"], size["height_m"], str(source)): Fragility.of(group)
         for size, block in by_block(rows)
         for source, group in block.groupby("source", sort=False)
     }

@@ -175,6 +175,8 @@ def test_failed_rows_count_as_failed_and_not_as_survivors():
     rows.loc[lost, "outcome"], rows.loc[lost, "peak_ratio"] = "failed", math.nan
     row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
     assert (row["failed"], row["right"]) == (5, 175)
+    # its capacity is held against the exact one of the same 175 cases
+    assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
     assert row["predicted"] == pytest.approx(175 / 180)
     table = stripes(rows).set_index(["source", "intensity"])
     assert table.loc[("other", 4.0), "cases"] == 25
