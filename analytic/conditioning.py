@@ -18,7 +18,7 @@ from analytic.excursions import (
     REST,
     ROCKED,
     UPLIFT,
-    Record,
+    Notes,
     expand,
     highest,
     march,
@@ -104,8 +104,8 @@ def condition(
     log = np.empty((64, 4))
     nothing = np.empty(0)
     while True:
-        record = Record(nothing, np.empty((2, 0)), log, nothing)
-        end = march(law, accuracy, segments, 0.0, record, work)
+        notes = Notes(nothing, np.empty((2, 0)), log, nothing)
+        end = march(law, accuracy, segments, 0.0, notes, work)
         if end.events <= log.shape[0]:
             break
         log = np.empty((end.events, 4))

@@ -33,7 +33,7 @@ LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
 
-class Record(NamedTuple):
+class Notes(NamedTuple):
     """What to write down on the way; each array may be empty.
 
     times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
@@ -185,11 +185,11 @@ def sample_step(
     order: int,
     y: float,
     v: float,
-    record: Record,
+    notes: Notes,
     n: int,
 ) -> int:
     """Sample the step from (y, v) at tau up to tau + end; return the number of samples so far."""
-    times, samples = record.times, record.samples
+    times, samples = notes.times, notes.samples
     while n < times.size and times[n] <= tau + end:
         at = times[n] - tau
         if law.linear:
@@ -208,7 +208,7 @@ def march(
     accuracy: Accuracy,
     segments: FloatArray,
     until: float,
-    record: Record,
+    notes: Notes,
     work: FloatArray,
 ) -> End:
     """Follow one response from rest.
@@ -223,7 +223,7 @@ def march(
     until : float
         Time to follow the response to, at least to the end of the ground motion. The outcome and
         the peak of what comes after follow from energy.
-    record : Record
+    notes : Notes
     work : ndarray
         From `workspace()`.
     """
@@ -236,20 +236,20 @@ def march(
     while True:
         if side == 0.0:
             j, rise, side, lead = next_uplift(segments, j, tau, law.onset)
-            while n < record.times.size and record.times[n] <= min(rise, last):
-                record.samples[:, n] = 0.0
+            while n < notes.times.size and notes.times[n] <= min(rise, last):
+                notes.samples[:, n] = 0.0
                 n += 1
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau = rise
-            events = note(record.log, events, UPLIFT, tau, 0.0, 0.0)
+            events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         while j < len(segments) and tau >= segments[j, 1]:
             j += 1
         if tau >= last:
             ahead = free_peak(law, y, v)
-            if record.limits.size > 0:
-                watch_free(record.limits, law, side, y, v)
+            if notes.limits.size > 0:
+                watch_free(notes.limits, law, side, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, last)
         if steps == MAX_STEPS:
@@ -281,12 +281,12 @@ def march(
             x = first_crossing(d, order, 0, LYING, spare)
         elif hit and law.linear:
             x = min(polish(law, segment, side, tau, lead, y, v, x * h) / h, 1.0)
-        n = sample_step(law, segment, side, tau, lead, h, x * h, d, order, y, v, record, n)
-        if record.limits.size > 0:
+        n = sample_step(law, segment, side, tau, lead, h, x * h, d, order, y, v, notes, n)
+        if notes.limits.size > 0:
             for i in range(POINTS + 1):
                 at = x * i / POINTS
                 a = ground(segments, j, tau + at * h)
-                watch(record.limits, law, side, a, value(d, order, at), slope(d, order, at) / h)
+                watch(notes.limits, law, side, a, value(d, order, at), slope(d, order, at) / h)
         if fallen:
             return End(OVERTURNED, peak, steps, impacts, events, tau + x * h)
 
@@ -304,13 +304,13 @@ def march(
             continue
 
         impacts += 1
-        events = note(record.log, events, IMPACT, tau, side * v, side * law.eta * v)
+        events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
         side, y, v, lead = -side, 0.0, -law.eta * v, 1
         a = ground(segments, j, tau)
         wait = time_to_rest(law, side, v, a)
         if comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
             tau += wait
-            events = note(record.log, events, REST, tau, 0.0, 0.0)
+            events = note(notes.log, events, REST, tau, 0.0, 0.0)
             side = v = 0.0
         elif v == 0.0:
             # no velocity is left, but the ground lifts the block again at once

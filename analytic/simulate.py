@@ -21,7 +21,7 @@ from analytic.excursions import (
     TOO_LONG,
     UPLIFT,
     End,
-    Record,
+    Notes,
     march,
     workspace,
 )
@@ -93,8 +93,8 @@ def simulate(
     until, sampled = check_window(motion, duration, times)
     segments = scaled_segments(block, motion)
 
-    def solve(record: Record) -> End:
-        return march(law, exactly, segments, until * block.p, record, workspace())
+    def solve(notes: Notes) -> End:
+        return march(law, exactly, segments, until * block.p, notes, workspace())
 
     response = respond(block, solve, sampled, times is not None, watched=not law.linear)
     if response.outcome is Outcome.AT_REST and not law.linear:
@@ -110,7 +110,7 @@ def strongest(motion: Motion) -> float:
 
 def respond(
     block: RigidBlock,
-    solve: Callable[[Record], End],
+    solve: Callable[[Notes], End],
     sampled: FloatArray,
     recorded: bool,
     watched: bool,
@@ -121,7 +121,7 @@ def respond(
     ----------
     block : RigidBlock
     solve : callable
-        The march, given where to record.
+        The march, given where to notes.
     sampled : ndarray
         Times [s] of the history; kept in the response if `recorded`.
     recorded, watched : bool
@@ -132,8 +132,8 @@ def respond(
     began = time.perf_counter()
     while True:
         limits = np.array([1.0, 0.0]) if watched else np.empty(0)
-        record = Record(sampled * block.p, samples, log, limits)
-        end = solve(record)
+        notes = Notes(sampled * block.p, samples, log, limits)
+        end = solve(notes)
         if end.events <= len(log):
             break
         log = np.empty((end.events, 4))
@@ -143,7 +143,7 @@ def respond(
     if outcome is Outcome.FAILED:
         return Response.failure(FAILURES[end.outcome], steps=end.steps, wall_s=wall_s)
     impacts, uplifts, rests = read_log(log[: end.events], block.p)
-    seen = int(np.searchsorted(record.times, end.time, side="right"))
+    seen = int(np.searchsorted(notes.times, end.time, side="right"))
     history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)
     return Response(
         outcome=outcome,
@@ -259,10 +259,10 @@ def solve_pulses(
     """Solve a chunk of `peak_ratios`, one case a column."""
     work = workspace()
     segments = np.zeros((1, 7))
-    record = Record(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
+    notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
     for i in range(cases.shape[1]):
         law = pulse_law(linear, constants[:, i], cases[:, i], segments)
-        end = march(law, exactly, segments, 0.0, record, work)
+        end = march(law, exactly, segments, 0.0, notes, work)
         codes[i] = end.outcome
         peaks[i] = end.peak / law.alpha
         if end.outcome == OVERTURNED:

@@ -24,7 +24,7 @@ from analytic.excursions import (
     UPLIFT,
     VANISHING,
     End,
-    Record,
+    Notes,
     note,
 )
 from analytic.models import Law, Model, find_model
@@ -86,9 +86,9 @@ def integrate(
     until, sampled = check_window(motion, duration, times)
     segments = scaled_segments(block, motion)
 
-    def solve(record: Record) -> End:
+    def solve(notes: Notes) -> End:
         end = until * block.p if duration is not None else 0.0
-        return tread(law, segments, end, record, method == "rk4", step, event_tolerance)
+        return tread(law, segments, end, notes, method == "rk4", step, event_tolerance)
 
     return respond(block, solve, sampled, times is not None, watched=False)
 
@@ -162,7 +162,7 @@ def tread(
     law: Law,
     segments: FloatArray,
     until: float,
-    record: Record,
+    notes: Notes,
     rk4: bool,
     step: float,
     tolerance: float,
@@ -171,7 +171,7 @@ def tread(
 
     With `until` before the end of the ground motion the march ends when the peak is decided.
     """
-    times, samples = record.times, record.samples
+    times, samples = notes.times, notes.samples
     moving = segments[-1, 1]
     last = max(until, moving)
     tau = y = v = side = peak = 0.0
@@ -187,7 +187,7 @@ def tread(
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau, h = rise, step
-            events = note(record.log, events, UPLIFT, tau, 0.0, 0.0)
+            events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         while j < len(segments) and tau >= segments[j, 1]:
             j += 1
         if until > moving and tau >= until:
@@ -232,7 +232,7 @@ def tread(
             continue
 
         impacts += 1
-        events = note(record.log, events, IMPACT, tau, side * v, side * law.eta * v)
+        events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
         side, y, v, h = -side, 0.0, -law.eta * v, step
         while j < len(segments) and tau >= segments[j, 1]:
             j += 1
@@ -242,7 +242,7 @@ def tread(
         unseen = wait < math.inf and 0.5 * v * v < -tolerance * acceleration(law, side, a, 0.0)
         if unseen or comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
             tau += wait
-            events = note(record.log, events, REST, tau, 0.0, 0.0)
+            events = note(notes.log, events, REST, tau, 0.0, 0.0)
             side = v = 0.0
         elif v == 0.0:
             side = -math.copysign(1.0, a)
