@@ -6,8 +6,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from studies import respond
 from studies.cases import Case
+from studies.linearizations import held, summarize
 
 PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
 
@@ -34,6 +36,47 @@ def test_a_published_row_is_what_comes_out_today(row):
     assert response.outcome.value == row["outcome"]
     # other processors round differently, and a response amplifies that by its kappa
     assert response.peak_ratio == pytest.approx(float(row["peak_ratio"]), rel=1e-6)
+
+
+def published(name, **options):
+    return pd.read_csv(PUBLISHED / name, keep_default_na=False, na_values=["nan"], **options)
+
+
+def test_random_cases_are_what_comes_out_today():
+    table = published("validate/errors.csv")
+    well = table[(table["exact_outcome"] == "rocked") & (table["kappa"].abs() < 10)]
+    for row in well.groupby("source").sample(3, random_state=7).itertuples():
+        block = RigidBlock(width=row.width_m, height=row.aspect * row.width_m)
+        pulse = SinePulse(
+            amplitude=row.amplitude_g * block.gravity,
+            omega=row.omega_over_p * block.p,
+            half_cycles=row.half_cycles,
+        )
+        assert respond(row.source, block, pulse).peak_ratio == pytest.approx(
+            row.peak_ratio, rel=1e-6
+        )
+        assert simulate(block, pulse).peak_ratio == pytest.approx(row.exact_peak, rel=1e-9)
+        found = conditioning(block, pulse)
+        assert found == pytest.approx((row.kappa, row.kappa_eta), rel=1e-6, abs=1e-12)
+
+
+def test_linearizations_are_what_comes_out_today():
+    kept = published("linearizations/linearizations.csv", dtype={"changed": str})
+    today = summarize(held("paper")).drop(columns="title")
+    kept = kept[kept["grid"] == "paper"].drop(columns="title").reset_index(drop=True)
+    pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-9)
+
+
+def test_edges_of_the_overturning_map_are_where_they_were():
+    table = published("overturning/boundaries.csv")
+    for row in table.groupby("model").sample(12, random_state=7).itertuples():
+        middle = 0.5 * (row.low + row.high)
+        onset = math.tan(row.alpha)
+        modes = [
+            int(overturning_modes(row.alpha, onsets * onset, row.omega_over_p, 2, row.model).mode)
+            for onsets in (middle * (1 - 1e-9), middle * (1 + 1e-9))
+        ]
+        assert modes == [row.below, row.above]
 
 
 def test_every_picture_and_table_the_readme_shows_is_there():
