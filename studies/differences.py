@@ -19,6 +19,7 @@ SUMMARY_COLUMNS = [
     "median_error",
     "p90_error",
     "max_error",
+    "max_error_over_kappa",
     "max_difference",
     "false_overturnings",
     "missed_overturnings",
@@ -40,10 +41,11 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
         (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
-        missed_overturning.
+        missed_overturning, and the columns of `with_conditioning`.
     """
     peak, outcome = exact_peaks(rows)
-    joined = rows.assign(exact_peak=peak, exact_outcome=[_word(item) for item in outcome])
+    known = with_conditioning(rows)
+    joined = known.assign(exact_peak=peak, exact_outcome=[_word(item) for item in outcome])
     found, right = joined["outcome"], joined["exact_outcome"]
     both_rocked = (found == "rocked") & (right == "rocked")
     return joined.assign(
@@ -100,9 +102,7 @@ def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
     order = [source for source in compared["source"].unique() if source in place]
     worst = erring.loc[place.loc[order]]
     columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
-    return with_conditioning(worst[[*columns, "pulse", "excess_g"]])[
-        [*columns, "kappa", "kappa_eta"]
-    ]
+    return worst[[*columns, "kappa", "kappa_eta"]]
 
 
 def worst_text(worst: pd.DataFrame) -> str:
@@ -158,6 +158,7 @@ def _line(group: pd.DataFrame) -> list[object]:
         errors.median(),
         errors.quantile(0.9) if len(errors) else math.nan,
         errors.max(),
+        (errors / conditioning_of(group)).max(),
         group["difference"].abs().max(),
         int(group["false_overturning"].sum()),
         int(group["missed_overturning"].sum()),
@@ -176,7 +177,7 @@ def summary_text(summary: pd.DataFrame) -> str:
             "median": summary["median_error"].map(scientific),
             "p90": summary["p90_error"].map(scientific),
             "max": summary["max_error"].map(scientific),
-            "max Δ": summary["max_difference"].map(scientific),
+            "max/κ": summary["max_error_over_kappa"].map(scientific),
             "false": summary["false_overturnings"],
             "missed": summary["missed_overturnings"],
             "failed": summary["failed"],

@@ -25,12 +25,14 @@ __all__ = ["command", "headline", "pictures", "report"]
 PRODUCTS = (
     "map.csv",
     "boundaries.csv",
+    "conditioning.csv",
     "engines.csv",
     "edges.csv",
     "thresholds.csv",
     "differences.csv",
     "checks.csv",
     "map.png",
+    "conditioning.png",
     "differences.png",
     "findings.txt",
 )
@@ -38,6 +40,7 @@ DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", 
 STRIP = 250_000
 """Cases that are held at a time."""
 RESOLUTION, QUICK_RESOLUTION = 1000, 200
+KAPPA_RESOLUTION = 160
 ENGINE_RESOLUTION, QUICK_ENGINE_RESOLUTION = 32, 8
 POSITIONS, QUICK_POSITIONS = (0.12, 0.3, 0.5, 0.7, 0.9), (0.5,)
 """Parts of the abscissa at which engines are asked about edges."""
@@ -163,9 +166,22 @@ def overturning(
         tables="table",
     )
     provenance.write_text(folder / "boundaries.csv", boundaries.to_csv(index=False))
+    provenance.write_text(folder / "conditioning.csv", conditioned(window).to_csv(index=False))
     areas = pd.concat([spans for _, spans in maps.values()])
     provenance.write_text(folder / "map.csv", areas.to_csv(index=False))
     return rows
+
+
+def conditioned(window: Window) -> pd.DataFrame:
+    """Return the condition numbers of the exact peaks on a grid; nan where the block overturns."""
+    x, onsets = np.meshgrid(
+        window.centres(min(window.columns, KAPPA_RESOLUTION)),
+        window.amplitudes(min(window.rows, KAPPA_RESOLUTION)),
+        indexing="ij",
+    )
+    found = window.condition_numbers(x, onsets)
+    columns = {"x": x, "onsets": onsets, "kappa": found.amplitude, "kappa_eta": found.restitution}
+    return pd.DataFrame({name: column.ravel() for name, column in columns.items()})
 
 
 def mapped(window: Window, model: str) -> tuple[pd.DataFrame, pd.DataFrame]:

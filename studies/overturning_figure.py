@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from analytic.motion import FloatArray
+from studies.differences import conditioning_of
 from studies.figures import style_of
 from studies.overturning_report import modes_at, no_impact_line, with_exact
 from studies.window import LEAST_ONSETS, Window
@@ -98,6 +99,36 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
         frameon=False,
         fontsize=9,
     )
+    return drawing
+
+
+def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
+    """Draw by how much a small error grows into one of the exact peak, where the block survives.
+
+    Parameters
+    ----------
+    table : DataFrame
+        The columns of conditioning.csv.
+    window : Window
+    """
+    drawing = Figure(figsize=(8.6, 5.8), layout="constrained")
+    axes = drawing.subplots()
+    values = table.assign(kappa=conditioning_of(table)).pivot(
+        index="x", columns="onsets", values="kappa"
+    )
+    axes.set_facecolor("#d9d9d9")
+    shown = axes.imshow(
+        values.to_numpy().T,
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
+        cmap="viridis",
+        norm=LogNorm(1.0, 1e4),
+    )
+    drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
+    _frame(axes, window)
+    axes.set_title(f"Conditioning: {window.title}; grey: overturns or stays at rest")
     return drawing
 
 

@@ -55,11 +55,14 @@ def report(folder: Path, window: Window) -> str:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw the figures of a folder from its CSVs alone."""
-    from studies.overturning_figure import draw_differences, draw_map
+    from studies.overturning_figure import draw_conditioning, draw_differences, draw_map
 
     areas, engines = read(folder, "map"), read(folder, "engines")
     window = window_of(folder)
-    drawn = {"map": draw_map(areas, window)}
+    drawn = {
+        "map": draw_map(areas, window),
+        "conditioning": draw_conditioning(read(folder, "conditioning"), window),
+    }
     if len(areas["model"].unique()) > 1 or len(engines):
         drawn["differences"] = draw_differences(areas, engines, window)
     return drawn

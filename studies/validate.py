@@ -18,7 +18,6 @@ from studies.arguments import Count, Positive, check_sources, several
 from studies.differences import (
     conditioning_of,
     scientific,
-    with_conditioning,
     with_reference,
 )
 from studies.executors import Executor, choose
@@ -178,7 +177,7 @@ def report(folder: Path) -> str:
     from studies.figures import save_all
 
     rows = pd.read_csv(folder / "validate.csv", dtype={"message": str})
-    compared = with_conditioning(with_reference(rows))
+    compared = with_reference(rows)
     provenance.write_text(folder / "errors.csv", compared.to_csv(index=False, na_rep="nan"))
     save_all(pictures(folder), folder)
     sensitivity = conditioning_of(compared)

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.conditioning import Conditioning, condition_numbers
 from analytic.maps import Modes, overturning_modes
 from analytic.motion import FloatArray, SinePulse
 from studies.cases import PULSES
@@ -117,6 +118,11 @@ class Window:
         amplitude = onsets * np.tan(alpha)
         ratio, cycles = self.ratio(x), self.half_cycles
         return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
+
+    def condition_numbers(self, x: FloatArray, onsets: FloatArray) -> Conditioning:
+        """Return the condition numbers of the exact peaks at points of the plane, broadcast."""
+        alpha = self.alpha(x)
+        return condition_numbers(alpha, onsets * np.tan(alpha), self.ratio(x), self.half_cycles)
 
     def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
         """Return the block and the pulse of a point, for sources other than the models."""
