@@ -32,7 +32,7 @@ the pulse moves its peak. Writes validate.csv, errors.csv and provenance.json; r
     "precision": """Error against run time: every method along its own setting, on the same cases.
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
-resumable. The full study takes about a quarter of an hour on one core, --quick half a minute.""",
+resumable. The full study takes about twenty minutes on one core, --quick one.""",
     "cost": """What a scene costs, and what each thing left out of it would cost and change.
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
@@ -77,7 +77,7 @@ findings.txt; resumable. The full study takes about a minute on one core, --quic
 one.""",
     "report": """Every study, and one self-contained page (report.html) about them.
 
-The quick studies take about four minutes on two cores, the full ones about forty. A report that
+The quick studies take about five minutes on two cores, the full ones about fifty. A report that
 was interrupted goes on where it stopped when the same command is given again.""",
     "animate": """A block rocking in several sources side by side, on the same clock, as a film.
 

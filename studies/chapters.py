@@ -77,7 +77,7 @@ CHAPTERS: tuple[Chapter, ...] = (
             *("--sources", "exact", "pybullet:naive", "pybullet:fixed"),
             *("mujoco:naive", "mujoco:fixed"),
         ),
-        minutes=(0.2, 5.0),
+        minutes=(0.2, 3.0),
     ),
     Chapter(
         study="histories",
@@ -120,7 +120,7 @@ CHAPTERS: tuple[Chapter, ...] = (
         question="Which error does which run time buy, and what does a scene not need?",
         source="precision.csv",
         tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
-        minutes=(1.2, 16.0),
+        minutes=(1.1, 20.0),
     ),
     Chapter(
         study="contact",

@@ -130,10 +130,13 @@ def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
 def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
     """Return the order of the median error in the step with its standard error; nan if unclear.
 
-    A line through the logarithms, over the settings whose error is above three times the floor.
+    A line through the logarithms, over the settings whose error is above three times the floor, and
+    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
     """
     usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
-    usable = usable[usable["median_error"] > 3.0 * usable["median_error"].min()]
+    floor = usable["median_error"].min()
+    reached = usable["value"][usable["median_error"] == floor].max()
+    usable = usable[(usable["median_error"] > 3.0 * floor) & (usable["value"] > reached)]
     usable = usable[usable["median_error"] < 0.3]
     if not method.stepping or len(usable) < 3:
         return math.nan, math.nan
