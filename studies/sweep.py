@@ -147,8 +147,8 @@ def report(folder: Path) -> str:
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
-            "survive, κ being the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|; outcomes right,",
-            "overturned falsely, overturning missed:",
+            "survive, κ being the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|; outcomes",
+            "right, overturned falsely, overturning missed:",
             summary_text(table),
             "\nThe case where each source errs most; κ = ∂ln θmax/∂ln a_p, κη = ∂ln θmax/∂ln η:",
             worst_text(worst_cases(compared)),
