@@ -13,10 +13,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(function: Function) -> Function:
     """Compile `function` at its first call, keep the result on disk, release the GIL.
 
-    A product and a sum may become one operation; nothing is reordered, since then the compiler
-    may take x - x for zero, infinite or not.
+    No operation is merged with another: whether it is would depend on what the compiler inlines,
+    and the last digit on which process compiled.
     """
-    compile_ = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+    compile_ = numba.njit(cache=True, nogil=True, error_model="numpy")
     return cast(Function, compile_(function))
 
 
