@@ -77,7 +77,7 @@ findings.txt; resumable. The full study takes about a minute on one core, --quic
 one.""",
     "report": """Every study, and one self-contained page (report.html) about them.
 
-The quick studies take about five minutes on two cores, the full ones about fifty. A report that
+The quick studies take about four minutes on two cores, the full ones about fifty. A report that
 was interrupted goes on where it stopped when the same command is given again.""",
     "animate": """A block rocking in several sources side by side, on the same clock, as a film.
 
