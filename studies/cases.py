@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse
@@ -29,18 +28,6 @@ WIDTHS_M = (0.5, 1.0)
 
 OMEGA_RATIOS = tuple(k / 10 for k in range(1, 41))
 """omega/p, the abscissa."""
-
-
-class Posed(Protocol):
-    """A question with its answer's setting: a block on a moving base."""
-
-    @property
-    def block(self) -> RigidBlock:
-        """The block."""
-
-    @property
-    def motion(self) -> Motion:
-        """The motion of its base."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
