@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
-from analytic.closed_form import free_peak, work_to
-from analytic.compiled import kernel
-from analytic.excursions import (
+from analytic.kernels.closed_form import free_peak, work_to
+from analytic.kernels.compiled import kernel
+from analytic.kernels.excursions import (
     REST,
     ROCKED,
     UPLIFT,
@@ -26,10 +26,10 @@ from analytic.excursions import (
 )
 from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.polynomial import ORDER, slope, value
-from analytic.rest import acceleration, ground
+from analytic.kernels.polynomial import ORDER, slope, value
+from analytic.kernels.rest import acceleration, ground
 from analytic.simulate import pulse_law, scaled_segments, stack_cases
-from analytic.taylor import TOLERANCE, Accuracy, accuracy
+from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 
 AMPLITUDE, RESTITUTION = 0, 1
 """Rows of the derivatives: by ln(a_p), by ln(eta)."""

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import housner_restitution
-from analytic.closed_form import work_to
-from analytic.compiled import kernel
-from analytic.excursions import MAX_STEPS
+from analytic.kernels.closed_form import work_to
+from analytic.kernels.compiled import kernel
+from analytic.kernels.excursions import MAX_STEPS
 from analytic.models import Law, find_model
 from analytic.motion import FloatArray
-from analytic.rest import ANGLE_TOLERANCE, comes_to_rest, time_to_rest
+from analytic.kernels.rest import ANGLE_TOLERANCE, comes_to_rest, time_to_rest
 from analytic.simulate import check_cases
-from analytic.swings import (
+from analytic.kernels.swings import (
     LANDED,
     LEFT_OVER,
     MAP_ORDER,

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import RigidBlock, housner_restitution
 from analytic.checks import finite
-from analytic.compiled import kernel
-from analytic.excursions import (
+from analytic.kernels.compiled import kernel
+from analytic.kernels.excursions import (
     BROKEN,
     IMPACT,
     OVERTURNED,
@@ -28,10 +28,10 @@ from analytic.excursions import (
 from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.taylor import TOLERANCE, Accuracy, accuracy
+from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 
 OUTCOMES = (*list(Outcome), Outcome.FAILED)
-"""In the order of the codes in `analytic.excursions`."""
+"""In the order of the codes in `analytic.kernels.excursions`."""
 FAILURES = {
     TOO_LONG: "the response takes too many steps",
     BROKEN: "the solution overflows, or its steps vanish beside the time they start from",

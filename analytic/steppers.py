@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
 from analytic.checks import positive
-from analytic.closed_form import free_peak
-from analytic.compiled import kernel
-from analytic.excursions import (
+from analytic.kernels.closed_form import free_peak
+from analytic.kernels.compiled import kernel
+from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
     IMPACT,
@@ -30,7 +30,7 @@ from analytic.excursions import (
 from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from analytic.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
+from analytic.kernels.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.simulate import check_window, respond, scaled_segments
 
 METHODS = ("rk4", "average-acceleration")

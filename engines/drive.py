@@ -7,12 +7,12 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from analytic.response import Response
-from engines.landing import LandingSteps
-from engines.observe import Observer
+from engines.stepping.landing import LandingSteps
+from engines.watching.observe import Observer
 from engines.scene import Scene, World
-from engines.steps import FixedSteps, Policy, Stepper
+from engines.stepping.steps import FixedSteps, Policy, Stepper
 
-ENGINES = {"pybullet": "engines.bullet", "mujoco": "engines.mujoco"}
+ENGINES = {"pybullet": "engines.adapters.bullet", "mujoco": "engines.adapters.mujoco"}
 """Name of an engine -> module of its adapter, imported when the engine is first asked for."""
 
 LOOK_AT_CLOCK = 256

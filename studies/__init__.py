@@ -34,7 +34,7 @@ def respond(
     Parameters
     ----------
     source : str
-        A name of `studies.sources.SOURCES`; an engine takes a preset after a colon, as in
+        A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
     block : RigidBlock
     motion : Motion
@@ -52,6 +52,6 @@ def respond(
     studies.sources.UnknownSourceError
         If there is no such source or preset.
     """
-    from studies.sources import resolve
+    from studies.sources.registry import resolve
 
     return resolve(source).call(block, motion, duration=duration, times=times, **options)

@@ -8,8 +8,8 @@ import sys
 
 from cyclopts import App, CycloptsError, Parameter
 
-from studies.arguments import BadInputError
-from studies.journal import FolderError
+from studies.kit.arguments import BadInputError
+from studies.kit.journal import FolderError
 
 COMMANDS = {
     "compare": """One block and one pulse or record through every source, side by side.
@@ -109,7 +109,7 @@ def make_app() -> App:
 
 
 def _version() -> str:
-    from studies.provenance import project_version
+    from studies.kit.provenance import project_version
 
     return project_version()
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from analytic.compiled import forget_what_changed
+from analytic.kernels.compiled import forget_what_changed
 
 HEAVY = ("scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
 

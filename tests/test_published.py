@@ -8,8 +8,8 @@ import pytest
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from studies import respond
-from studies.cases import Case
-from studies.linearizations import held, summarize
+from studies.cases.paper import Case
+from studies.linearizations.study import held, summarize
 
 PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
 

@@ -1,0 +1,148 @@
+"""Roots of a polynomial on the unit interval, none missed.
+
+A polynomial is turned into Bernstein form, where the number of sign changes of its coefficients
+bounds the number of its roots in (0, 1) and has the same parity (Descartes). No change: no root;
+one change: exactly one. Otherwise the interval is halved (de Casteljau) until one of the two holds.
+"""
+
+import math
+
+import numpy as np
+
+from analytic.kernels.compiled import kernel
+from analytic.motion import FloatArray
+
+ORDER = 24
+"""Degree of the Taylor polynomials of a step."""
+
+MAX_DEPTH = 45
+"""Halvings after which two roots count as a touching point, not as two crossings."""
+
+NEWTON_DONE = 1e-9
+"""Relative length of the last Newton step of a root."""
+
+INVERSE_BINOMIALS = np.array(
+    [[1.0 / math.comb(n, i) if i <= n else 0.0 for i in range(ORDER + 1)] for n in range(ORDER + 1)]
+)
+
+
+@kernel
+def value(a: FloatArray, degree: int, x: float) -> float:
+    """Return sum a[i] x^i."""
+    total = a[degree]
+    for i in range(degree - 1, -1, -1):
+        total = total * x + a[i]
+    return total
+
+
+@kernel
+def slope(a: FloatArray, degree: int, x: float) -> float:
+    """Return sum i a[i] x^(i-1)."""
+    total = degree * a[degree]
+    for i in range(degree - 1, 0, -1):
+        total = total * x + i * a[i]
+    return total
+
+
+@kernel
+def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
+    """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
+    for i in range(degree + 1):
+        b[i] = a[i] * INVERSE_BINOMIALS[degree, i]
+    for r in range(1, degree + 1):
+        for i in range(degree, r - 1, -1):
+            b[i] += b[i - 1]
+
+
+@kernel
+def sign_changes(b: FloatArray, degree: int) -> int:
+    """Count the sign changes in b[0..degree], zeros left out."""
+    changes = 0
+    last = 0.0
+    for i in range(degree + 1):
+        if b[i] != 0.0:
+            if last * b[i] < 0.0:
+                changes += 1
+            last = b[i]
+    return changes
+
+
+@kernel
+def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
+    """Replace `b` by its left half and write its right half into `right`."""
+    right[degree] = b[degree]
+    for r in range(1, degree + 1):
+        for i in range(degree, r - 1, -1):
+            b[i] = 0.5 * (b[i] + b[i - 1])
+        right[degree - r] = b[degree]
+
+
+@kernel
+def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float:
+    """Return the only root of `a` in [low, high], by Newton's method kept in its bracket."""
+    rising = value(a, degree, high) > value(a, degree, low)
+    x = 0.5 * (low + high)
+    for _ in range(100):
+        f = value(a, degree, x)
+        if f == 0.0:
+            return x
+        if (f > 0.0) == rising:
+            high = x
+        else:
+            low = x
+        gradient = slope(a, degree, x)
+        new = x - f / gradient if gradient != 0.0 else low
+        if low < new < high:
+            # the error of a Newton step is of the order of its square
+            if abs(new - x) <= NEWTON_DONE * x:
+                return new
+        else:
+            new = 0.5 * (low + high)
+            if not low < new < high:
+                return new
+        x = new
+    return x
+
+
+@kernel
+def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
+    """Return the first root of `a` in (start, 1], or 2 when there is none.
+
+    Parameters
+    ----------
+    a : ndarray, shape (>= degree + 1,)
+        Coefficients of sum a[i] x^i.
+    degree : int
+    start : float
+        In [0, 1); a root within 1e-15 of it is not found again.
+    pool : ndarray, shape (MAX_DEPTH + 2, >= degree + 1)
+        Workspace.
+    """
+    to_bernstein(a, degree, pool[0])
+    low, width = 0.0, 1.0
+    top = depth = 0
+    # pool[0..top] hold the intervals still to search, the leftmost, [low, low + width], on top
+    while top >= 0:
+        b = pool[top]
+        changes = sign_changes(b, degree) if low + width > start else 0
+        if changes > 1 and depth < MAX_DEPTH:
+            for i in range(degree + 1):
+                pool[top + 1, i] = b[i]
+            halve(pool[top + 1], degree, b)
+            top += 1
+            depth += 1
+            width *= 0.5
+            continue
+        if changes == 1:
+            root = bracketed_root(a, degree, low, low + width)
+            if root > start + 1e-15:
+                return root
+        low += width
+        if b[degree] == 0.0 and low > start + 1e-15:
+            return low
+        top -= 1
+        # after a right half the next interval is the sibling of an ancestor, which is wider
+        while depth > 0 and (low / width) % 2.0 == 0.0:
+            width *= 2.0
+            depth -= 1
+    return 2.0

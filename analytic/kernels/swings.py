@@ -1,0 +1,334 @@
+"""One swing of a block under a pulse, from an impact or an uplift to its end, for maps.
+
+A map needs no peak and no history, so a swing is followed by as few evaluations as will do. The
+rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g, and
+phase = omega x time. No impact is stepped over: from (y, v) the block cannot land before
+y + v h - M h^2/2 = 0 where M bounds -y'', and the steps that this allows converge to the impact
+quadratically; the linear models know more about theirs. In the same way no step passes beyond the
+rotation at which the block lies.
+"""
+
+import math
+from typing import NamedTuple
+
+from analytic.kernels.closed_form import linear_state
+from analytic.kernels.compiled import kernel
+from analytic.kernels.excursions import LYING, MAX_STEPS
+from analytic.models import Law
+from analytic.motion import FloatArray
+from analytic.kernels.polynomial import slope, value
+from analytic.kernels.rest import ANGLE_TOLERANCE
+from analytic.kernels.taylor import expand_exact
+
+LANDED, OVERTURNED, LEFT_OVER, STUCK = 0, 1, 2, 3
+"""How a swing ends: an impact, overturned, still up when the pulse ends, too many steps."""
+
+MAP_ORDER = 16
+"""Degree of the Taylor series; a power of two, so that its root is a chain of square roots."""
+MAP_TOLERANCE = 1e-13
+"""Truncation error of a step, relative to the rotation that it covers."""
+LONGEST = 4.0
+CONTACT = 1e-13
+"""Part of the height of a swing below which a falling block has landed."""
+ROUNDING = 1e-15
+"""Of the terms of the closed form."""
+SHORT = 0.3
+"""Swings shorter than this part of the shortest time scale need `linear_state`."""
+
+
+class Swing(NamedTuple):
+    """How a swing ended: its kind, phase, rotation, velocity; evaluations or Taylor steps."""
+
+    end: int
+    phase: float
+    y: float
+    v: float
+    steps: int
+
+
+class Pulse(NamedTuple):
+    """A pulse as the kernels take it: amplitude [g] > 0, omega/p, phase at its end."""
+
+    amplitude: float
+    omega: float
+    end: float
+
+
+@kernel
+def pushes_out(side: float, phase: float) -> bool:
+    """Tell whether the ground accelerates a block on this side outwards at this phase."""
+    return side * (1.0 - 2.0 * (math.floor(phase / math.pi) % 2.0)) < 0.0
+
+
+@kernel
+def strongest_ahead(phase: float) -> float:
+    """Return the largest abs(sin) from a phase to the end of its half cycle."""
+    within = phase - math.pi * math.floor(phase / math.pi)
+    return 1.0 if within < 0.5 * math.pi else math.sin(within)
+
+
+@kernel
+def safe_fall(y: float, v: float, most: float) -> float:
+    """Return the time before which a block at (y, v) cannot land while -y'' is below `most`."""
+    return (v + math.sqrt(v * v + 2.0 * most * y)) / most
+
+
+@kernel
+def safe_rise(y: float, v: float, most: float) -> float:
+    """Return the time before which a block at (y, v) cannot lie while y'' is below `most`."""
+    room = LYING - y
+    return 2.0 * room / (v + math.sqrt(v * v + 2.0 * most * room))
+
+
+@kernel
+def half_cycle_end(phase: float, end: float) -> float:
+    """Return the phase at which the ground changes direction, or the pulse ends."""
+    return min((math.floor(phase / math.pi) + 1.0) * math.pi, end)
+
+
+class Arc(NamedTuple):
+    """A swing of a linear model from (0, v) at a phase, y = c + w sin + P e^(k t) + Q e^(-k t)."""
+
+    start: float
+    side: float
+    v: float
+    lead: int
+    wave: float
+    rising: float
+    falling: float
+
+
+@kernel
+def begin_arc(law: Law, pulse: Pulse, start: float, v: float, side: float) -> Arc:
+    """Return the closed form of a swing (paper, equations 6 to 10 and 17 to 21, corrected)."""
+    k, omega = law.k, pulse.omega
+    wave = side * law.factor * pulse.amplitude * k * k / (k * k + omega * omega)
+    total = -law.saddle - wave * math.sin(start)
+    gap = (v - wave * omega * math.cos(start)) / k
+    pushed = law.factor * pulse.amplitude * abs(math.sin(start))
+    lead = 3 if v == 0.0 and pushed <= law.saddle * (1.0 + CONTACT) else 1
+    return Arc(start, side, v, lead, wave, 0.5 * (total + gap), 0.5 * (total - gap))
+
+
+@kernel
+def arc_at(
+    law: Law, pulse: Pulse, segment: FloatArray, arc: Arc, t: float, phase: float
+) -> tuple[float, float, float]:
+    """Return rotation, velocity and rounding error at the time t of a swing.
+
+    Where the terms of the closed form would cancel, in short swings, by `linear_state`.
+    """
+    k, omega = law.k, pulse.omega
+    if t * max(k, omega) < SHORT:
+        begin = arc.start / omega
+        y, v = linear_state(law, segment, arc.side, begin, arc.lead, 0.0, arc.v, t)
+        return y, v, 0.0
+    grown = math.exp(k * t)
+    rising, falling = arc.rising * grown, arc.falling / grown
+    y = law.saddle + arc.wave * math.sin(phase) + rising + falling
+    v = arc.wave * omega * math.cos(phase) + k * (rising - falling)
+    return y, v, ROUNDING * (law.saddle + abs(rising))
+
+
+@kernel
+def stretch(side: float, phase: float, level: float, end: float) -> tuple[bool, bool, float]:
+    """Tell whether the ground pushes outwards and lifts from a phase on, and until which phase.
+
+    It lifts where its outward acceleration is beyond the onset, `level` from the ends of a half
+    cycle.
+    """
+    base = math.pi * math.floor(phase / math.pi)
+    within = phase - base
+    if not pushes_out(side, phase):
+        return False, False, min(base + math.pi, end)
+    if within < level - ANGLE_TOLERANCE:
+        return True, False, min(base + level, end)
+    if within < math.pi - level - ANGLE_TOLERANCE:
+        return True, True, min(base + math.pi - level, end)
+    return True, False, min(base + math.pi, end)
+
+
+@kernel
+def swing_linear(
+    law: Law, pulse: Pulse, start: float, v: float, side: float, level: float, segment: FloatArray
+) -> Swing:
+    """Follow a swing of a linear model from (0, v), by the closed form.
+
+    Where the ground lifts, y is convex: tangents never pass the impact, and a block that moves up
+    goes on to. Where it does not lift, a block that would be below the ground accelerates
+    downwards and does not return: a positive end is proof that there was no impact, and from a
+    negative one tangents lead back to it without passing it.
+    """
+    c, omega = law.saddle, pulse.omega
+    arc = begin_arc(law, pulse, start, v, side)
+    push, square = law.factor * pulse.amplitude, law.k * law.k
+    t, phase, y, top, noise, steps = 0.0, start, 0.0, 0.0, 0.0, 0
+    while steps < MAX_STEPS:
+        out, lifts, stop = stretch(side, phase, level, pulse.end)
+        onward = out and c <= LYING and phase >= pulse.end - math.pi
+        if onward and y >= c and v >= 0.0:
+            return Swing(OVERTURNED, phase, y, v, steps)
+        if lifts:
+            h = math.inf if v >= 0.0 else max(y, 0.0) / -v
+        else:
+            # as if the acceleration stayed: any guess will do
+            fall = square * (c - y - push * abs(math.sin(phase)) * (1.0 if out else -1.0))
+            h = safe_fall(max(y, 0.0), v, fall) if fall > 0.0 else math.inf
+        if not (onward or (lifts and v >= 0.0)):
+            force = push * strongest_ahead(phase) if out else 0.0
+            h = min(h, safe_rise(y, v, square * max(LYING - c + force, 0.0)))
+        t += max(h, CONTACT * t)
+        phase = max(start + omega * t, phase)
+        if phase >= stop:
+            t, phase = (stop - start) / omega, stop
+        steps += 1
+        y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+        top = max(top, y)
+        if LYING - y <= CONTACT:
+            return Swing(OVERTURNED, phase, y, v, steps)
+        contact = max(CONTACT * top, noise)
+        while y < -contact and v < 0.0 and not lifts and steps < MAX_STEPS:
+            steps += 1
+            t -= y / v
+            phase = start + omega * t
+            y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+            contact = max(CONTACT * max(abs(v) * t, top), noise)
+        if y <= contact and v <= 0.0:
+            return Swing(LANDED, phase, 0.0, v, steps)
+        if phase >= pulse.end:
+            return Swing(LEFT_OVER, phase, y, v, steps)
+    return Swing(STUCK, phase, y, v, steps)
+
+
+@kernel
+def sixteenth_root(x: float) -> float:
+    """Return x^(1/16)."""
+    return math.sqrt(math.sqrt(math.sqrt(math.sqrt(x))))
+
+
+@kernel
+def map_step(y: FloatArray) -> float:
+    """Return the step over which a series of degree MAP_ORDER is accurate.
+
+    As `taylor.trusted_step`, but a root of one degree serves both last terms.
+    """
+    most = max(abs(y[MAP_ORDER]), abs(y[MAP_ORDER - 1]))
+    if most == 0.0:
+        return LONGEST
+    h = 1.0
+    for _ in range(2):
+        size = max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h)
+        h = min(LONGEST, sixteenth_root(MAP_TOLERANCE * size / most))
+    return h
+
+
+@kernel
+def expand_pulse(pulse: Pulse, phase: float, side: float, f: FloatArray) -> None:
+    """Write the Taylor coefficients of side x ground acceleration into f[0..MAP_ORDER]."""
+    f[0] = side * pulse.amplitude * math.sin(phase)
+    f[1] = side * pulse.amplitude * pulse.omega * math.cos(phase)
+    square = pulse.omega * pulse.omega
+    for i in range(2, MAP_ORDER + 1):
+        f[i] = -square * f[i - 2] / (i * (i - 1))
+
+
+@kernel
+def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple[float, bool]:
+    """Return where on [x, end] the series first reaches zero, and whether it does.
+
+    `top` is how high the swing has been.
+    """
+    for _ in range(1000):
+        now, rate = value(y, MAP_ORDER, x), slope(y, MAP_ORDER, x)
+        top = max(top, now)
+        if now <= CONTACT * top and rate <= 0.0 and x > 0.0:
+            return x, True
+        if x >= end:
+            return end, False
+        x = min(x + max(safe_fall(max(now, 0.0), rate, most), CONTACT * x), end)
+    return x, True
+
+
+@kernel
+def lies(y: FloatArray, end: float, most: float) -> bool:
+    """Tell whether the series reaches the rotation at which the block lies, on [0, end]."""
+    x = 0.0
+    for _ in range(200):
+        now = value(y, MAP_ORDER, x)
+        if LYING - now <= CONTACT:
+            return True
+        if x >= end:
+            return False
+        x = min(x + safe_rise(now, slope(y, MAP_ORDER, x), most), end)
+    return True
+
+
+@kernel
+def highest_bound(y: FloatArray, h: float) -> float:
+    """Return an upper bound of the series on [0, h]."""
+    total = 0.0
+    for i in range(MAP_ORDER, 0, -1):
+        total = (total + max(y[i], 0.0)) * h
+    return total + y[0]
+
+
+@kernel
+def lowest_bound(y: FloatArray, h: float) -> float:
+    """Return a lower bound of the series on [0, h]."""
+    total = 0.0
+    for i in range(MAP_ORDER, 0, -1):
+        total = (total + min(y[i], 0.0)) * h
+    return total + y[0]
+
+
+@kernel
+def swing_exact(
+    law: Law,
+    pulse: Pulse,
+    start: float,
+    v: float,
+    side: float,
+    lifted: float,
+    series: FloatArray,
+    f: FloatArray,
+    sine: FloatArray,
+    cosine: FloatArray,
+) -> Swing:
+    """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`."""
+    alpha, omega = law.alpha, pulse.omega
+    low, high = math.sin(alpha), math.cos(alpha)
+    phase, y, top, steps = start, 0.0, 0.0, 0
+    while steps < MAX_STEPS:
+        steps += 1
+        expand_pulse(pulse, phase, side, f)
+        series[0], series[1] = y, v
+        # where the ground passes through the onset the second derivative starts from zero
+        smooth = y == 0.0 and v == 0.0 and abs(low + f[0] * high) <= CONTACT * low
+        series[2] = 0.0 if smooth else -0.5 * (math.sin(alpha - y) + f[0] * math.cos(alpha - y))
+        expand_exact(law, MAP_ORDER, f, series, sine, cosine)
+        h = min(map_step(series), (pulse.end - phase) / omega)
+        stop = phase + omega * h
+        out, turn = pushes_out(side, phase), half_cycle_end(phase, pulse.end)
+        straddles = stop > turn
+        force = pulse.amplitude if straddles else pulse.amplitude * strongest_ahead(phase)
+        clear = min(max((lifted - phase) / omega, 0.0), h)
+        landed = False
+        if clear < h and lowest_bound(series, h) <= 0.0:
+            most = low + (0.0 if out and not straddles else force)
+            h, landed = lands(series, clear, h, most, top)
+        onward = out and turn >= pulse.end
+        if not onward and highest_bound(series, h) >= LYING:
+            most = high + (force if out or straddles else 0.0)
+            if lies(series, h, most):
+                return Swing(OVERTURNED, phase, y, v, steps)
+        y, v = value(series, MAP_ORDER, h), slope(series, MAP_ORDER, h)
+        top = max(top, y)
+        if landed:
+            return Swing(LANDED, phase + omega * h, 0.0, v, steps)
+        if stop >= pulse.end or phase + omega * h >= pulse.end:
+            return Swing(LEFT_OVER, pulse.end, y, v, steps)
+        phase += omega * h
+        onward = pushes_out(side, phase) and half_cycle_end(phase, pulse.end) >= pulse.end
+        if onward and y >= alpha and v >= 0.0:
+            return Swing(OVERTURNED, phase, y, v, steps)
+    return Swing(STUCK, phase, y, v, steps)

@@ -1,0 +1,183 @@
+"""One block in several sources side by side, on the same shaken base and the same clock."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import Motion
+from analytic.response import Outcome
+from studies.kit import provenance
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Positive,
+    check_sources,
+    refuse_given,
+    several,
+)
+from studies.cases.paper import Case, free_rocking_window
+from studies.kit.executors import Local
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.posing import posed_block, posed_pulse
+from studies.kit.runner import exit_code, run_jobs
+
+DEFAULT_SOURCES = ("exact", "housner", "pybullet:naive", "mujoco:naive", "pybullet", "mujoco")
+FRAMES_A_SECOND = 25
+CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
+
+
+def command(
+    *,
+    out: Path,
+    width: Positive | None = None,
+    height: Positive | None = None,
+    amplitude: Positive | None = None,
+    omega: Positive | None = None,
+    pulse: Literal["half-sine", "full-sine"] | None = None,
+    half_cycles: Count | None = None,
+    results: Path | None = None,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    slower: Positive = 1.0,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Show a block rocking in several sources side by side.
+
+    Parameters
+    ----------
+    out
+        The film: a .gif, or an .mp4 (which needs the extra [video]).
+    width
+        Full width B of the block [m].
+    height
+        Full height H of the block [m].
+    amplitude
+        Amplitude of the ground acceleration [g].
+    omega
+        Circular frequency of the pulse [rad/s].
+    pulse
+        half-sine or full-sine; full-sine unless --half-cycles is given.
+    half_cycles
+        Number of half cycles, instead of --pulse.
+    results
+        Instead of a block and a pulse: results of `rocking sweep`, of which the case is shown in
+        which the sources differ most.
+    sources
+        As in `rocking compare`, at most 8.
+    slower
+        Seconds of film for a second of shaking.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine is given up.
+    """
+    from studies.drawing.film import check_film, write_film
+
+    check_sources(sources)
+    check_film(out)
+    if len(sources) > 8:
+        raise BadInputError(f"--sources are {len(sources)}; they must be at most 8")
+    block, motion = _posed(width, height, amplitude, omega, pulse, half_cycles, results, sources)
+    window = free_rocking_window(block, motion)
+    times = np.linspace(0.0, window, math.ceil(window * slower * FRAMES_A_SECOND) + 1)
+    executor = Local(jobs or provenance.usable_cores(), time_limit)
+    rows = shown(block, motion, sources, times, executor)
+    usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
+    if usable:
+        write_film(out, block, motion, times, usable, FRAMES_A_SECOND)
+        print(out)
+    return exit_code(rows)
+
+
+def _posed(
+    width: float | None,
+    height: float | None,
+    amplitude: float | None,
+    omega: float | None,
+    pulse: str | None,
+    half_cycles: int | None,
+    results: Path | None,
+    sources: Sequence[str],
+) -> tuple[RigidBlock, Motion]:
+    if results is None:
+        if width is None or height is None:
+            raise BadInputError("--width and --height missing; give them, or --results")
+        return posed_block(width, height), posed_pulse(amplitude, omega, pulse, half_cycles)
+    refuse_given(
+        {
+            **{"width": width, "height": height, "amplitude": amplitude, "omega": omega},
+            **{"pulse": pulse, "half-cycles": half_cycles},
+        },
+        "only without --results",
+    )
+    case = most_different(results, sources)
+    return case.block, case.motion
+
+
+def most_different(results: Path, sources: Sequence[str]) -> Case:
+    """Return the case of a sweep in which the sources' peaks differ most.
+
+    Where outcomes differ it is the one whose least peak is smallest: who overturns is then furthest
+    from who does not.
+
+    Raises
+    ------
+    BadInputError
+        If there is no sweep.csv, or it lacks one of the sources.
+    """
+    path = results / "sweep.csv"
+    if not path.is_file():
+        raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
+    rows = pd.read_csv(path)
+    missing = sorted(set(sources) - set(rows["source"]))
+    if missing:
+        raise BadInputError(f"--results is {str(results)!r}; it lacks {', '.join(missing)}")
+    peaks = rows[rows["source"].isin(sources)].pivot(
+        index=list(CASE), columns="source", values="peak_ratio"
+    )
+    least, most = peaks.min(axis=1), peaks.max(axis=1)
+    apart = np.isinf(most) & np.isfinite(least)
+    place: Any = least[apart].idxmin() if apart.any() else (most / least).idxmax()
+    return Case(**dict(zip(CASE, place, strict=True)))
+
+
+def shown(
+    block: RigidBlock,
+    motion: Motion,
+    sources: Sequence[str],
+    times: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
+    executor: Local,
+) -> list[Row]:
+    """Run the sources, and return their rows with the rotation [rad] at every time."""
+    jobs = [
+        Job(
+            labels={},
+            block=block,
+            motion=motion,
+            source=source,
+            duration=float(times[-1]),
+            times=times,
+        )
+        for source in sources
+    ]
+    rows = run_jobs(
+        jobs,
+        executor=executor,
+        reduce=lambda job, response: {**summary(job, response), "history": response.history},
+    )
+    for row in rows:
+        history = row["history"]
+        if history is not None:
+            held = np.interp(times, history.time, history.theta)
+            fallen = row["outcome"] == Outcome.OVERTURNED.value
+            beyond = times > history.time[-1]
+            # a block that is lost from sight when its outcome is decided has fallen
+            held[beyond] = math.copysign(math.pi / 2, held[beyond][0]) if beyond.any() else 0.0
+            row["theta"] = held if fallen else np.interp(times, history.time, history.theta)
+    return rows

@@ -1,0 +1,241 @@
+"""Extreme cases: each takes one thing far beyond where anybody would tune a method."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from analytic import simulate
+from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.motion import SinePulse
+from analytic.response import Outcome
+from engines import ENGINES
+from engines.scene import ACCURACIES
+from studies.cases.paper import free_rocking_window
+from studies.sources.registry import resolve
+
+EDGE = 1e-6
+"""Relative distance of an amplitude from the onset, or from the overturning boundary."""
+
+BULLET_FRICTION = 10.0
+"""PyBullet clamps the friction of a pair to this."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extreme:
+    """A block, a pulse and what is extreme about them.
+
+    Attributes
+    ----------
+    name, group : str
+    width_m, aspect : float
+        B [m] and H/B.
+    onsets : float
+        Amplitude of the pulse over the acceleration g B/H that lifts the block.
+    omega_over_p, half_cycles : float, int
+    restitution : float
+        Velocity ratio of impacts; nan for Housner's. An engine's impact is its own: cases with
+        another ratio are not asked of engines.
+    rest_s : float
+        Least time [s] of observation after the pulse.
+    density : float
+        [kg/m3]
+    friction : float or None
+        None for a preset's own, as below.
+    contact : float or None
+        Time T of an engine's contact, in units of 1/p: a contact that holds the block's mass by a
+        spring of m/T^2 with critical damping. None for a preset's own.
+    step_s : float or None
+        Step [s].
+    """
+
+    name: str
+    group: str
+    width_m: float = 0.5
+    aspect: float = 3.0
+    onsets: float = 1.2
+    omega_over_p: float = 3.0
+    half_cycles: int = 2
+    restitution: float = math.nan
+    rest_s: float = 0.0
+    density: float = 1000.0
+    friction: float | None = None
+    contact: float | None = None
+    step_s: float | None = None
+
+    @property
+    def block(self) -> RigidBlock:
+        """The block."""
+        height = self.aspect * self.width_m
+        return RigidBlock(width=self.width_m, height=height, restitution=self.restitution)
+
+    @property
+    def motion(self) -> SinePulse:
+        """The pulse."""
+        return SinePulse(
+            amplitude=self.onsets * STANDARD_GRAVITY / self.aspect,
+            omega=self.omega_over_p * self.block.p,
+            half_cycles=self.half_cycles,
+        )
+
+    @property
+    def duration(self) -> float:
+        """Time of observation [s]: the pulse and some free rocking."""
+        window = free_rocking_window(self.block, self.motion)
+        return max(window, self.motion.duration + self.rest_s)
+
+    def applies(self, source: str) -> bool:
+        """Say whether the source has what is extreme here."""
+        asked = resolve(source)
+        engine = asked.kind == "engine"
+        if self.density != 1000.0 or self.friction is not None or self.contact is not None:
+            # the library's own contact of MuJoCo has a time of its own and no step to follow
+            return engine and (self.contact is None or source != "mujoco:naive")
+        if self.step_s is not None:
+            return asked.stepping
+        return not engine or math.isnan(self.restitution)
+
+    def options(self, source: str) -> dict[str, Any]:
+        """Return the options with which a source meets the case."""
+        options: dict[str, Any] = {}
+        if self.step_s is not None:
+            options["step"] = self.step_s * self.block.p
+        if resolve(source).kind != "engine":
+            return options
+        if self.density != 1000.0:
+            options["density"] = self.density
+        if self.friction is not None:
+            most = BULLET_FRICTION if source.startswith("pybullet") else math.inf
+            options["friction"] = min(self.friction, most)
+        if self.contact is not None:
+            options["settings"] = contact_settings(source, self.contact, own_step(source))
+        return options
+
+
+def contact_settings(source: str, time: float, step: float) -> dict[str, float]:
+    """Return the engine's settings of a contact with a time of its own.
+
+    time and step are in units of 1/p; MuJoCo takes stiffness and damping in units of the step.
+    """
+    if source.startswith("pybullet"):
+        return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}
+    ratio = step / time
+    return {"stiffness": ratio**2, "damping": 2.0 * ratio}
+
+
+def own_step(source: str) -> float:
+    """Return the ordinary p dt of an engine's tuned preset; nan where the library has its own."""
+    presets = import_module(ENGINES[source.partition(":")[0]]).PRESETS
+    preset = resolve(source).preset
+    if preset == "landing":
+        return 1.0 / ACCURACIES["standard"]
+    return float(presets[preset].step or math.nan)
+
+
+def extremes(quick: bool) -> list[Extreme]:
+    """Return the cases; quick leaves out neighbours and what takes long."""
+    return [case for case in _all() if not quick or case.name in QUICK]
+
+
+QUICK = (
+    "H/B 50",
+    "H/B 0.8",
+    "H/B 0.8, violent",
+    "1 cm high",
+    "onset + 1e-6",
+    "boundary − 1e-6",
+    "ω/p 100",
+    "density 1e9",
+    "friction 1e-3",
+    "friction 1",
+    "contact of 1e-5/p",
+    "step 1/30 s",
+)
+
+
+@cache
+def _all() -> tuple[Extreme, ...]:
+    return (*_shapes(), *_amplitudes(), *_frequencies(), *_engine_matters(), *_steps())
+
+
+def _shapes() -> tuple[Extreme, ...]:
+    slender = (Extreme(name=f"H/B {k}", group="shape", aspect=k) for k in (20, 50, 100))
+    squat = (Extreme(name=f"H/B {k:g}", group="shape", aspect=k) for k in (1.0, 0.8))
+    return (
+        *slender,
+        *squat,
+        Extreme(name="H/B 0.8, violent", group="shape", aspect=0.8, onsets=1.5),
+        Extreme(name="η 0.01 (H/B 0.72)", group="impact", aspect=0.72),
+        Extreme(name="η 0.001, set", group="impact", restitution=0.001),
+        Extreme(name="η 0.999, set", group="impact", restitution=0.999),
+        Extreme(name="1 cm high", group="size", width_m=0.01 / 3.0),
+        Extreme(name="20 m high", group="size", width_m=20.0 / 3.0),
+    )
+
+
+def _amplitudes() -> tuple[Extreme, ...]:
+    half = Extreme(name="boundary", group="amplitude", half_cycles=1)
+    full = replace(half, name="boundary after impact", half_cycles=2)
+    # the largest rotation that survives lies before the first impact, and after it
+    edges = [(half, overturning(half, 1.0, 5.0)), (full, overturning(full, 1.0, 1.5))]
+    return (
+        Extreme(name="onset − 1e-6", group="amplitude", onsets=1.0 - EDGE),
+        Extreme(name="onset + 1e-6", group="amplitude", onsets=1.0 + EDGE),
+        *(
+            replace(case, name=f"{case.name} {sign} 1e-6", onsets=boundary * (1.0 + nudge))
+            for case, boundary in edges
+            for sign, nudge in (("−", -EDGE), ("+", EDGE))
+        ),
+    )
+
+
+def overturning(case: Extreme, surviving: float, overturned: float) -> float:
+    """Return the amplitude [onsets] at which the exact solution begins to overturn, by bisection.
+
+    Between an amplitude that is survived and one that is not, to the last digit but three.
+    """
+    while overturned - surviving > 1e-13 * surviving:
+        middle = 0.5 * (surviving + overturned)
+        tried = replace(case, onsets=middle)
+        if simulate(tried.block, tried.motion).outcome is Outcome.OVERTURNED:
+            overturned = middle
+        else:
+            surviving = middle
+    return surviving
+
+
+def _frequencies() -> tuple[Extreme, ...]:
+    pulse = Extreme(name="", group="frequency", half_cycles=1)
+    return (
+        replace(pulse, name="ω/p 0.01", omega_over_p=0.01, onsets=1.00001),
+        replace(pulse, name="ω/p 0.01, over", omega_over_p=0.01, onsets=1.2),
+        replace(pulse, name="ω/p 10", omega_over_p=10.0, onsets=3.0),
+        replace(pulse, name="ω/p 100", omega_over_p=100.0, onsets=10.0),
+        Extreme(name="20 half-cycles", group="time", half_cycles=20, omega_over_p=4.0, onsets=1.5),
+        Extreme(name="60 s at rest", group="time", onsets=0.9, rest_s=60.0),
+        Extreme(name="60 s after rocking", group="time", rest_s=60.0),
+    )
+
+
+def _engine_matters() -> tuple[Extreme, ...]:
+    """Cases that only a method with a mass and a contact can tell apart."""
+    return (
+        Extreme(name="density 1e-6", group="mass", density=1e-3),
+        Extreme(name="density 1e9", group="mass", density=1e12),
+        Extreme(name="friction 1e-3", group="friction", friction=1e-3),
+        Extreme(name="friction 0.3", group="friction", friction=0.3),
+        Extreme(name="friction 1", group="friction", friction=1.0),
+        Extreme(name="friction 1e9", group="friction", friction=1e9),
+        Extreme(name="contact of 0.1/p", group="contact", contact=0.1),
+        Extreme(name="contact of 0.01/p", group="contact", contact=0.01),
+        Extreme(name="contact of 1e-3/p", group="contact", contact=1e-3),
+        Extreme(name="contact of 1e-5/p", group="contact", contact=1e-5),
+    )
+
+
+def _steps() -> tuple[Extreme, ...]:
+    named = {"1/30": 1.0 / 30.0, "1/240": 1.0 / 240.0, "1e-3": 1e-3, "1e-4": 1e-4, "1e-5": 1e-5}
+    return tuple(
+        Extreme(name=f"step {name} s", group="step", step_s=value) for name, value in named.items()
+    )

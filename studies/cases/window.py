@@ -1,0 +1,139 @@
+"""The plane of an overturning map: what its columns mean, and the case at each of its points."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.conditioning import Conditioning, condition_numbers
+from analytic.maps import Modes, overturning_modes
+from analytic.motion import FloatArray, SinePulse
+from studies.cases.paper import PULSES
+
+Axis = Literal["frequency", "slenderness", "size"]
+AXES = {
+    "frequency": (0.2, 8.0, "frequency of the pulse  ω/p  [–]"),
+    "slenderness": (0.05, 0.6, "slenderness  α  [rad]"),
+    "size": (0.1, 0.8, "size of the block, as its frequency parameter  p/2π  [Hz]"),
+}
+"""What a map's columns may be, their range and label."""
+LEAST_ONSETS = 1.0
+"""A map begins at g tan(alpha), below which the exact block stays at rest."""
+WIDTH_M = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Window:
+    """A plane of pulses: columns of one block and frequency, amplitudes in units of g tan(alpha).
+
+    Attributes
+    ----------
+    over : {"frequency", "slenderness", "size"}
+        The abscissa: omega/p; alpha [rad]; p/2 pi [Hz] under a pulse of `pulse_hz`.
+    low, high : float
+        Its range; that of AXES where not given.
+    onsets : float
+        Largest amplitude over g tan(alpha).
+    columns, rows : int
+        Number of columns, and of amplitudes in each, at the centres of the cells.
+    pulse : {"half-sine", "full-sine"}
+    aspect : float
+        H/B, where alpha is not the abscissa.
+    omega_over_p : float
+        Where alpha is the abscissa.
+    pulse_hz : float
+        Where the size is the abscissa.
+    """
+
+    over: Axis = "frequency"
+    low: float = math.nan
+    high: float = math.nan
+    onsets: float = 10.0
+    columns: int = 1000
+    rows: int = 1000
+    pulse: str = "full-sine"
+    aspect: float = 4.0
+    omega_over_p: float = 3.0
+    pulse_hz: float = 1.0
+
+    def __post_init__(self) -> None:
+        least, most, _ = AXES[self.over]
+        for name, default in (("low", least), ("high", most)):
+            if math.isnan(getattr(self, name)):
+                object.__setattr__(self, name, default)
+        if not 0.0 < self.low < self.high:
+            raise ValueError(f"low is {self.low!r} and high {self.high!r}; low must be the smaller")
+        if self.over == "slenderness" and self.high >= 0.5 * math.pi:
+            raise ValueError(f"high is {self.high!r}; a slenderness must be below π/2")
+        if self.onsets <= LEAST_ONSETS:
+            raise ValueError(f"onsets is {self.onsets!r}; it must be more than {LEAST_ONSETS:g}")
+
+    @property
+    def half_cycles(self) -> int:
+        """Length of the pulse."""
+        return PULSES[self.pulse]
+
+    @property
+    def label(self) -> str:
+        """What the abscissa is called."""
+        return AXES[self.over][2]
+
+    @property
+    def title(self) -> str:
+        """What all points have in common."""
+        if self.over == "slenderness":
+            return f"{self.pulse} pulse, ω/p = {self.omega_over_p:g}"
+        shape = f"{self.pulse} pulse, H/B = {self.aspect:g}"
+        return shape if self.over == "frequency" else f"{shape}, {self.pulse_hz:g} Hz"
+
+    def centres(self, count: int) -> FloatArray:
+        """Return the abscissae of `count` columns."""
+        return self.low + (np.arange(count) + 0.5) * (self.high - self.low) / count
+
+    def amplitudes(self, count: int) -> FloatArray:
+        """Return `count` amplitudes over g tan(alpha)."""
+        return LEAST_ONSETS + (np.arange(count) + 0.5) * (self.onsets - LEAST_ONSETS) / count
+
+    def alpha(self, x: FloatArray) -> FloatArray:
+        """Return the slenderness [rad] at abscissae."""
+        if self.over == "slenderness":
+            return x
+        return np.full_like(x, math.atan(1.0 / self.aspect))
+
+    def ratio(self, x: FloatArray) -> FloatArray:
+        """Return omega/p at abscissae."""
+        if self.over == "frequency":
+            return x
+        if self.over == "size":
+            return self.pulse_hz / x
+        return np.full_like(x, self.omega_over_p)
+
+    def modes(
+        self, x: FloatArray, onsets: FloatArray, model: str = "exact", threads: int | None = None
+    ) -> Modes:
+        """Return what happens at points of the plane, broadcast."""
+        alpha = self.alpha(x)
+        amplitude = onsets * np.tan(alpha)
+        ratio, cycles = self.ratio(x), self.half_cycles
+        return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
+
+    def condition_numbers(self, x: FloatArray, onsets: FloatArray) -> Conditioning:
+        """Return the condition numbers of the exact peaks at points of the plane, broadcast."""
+        alpha = self.alpha(x)
+        return condition_numbers(alpha, onsets * np.tan(alpha), self.ratio(x), self.half_cycles)
+
+    def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
+        """Return the block and the pulse of a point, for sources other than the models."""
+        alpha = float(self.alpha(np.array(x)))
+        width = WIDTH_M
+        if self.over == "size":
+            radius = 0.75 * STANDARD_GRAVITY / (2.0 * math.pi * x) ** 2
+            width = 2.0 * radius * math.sin(alpha)
+        block = RigidBlock(width=width, height=width / math.tan(alpha))
+        return block, SinePulse(
+            amplitude=onsets * math.tan(alpha) * block.gravity,
+            omega=float(self.ratio(np.array(x))) * block.p,
+            half_cycles=self.half_cycles,
+        )

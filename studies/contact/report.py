@@ -1,0 +1,261 @@
+"""Contact models, reported: a line for each variant, what to set, and what it buys."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from studies.kit import provenance
+from studies.measures.differences import scientific, with_reference
+from studies.contact.factors import FACTORS
+from studies.stability.report import left_aligned
+from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+KEY = ["engine", "preset", "factor", "level"]
+"""Columns that tell one variant from another."""
+
+NOTABLE, NOTABLE_RATIO = 1e-3, 5e-3
+"""A setting that moves no peak by more than the first, and the velocity ratio of impacts by no more
+than the second, both relative, makes no difference worth a sentence."""
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
+    from studies.drawing.figures import save_all
+
+    lines = variant_table(_read(folder / "contact.csv"))
+    provenance.write_text(folder / "variants.csv", lines.to_csv(index=False, na_rep="nan"))
+    save_all(pictures(folder), folder)
+    text = "\n".join(
+        [
+            "Every variant: errors of the peak over typical cases, outcomes over all cases.",
+            "moves: by how much it changes a peak of its preset, at most; η: the velocity ratio",
+            "over Housner's; e: Newton's coefficient; slip and sink in widths of the block.",
+            "Peaks of half-sine cases come before any impact: a wrong impact shows in η alone.",
+            "Cases near overturning, some within a few percent, count for outcomes and moves.",
+            variants_text(lines),
+            "\nFor rigid, inelastic, non-sliding contact set this:",
+            recommendation_text(lines),
+            "",
+            findings(lines),
+        ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def headline(folder: Path) -> str:
+    """Return, for each engine, its errors with the best settings and with the defaults."""
+    lines = _read(folder / "variants.csv")
+    return " ".join(_overview(lines, engine) for engine in lines["engine"].unique())
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the largest error of every variant of a folder from its variants.csv alone."""
+    from studies.contact.figure import draw_contact
+
+    return {"contact": draw_contact(_read(folder / "variants.csv"))}
+
+
+def _read(path: Path) -> pd.DataFrame:
+    """Read a table back with empty words as such."""
+    words = dict.fromkeys(("factor", "level", "trap", "message"), str)
+    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+
+
+def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return one line for each variant: its errors, what it changes, its impact, its cost."""
+    compared = with_reference(rows)
+    case = ["set", "figure", "aspect"]
+    base = compared[compared["factor"] == ""].set_index(["engine", "preset", *case])["peak_ratio"]
+    base = base.where(np.isfinite(base))  # a preset that overturns has no peak to move
+    own = base.reindex(pd.MultiIndex.from_frame(compared[["engine", "preset", *case]])).to_numpy()
+    compared = compared.assign(
+        moved=(compared["peak_ratio"] / own - 1.0).where(compared["error"].notna()).abs(),
+        typical=compared["error"].abs().where(compared["set"] == "typical"),
+        step_s=compared["wall_s"] / compared["steps"].clip(lower=1),
+        failed=compared["outcome"] == "failed",
+        wrong=~compared["agrees"] & (compared["outcome"] != "failed"),
+    )
+    groups = compared.groupby(KEY, sort=False)
+    table = groups.agg(
+        trap=("trap", "first"),
+        cases=("outcome", "size"),
+        failed=("failed", "sum"),
+        wrong=("wrong", "sum"),
+        median_error=("typical", "median"),
+        max_error=("typical", "max"),
+        moved=("moved", "max"),
+        ratio_over_eta=("ratio_over_eta", "median"),
+        newton_e=("newton_e", "median"),
+        slip_widths=("slip_widths", "max"),
+        sink_widths=("sink_widths", "max"),
+        energy_drift=("energy_drift", "median"),
+        energy_growth=("energy_growth", "max"),
+        step_s=("step_s", "median"),
+        message=("message", "max"),
+    ).reset_index()
+    first = table.groupby(["engine", "preset"])[["ratio_over_eta", "wrong"]].transform("first")
+    return table.assign(
+        ratio_moved=(table["ratio_over_eta"] / first["ratio_over_eta"] - 1.0).abs(),
+        worse=(table["failed"] > 0) | (table["wrong"] > first["wrong"]),
+    )
+
+
+def name_of(line: "pd.Series[Any]") -> str:
+    """Return a variant's name."""
+    return f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
+
+
+def variants_text(lines: pd.DataFrame) -> str:
+    """Return all variants as an aligned table."""
+    shown = pd.DataFrame(
+        {
+            "engine": lines["engine"],
+            "from": lines["preset"],
+            "variant": [name_of(line) for _, line in lines.iterrows()],
+            "failed": lines["failed"],
+            "wrong": lines["wrong"],
+            "median": lines["median_error"].map(scientific),
+            "max": lines["max_error"].map(scientific),
+            "moves": lines["moved"].map(scientific),
+            "η": lines["ratio_over_eta"].map("{:.4f}".format),
+            "e": lines["newton_e"].map("{:.3f}".format),
+            "slip": lines["slip_widths"].map(scientific),
+            "sink": lines["sink_widths"].map(scientific),
+            "drift": lines["energy_drift"].map(scientific),
+            "step µs": (1e6 * lines["step_s"]).map("{:.1f}".format),
+            "why": lines["message"].where(lines["failed"] > 0, lines["trap"]),
+        }
+    )
+    return left_aligned(shown.astype(str))
+
+
+def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return what to set, and the errors without it and with nothing else, by importance."""
+    table = []
+    for engine in lines["engine"].unique():
+        naive = _find(lines, engine, DEFAULT, "")
+        for factor in FACTORS[engine]:
+            left = _find(lines, engine, BEST, factor.name, BY_DEFAULT)
+            alone = _find(lines, engine, DEFAULT, factor.name, AS_BEST)
+            if naive is None or alone is None:
+                continue
+            values = preset_values(engine, BEST, factor.settings)
+            table.append(
+                {
+                    "engine": engine,
+                    "set": ", ".join(f"{name} {value}" for name, value in values.items()),
+                    "moves": math.nan if left is None else left["moved"],
+                    "turns": math.nan if left is None else left["ratio_moved"],
+                    "without": "-" if left is None else _errors(left),
+                    "defaults": _with_ratio(naive),
+                    "alone": _with_ratio(alone),
+                    "weight": _weight(left, alone),
+                }
+            )
+    return pd.DataFrame(table).sort_values(
+        ["engine", "weight"], ascending=[False, False], ignore_index=True
+    )
+
+
+def _find(
+    lines: pd.DataFrame, engine: str, preset: str, factor: str, level: str = ""
+) -> "pd.Series[Any] | None":
+    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
+    wanted &= lines["factor"] == factor
+    if level:
+        wanted &= lines["level"] == level
+    return lines[wanted].iloc[0] if wanted.any() else None
+
+
+def _with_ratio(line: "pd.Series[Any]") -> str:
+    ratio = float(line["ratio_over_eta"])
+    return _errors(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
+
+
+def _weight(*found: "pd.Series[Any] | None") -> float:
+    """Return by how much a setting matters: what it moves, all where it breaks something."""
+    lines = [line for line in found if line is not None]
+    if any(line["worse"] for line in lines):
+        return math.inf
+    return max(float(line[name]) for line in lines for name in ("moved", "ratio_moved"))
+
+
+def _errors(line: "pd.Series[Any]") -> str:
+    broken = int(line["failed"]) + int(line["wrong"])
+    parts = [scientific(float(line["max_error"]))] if math.isfinite(line["max_error"]) else []
+    parts += [f"{broken} of {line['cases']} failed or wrong"] if broken else []
+    return ", ".join(parts) or "-"
+
+
+def recommendation_text(lines: pd.DataFrame) -> str:
+    """Return the recommendation as an aligned table."""
+    table = recommendation(lines)
+    shown = pd.DataFrame(
+        {
+            "engine": table["engine"].mask(table["engine"].duplicated(), ""),
+            "set": table["set"],
+            "left at its default it moves a peak by": table["moves"].map(scientific),
+            "a velocity ratio by": table["turns"].map(scientific),
+            "and the largest error is": table["without"],
+            "set alone, the defaults' largest error (ratio)": table["defaults"],
+            "becomes": table["alone"],
+        }
+    )
+    return left_aligned(shown.astype(str))
+
+
+def findings(lines: pd.DataFrame) -> str:
+    """Return the findings in sentences, from the numbers."""
+    return "\n".join(
+        sentence for engine in lines["engine"].unique() for sentence in _findings(lines, engine)
+    )
+
+
+def _overview(lines: pd.DataFrame, engine: str) -> str:
+    base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
+    of = {line["preset"]: line for _, line in base.iterrows()}
+    return (
+        f"{engine}: largest error {_errors(of[BEST])} at a fixed step, "
+        f"{_errors(of['landing'])} where steps land on impacts, "
+        f"{_errors(of[DEFAULT])} with the library's defaults at the same step."
+    )
+
+
+def _findings(lines: pd.DataFrame, engine: str) -> list[str]:
+    mine = lines[lines["engine"] == engine]
+    varied = mine[(mine["preset"] == BEST) & (mine["factor"] != "")]
+    whole = varied[~varied["worse"]]
+    still = (whole["moved"] < NOTABLE) & (whole["ratio_moved"] < NOTABLE_RATIO)
+    costly = whole.sort_values("moved", ascending=False).head(5)
+    bent = whole.sort_values("ratio_moved", ascending=False).head(5)
+    broken = varied[varied["worse"]]
+    traps = mine[mine["trap"] != ""]
+    sentences = [
+        _overview(lines, engine),
+        "Peaks move most by " + _listed(costly, "moved") + ".",
+        "The impact depends most on " + _listed(bent, "ratio_moved") + ".",
+        f"Without visible effect (peaks {NOTABLE:g}, velocity ratios {NOTABLE_RATIO:g}): "
+        f"{_listed(whole[still])}.",
+        "Failed, or more wrong outcomes than the preset as it is: " + _listed(broken) + ".",
+    ]
+    for _, line in traps.iterrows():
+        sentences.append(
+            f"Trap: {name_of(line)} (from {line['preset']}): {line['trap']}; largest error "
+            f"{_errors(line)}{line['message'] and ', ' + line['message']}."
+        )
+    return sentences
+
+
+def _listed(lines: pd.DataFrame, column: str = "") -> str:
+    names = [
+        name_of(line) + (f" ({scientific(line[column])})" if column else "")
+        for _, line in lines.iterrows()
+    ]
+    return "; ".join(names) or "none"

@@ -1,0 +1,155 @@
+"""Contact models: what each setting of an engine's contact costs and buys, one at a time."""
+
+import functools
+import math
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from analytic.response import Outcome, Response
+from studies.kit.arguments import Count, Positive
+from studies.cases.paper import Case, free_rocking_window
+from studies.contact.report import headline, pictures, report
+from studies.measures.energy import SAMPLES, energy_drift, growth
+from studies.kit.executors import Executor, choose
+from studies.contact.factors import FACTORS
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.contact.variants import OWN_STEP, Variant, variants
+
+__all__ = ["command", "headline", "pictures", "report"]
+
+PRODUCTS = ("contact.csv", "variants.csv", "contact.png", "findings.txt")
+STEP, QUICK_STEP = 1e-3, 2e-3
+"""p dt of every variant but those that are about the step."""
+QUICK_ASPECTS = (2, 4)
+STRONG = 0.1
+"""Impacts faster than this, in units of p alpha, show a velocity ratio."""
+
+
+def command(
+    *,
+    out: Path,
+    quick: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+    cluster: str | None = None,
+) -> int:
+    """Compare contact models: each setting alone, from the best setting and from the defaults.
+
+    Solvers, geometry, friction, compliance, damping, integrators, ... of both engines, on cases of
+    the paper with half and full sines and H/B of 2, 3 and 4, all at one p dt. A failure is an
+    answer: the exit code is 1 only where a preset as it is fails.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    quick
+        Fewer cases and twice the step: less than a minute on 2 cores.
+    jobs
+        Processes; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which a case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    """
+    executor = choose(jobs, time_limit, cluster)
+    rows = contact(out, quick=quick, executor=executor)
+    print(report(out))
+    return exit_code([row for row in rows if not row["factor"]])
+
+
+def contact(folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
+    """Run what the folder does not hold yet, and write its table.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    return fill_folder(
+        folder,
+        "contact",
+        [job_of(v, kind, case, quick) for v in all_variants() for kind, case in cases(quick)],
+        executor=executor,
+        reduce=reduce,
+        settings={"quick": quick},
+        growing={},
+        products=PRODUCTS,
+    )
+
+
+def all_variants() -> list[Variant]:
+    """Return every way to set an engine, engine by engine."""
+    return [variant for engine in FACTORS for variant in variants(engine, FACTORS[engine])]
+
+
+@functools.cache
+def cases(quick: bool) -> tuple[tuple[str, Case], ...]:
+    """Return the cases and their sets: "typical", and in full "near overturning" too."""
+    chosen = [(kind, case) for kind, part in chosen_cases(True).items() for case in part]
+    if quick:
+        chosen = [(k, c) for k, c in chosen if k == "typical" and c.aspect in QUICK_ASPECTS]
+    return tuple(chosen)
+
+
+def job_of(variant: Variant, kind: str, case: Case, quick: bool) -> Job:
+    """Return the job of a variant and a case."""
+    options = {"settings": dict(variant.settings), **variant.scene}
+    if variant.preset != "landing" and variant.name != OWN_STEP:
+        options["step"] = QUICK_STEP if quick else STEP
+    window = free_rocking_window(case.block, case.motion)
+    return Job(
+        labels={
+            "engine": variant.engine,
+            "preset": variant.preset,
+            "factor": variant.factor,
+            "level": variant.level,
+            "trap": variant.trap,
+            "set": kind,
+            **asdict(case),
+        },
+        block=case.block,
+        motion=case.motion,
+        source=f"{variant.engine}:{variant.preset}",
+        duration=window,
+        times=np.linspace(0.0, window, SAMPLES),
+        options=options,
+    )
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary, the velocity ratio and its e, slip, penetration and energy."""
+    ratio = velocity_ratio(job, response)
+    width = job.block.width
+    return {
+        **summary(job, response),
+        "velocity_ratio": ratio,
+        "ratio_over_eta": ratio / job.block.restitution,
+        "newton_e": newton_e(ratio, job.block.alpha),
+        "slip_widths": response.slip_m / width,
+        "sink_widths": response.sink_m / width,
+        "energy_drift": energy_drift(job, response),
+        "energy_growth": growth(job.block, job.motion, response),
+    }
+
+
+def velocity_ratio(job: Job, response: Response) -> float:
+    """Return the median velocity ratio of the first impacts that are strong enough; or nan."""
+    if response.outcome is Outcome.FAILED:
+        return math.nan
+    least = STRONG * job.block.p * job.block.alpha
+    strong = [i.ratio for i in response.impacts if abs(i.velocity_before) > least]
+    return float(np.median(strong[:COMPARED_IMPACTS])) if strong else math.nan
+
+
+def newton_e(ratio: float, alpha: float) -> float:
+    """Return the Newton coefficient e of the corner that lands that a velocity ratio implies.
+
+    The ratio is 1 - 3/2 (1 + e) sin^2(alpha), Housner's where e = 0.
+    """
+    return (1.0 - ratio) / (1.5 * math.sin(alpha) ** 2) - 1.0

@@ -1,0 +1,172 @@
+"""Moving pictures of rocking blocks: the blocks above, their rotations below."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from studies.kit.arguments import BadInputError
+from studies.drawing.figures import style_of
+from studies.kit.journal import Row
+
+PRESET_LINES = {"naive": ":", "fixed": "--"}
+"""Lines of an engine's presets, which share its colour."""
+
+POSTS = 9
+"""Posts that stand still behind the base, so that its motion is seen."""
+
+
+def check_film(path: Path) -> None:
+    """Raise BadInputError unless a film can be written to `path`."""
+    if path.suffix not in (".gif", ".mp4"):
+        raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
+    if not path.parent.is_dir():
+        raise BadInputError(f"--out is {str(path)!r}; its folder must exist")
+    if path.suffix == ".mp4":
+        _ffmpeg()
+
+
+def _ffmpeg() -> str:
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError as error:
+        raise BadInputError("--out is an .mp4; that needs the extra [video]") from error
+    return str(get_ffmpeg_exe())
+
+
+def write_film(
+    path: Path,
+    block: RigidBlock,
+    motion: Motion,
+    times: FloatArray,
+    rows: Sequence[Row],
+    frames_a_second: int,
+) -> None:
+    """Write the film in one piece, a frame for each time.
+
+    Parameters
+    ----------
+    path : Path
+        A .gif or .mp4.
+    block, motion
+        What is shown.
+    times : ndarray, shape (n,)
+        Ground times [s], equally spaced.
+    rows : sequence of Row
+        Each with its source, outcome, and "theta" [rad], shape (n,).
+    frames_a_second : int
+    """
+    stage = Stage(block, motion, times, rows)
+    draft = path.with_name(f".part.{path.name}")
+    film = FuncAnimation(stage.drawing, stage.show, frames=len(times), blit=False)
+    if path.suffix == ".gif":
+        film.save(draft, writer=PillowWriter(fps=frames_a_second), dpi=80)
+    else:
+        with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+            film.save(draft, writer=FFMpegWriter(fps=frames_a_second, bitrate=1800), dpi=110)
+    draft.replace(path)
+
+
+class Stage:
+    """A figure that can show any time of the responses."""
+
+    def __init__(
+        self, block: RigidBlock, motion: Motion, times: FloatArray, rows: Sequence[Row]
+    ) -> None:
+        self.block, self.times, self.rows = block, times, rows
+        self.shift = motion.displacement(times)
+        self.drawing = Figure(figsize=(2.1 * max(len(rows), 3), 5.2), layout="constrained")
+        FigureCanvasAgg(self.drawing)
+        halves = self.drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1))
+        upper, lower = halves[:, 0]
+        panels = upper.subplots(1, len(rows), sharey=True, squeeze=False)[0]
+        self._posts = [self._furnish(axes, row) for axes, row in zip(panels, rows, strict=True)]
+        self._blocks = [
+            axes.add_patch(self._outline(row)) for axes, row in zip(panels, rows, strict=True)
+        ]
+        self._clock = self._graph(lower.subplots(), motion)
+        # laid out once, not again in every frame
+        self.drawing.canvas.draw()
+        self.drawing.set_layout_engine("none")
+
+    def _furnish(self, axes: Axes, row: Row) -> Any:
+        reach = 1.15 * math.hypot(self.block.width, self.block.height)
+        axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, 1.2 * reach), aspect="equal")
+        axes.set_axis_off()
+        axes.set_title(f"{row['source']}\n{row['outcome']}", fontsize=9)
+        axes.add_patch(
+            Rectangle((-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach, color="#9a9a9a")
+        )
+        self._spacing = 2.0 * reach / (POSTS - 1)
+        return axes.vlines(
+            self._post_places(0.0), 0.0, 1.2 * reach, color="#e4e4e4", linewidth=2, zorder=0
+        )
+
+    def _post_places(self, shift: float) -> FloatArray:
+        places = (np.arange(POSTS + 2, dtype=np.float64) - 0.5 * (POSTS + 1)) * self._spacing
+        moved: FloatArray = places - math.fmod(shift, self._spacing)
+        return moved
+
+    def _outline(self, row: Row) -> Polygon:
+        colour = style_of(row["source"]).colour
+        corners = outline(self.block, 0.0)
+        return Polygon(corners, facecolor=colour, edgecolor="#222222", alpha=0.8, zorder=3)
+
+    def _graph(self, axes: Axes, motion: Motion) -> Any:
+        for row in self.rows:
+            style = style_of(row["source"])
+            axes.plot(
+                self.times,
+                row["theta"] / self.block.alpha,
+                linestyle=style.line or PRESET_LINES.get(row["source"].partition(":")[2], "-"),
+                linewidth=style.width,
+                color=style.colour,
+                alpha=0.9,
+                label=row["source"],
+            )
+        axes.set_ylim(-1.6, 1.6)
+        axes.set_xlim(0.0, float(self.times[-1]))
+        axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
+        axes.axhline(1.0, color="#aaaaaa", linewidth=0.8)
+        axes.axhline(-1.0, color="#aaaaaa", linewidth=0.8)
+        axes.set_xlabel("time  [s]")
+        axes.set_ylabel("rotation  θ/θcr  [–]")
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
+        return axes.axvline(0.0, color="#cc0000", linewidth=1.0)
+
+    def show(self, frame: int) -> list[Any]:
+        """Set the figure to a frame."""
+        reach = 1.15 * math.hypot(self.block.width, self.block.height)
+        for row, patch, posts in zip(self.rows, self._blocks, self._posts, strict=True):
+            patch.set_xy(outline(self.block, float(row["theta"][frame])))
+            places = self._post_places(float(self.shift[frame]))
+            posts.set_segments([[(x, 0.0), (x, 1.2 * reach)] for x in places])
+        self._clock.set_xdata([self.times[frame]] * 2)
+        return [*self._blocks, *self._posts, self._clock]
+
+
+def outline(block: RigidBlock, theta: float) -> FloatArray:
+    """Return the corners of a block that stands on the corner that its rotation [rad] leans to.
+
+    Positive theta leans it towards +x, about its right corner; shape (4, 2) [m].
+    """
+    half = 0.5 * block.width
+    pivot = half if theta >= 0.0 else -half
+    corners = np.array(
+        [(-half, 0.0), (half, 0.0), (half, block.height), (-half, block.height)], dtype=np.float64
+    )
+    corners[:, 0] -= pivot
+    cosine, sine = math.cos(theta), math.sin(theta)
+    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]])
+    turned[:, 0] += pivot
+    return turned

@@ -1,0 +1,257 @@
+"""Many motions, blocks and intensities: are statistics predicted where single responses are not?"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.record import Record
+from studies.kit import provenance
+from studies.cases.accelerograms import Units, read_record
+from studies.ensemble.agreement import CLOSE, agreement, confusion
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Positive,
+    check_sources,
+    refuse_given,
+    refuse_repeats,
+    several,
+)
+from studies.ensemble.report import curves, findings, stripes
+from studies.kit.executors import Executor, choose
+from studies.ensemble.fragility import fragilities
+from studies.kit.jobs import Job
+from studies.kit.journal import Row
+from studies.cases.motions import FAMILIES
+from studies.kit.runner import exit_code, fill_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SIZES_M = ((0.5, 1.5), (1.0, 2.0), (1.0, 4.0))
+"""Width and height of the blocks."""
+
+INTENSITIES = (1.5, 2.0, 2.5, 3.0, 4.0, 6.0)
+"""Largest ground acceleration over the one that lifts the block, g tan alpha."""
+
+STRONGER = 1.01
+"""Every case is also solved exactly with its motion this many times as strong: what the response
+itself makes of a small uncertainty, beside which the sources' errors are to be seen."""
+
+QUICK_SIZES_M = SIZES_M[:1]
+QUICK_INTENSITIES = INTENSITIES[1:4]
+QUICK_MOTIONS = 8
+
+DEFAULT_SOURCES = (
+    *("housner", "modified", "pybullet:naive", "mujoco:naive"),
+    *("pybullet", "mujoco"),
+)
+
+TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
+PRODUCTS = ("ensemble.csv", *TABLES, "ensemble.png", "findings.txt", "provenance.json")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnsembleCase:
+    """A motion of a family, scaled to an intensity for a block and multiplied by its strength."""
+
+    family: str
+    motion: int
+    width_m: float
+    height_m: float
+    intensity: float
+    strength: float = 1.0
+
+    @property
+    def block(self) -> RigidBlock:
+        """The block."""
+        return RigidBlock(width=self.width_m, height=self.height_m)
+
+    def scaled(self, motion: Record) -> Record:
+        """Return a motion scaled to this intensity and strength."""
+        onset = self.block.gravity * self.width_m / self.height_m
+        return motion.scaled_to(self.strength * self.intensity * onset)
+
+
+def drawn(family: str, count: int, seed: int) -> list[Record]:
+    """Draw motions of a family; motion i of a seed has the seed 10^6 seed + i."""
+    return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
+
+
+def recorded(paths: Sequence[Path], units: str | None) -> list[Record]:
+    """Read records, all of the same units where they state none.
+
+    Raises
+    ------
+    BadInputError
+        If one cannot be read, or does not move.
+    """
+    motions = [read_record(path, units, "--records") for path in paths]
+    for path, motion in zip(paths, motions, strict=True):
+        if motion.peak == 0.0:
+            raise BadInputError(
+                f"--records is {str(path)!r}; it is zero throughout, and must not be"
+            )
+    return motions
+
+
+def ensemble_cases(
+    family: str,
+    motions: Sequence[Record],
+    sizes: Sequence[tuple[float, float]] = SIZES_M,
+    intensities: Sequence[float] = INTENSITIES,
+) -> Iterator[tuple[EnsembleCase, Record]]:
+    """Yield every case with its ground motion."""
+    for i, (width_m, height_m), intensity in product(range(len(motions)), sizes, intensities):
+        case = EnsembleCase(
+            family=family, motion=i, width_m=width_m, height_m=height_m, intensity=intensity
+        )
+        yield case, case.scaled(motions[i])
+
+
+def command(
+    *,
+    out: Path,
+    family: Literal["noise", "near-fault", "ricker"] | None = None,
+    motions: Count | None = None,
+    seed: Count | None = None,
+    records: Annotated[tuple[Path, ...], several] = (),
+    units: Units | None = None,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    quick: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+    cluster: str | None = None,
+) -> int:
+    """Shake blocks by many motions of rising intensity, through every named source.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    family
+        noise, the default: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis
+        and Papageorgiou; ricker: wavelets.
+    motions
+        Number of motions; 40 by default, 8 with --quick.
+    seed
+        Seed of the motions, a positive whole number, 1 by default; another one draws others.
+    records
+        Recorded accelerograms instead of a family, PEER AT2 files or tables; at best several.
+    units
+        Of the records' acceleration, where the files do not state them.
+    sources
+        housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's rk45
+        dop853 radau lsoda, beside the exact solution; an engine takes a preset after a colon.
+    quick
+        One block and three intensities.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    """
+    check_sources(sources)
+    if records:
+        refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
+        refuse_repeats("--records", records)
+        name, ground = "records", recorded(records, units)
+    else:
+        refuse_given({"units": units}, "only with --records")
+        name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
+        ground = drawn(name, count, seed or 1)
+    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
+    cases = list(ensemble_cases(name, ground, sizes, intensities))
+    executor = choose(jobs, time_limit, cluster)
+    origin = [path.name for path in records] or [name, str(seed or 1)]
+    settings = {"motions": origin, "sizes_m": sizes, "intensities": intensities}
+    rows = ensemble(cases, sources, out, executor=executor, settings=settings)
+    print(report(out))
+    return exit_code(rows)
+
+
+def ensemble(
+    cases: Sequence[tuple[EnsembleCase, Record]],
+    sources: Sequence[str],
+    folder: Path,
+    *,
+    executor: Executor,
+    settings: Mapping[str, object],
+) -> list[Row]:
+    """Run the cases that the folder does not hold yet, and write its table.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    asked = list(dict.fromkeys(["exact", *sources]))
+    jobs = []
+    for case, motion in cases:
+        jobs += [_job(case, motion, source) for source in asked]
+        stronger = replace(case, strength=STRONGER)
+        jobs.append(_job(stronger, stronger.scaled(motion), "exact"))
+    return fill_folder(
+        folder,
+        "ensemble",
+        jobs,
+        executor=executor,
+        settings=settings,
+        growing={"motion": range(max(case.motion for case, _ in cases) + 1), "source": asked},
+        products=PRODUCTS,
+    )
+
+
+def _job(case: EnsembleCase, motion: Record, source: str) -> Job:
+    return Job(labels=asdict(case), block=case.block, motion=motion, source=source)
+
+
+def read_rows(folder: Path) -> pd.DataFrame:
+    """Read ensemble.csv; the exact solution of stronger motions is a source of its own."""
+    rows = pd.read_csv(folder / "ensemble.csv", dtype={"message": str})
+    stronger = rows["source"] + rows["strength"].map(" at {:g}".format)
+    return rows.assign(source=rows["source"].where(rows["strength"] == 1.0, stronger))
+
+
+def report(folder: Path) -> str:
+    """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
+    from studies.drawing.figures import save_all
+
+    rows = read_rows(folder)
+    fitted = fragilities(rows)
+    tables = (stripes(rows), curves(rows, fitted), agreement(rows, fitted), confusion(rows))
+    for name, table in zip(TABLES, tables, strict=True):
+        provenance.write_text(folder / name, table.to_csv(index=False, na_rep="nan"))
+    text = findings(rows, tables[2], tables[3])
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    save_all(pictures(folder), folder)
+    return text
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw a folder's figure from its tables alone."""
+    from studies.ensemble.figure import draw_ensemble
+
+    stripes, curves = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves"))
+    return {"ensemble": draw_ensemble(read_rows(folder), stripes, curves)}
+
+
+def headline(folder: Path) -> str:
+    """Say what became of the claim that statistics are predicted where responses are not."""
+    agreed = pd.read_csv(folder / "agreement.csv")
+    words = [
+        f"{source} {np.average(rows['predicted'], weights=rows['cases']):.0%} and "
+        f"{(rows['capacity_ratio'] - 1.0).abs().max():.1%}"
+        for source, rows in agreed[agreed["source"] != "exact"].groupby("source", sort=False)
+    ]
+    return (
+        f"Share of single responses within {CLOSE:.0%} of the exact ones, and the largest error of "
+        f"the fitted overturning capacity: {', '.join(words)}."
+    )

@@ -1,0 +1,242 @@
+"""Free rocking: the period and the decay of each source against the closed forms."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import brentq
+
+from analytic import RigidBlock, SinePulse, peak_ratios
+from analytic.criteria import free_amplitude, quarter_period
+from analytic.motion import FloatArray
+from analytic.response import Outcome, Response
+from studies.kit import provenance
+from studies.kit.arguments import Count, Positive, check_sources, several
+from studies.measures.differences import scientific
+from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PRODUCTS = ("free.csv", "free.png", "findings.txt")
+ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
+TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Rotations over alpha from which the blocks fall."""
+QUICK_ASPECTS, QUICK_TILTS = (2.0, 4.0), (0.3, 0.9)
+DEFAULT_SOURCES = ("exact", "housner", "modified", "rk4", "pybullet", "mujoco")
+MODEL_OF = {"housner": "housner", "modified": "modified"}
+"""Whose closed form a source is held against, where that is not the exact one."""
+OMEGA_OVER_P = 8.0
+"""Of the half-sine that tilts the block: it is over long before the block turns."""
+SAMPLES = 6000
+SWINGS = 3
+"""Swings after the fall from the tilt that are compared."""
+
+
+def command(
+    *,
+    out: Path,
+    quick: bool = False,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+    cluster: str | None = None,
+) -> int:
+    """Hold free rocking of each source against the closed forms.
+
+    A short pulse tilts the block; it falls back and rocks on. The time between two impacts is twice
+    the quarter period of the rotation between them, and that rotation follows from the one before
+    by the velocity ratio at the impact.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    quick
+        Two aspect ratios and two tilts.
+    sources
+        exact housner modified rk4 average-acceleration pybullet mujoco, and SciPy's rk45 dop853
+        radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    """
+    check_sources(sources)
+    executor = choose(jobs, time_limit, cluster)
+    rows = free(sources, out, quick=quick, executor=executor)
+    print(report(out))
+    return exit_code(rows)
+
+
+def free(sources: Sequence[str], folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
+    """Run what the folder does not hold yet, and write its table.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    return fill_folder(
+        folder,
+        "free",
+        free_jobs(sources, quick),
+        executor=executor,
+        reduce=reduce,
+        settings={"quick": quick},
+        growing={"source": sources},
+        products=PRODUCTS,
+    )
+
+
+def free_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return a job for each aspect ratio, tilt and source."""
+    return [
+        released(aspect, tilt, source)
+        for aspect in (QUICK_ASPECTS if quick else ASPECTS)
+        for tilt in (QUICK_TILTS if quick else TILTS)
+        for source in sources
+    ]
+
+
+def released(aspect: float, tilt: float, source: str) -> Job:
+    """Return the job of a block that a pulse tilts to `tilt` alpha, of the source's own model."""
+    block = RigidBlock(width=0.5, height=0.5 * aspect)
+    model = MODEL_OF.get(source, "exact")
+    motion = SinePulse(
+        amplitude=tilting_amplitude(block, tilt, model) * block.gravity,
+        omega=OMEGA_OVER_P * block.p,
+    )
+    quarters = [quarter_period(block, tilt * block.alpha, model)]
+    duration = motion.duration + (3.0 + 2.0 * SWINGS) * quarters[0]
+    return Job(
+        labels={"aspect": aspect, "tilt": tilt},
+        block=block,
+        motion=motion,
+        source=source,
+        duration=duration,
+        times=np.linspace(0.0, duration, SAMPLES),
+    )
+
+
+def tilting_amplitude(block: RigidBlock, tilt: float, model: str) -> float:
+    """Return the amplitude [g] of the half-sine whose peak is `tilt`."""
+
+    def excess(amplitude: float) -> float:
+        peak, _ = peak_ratios(block.alpha, amplitude, OMEGA_OVER_P, 1, model, block.restitution)
+        return min(float(peak), 2.0) - tilt
+
+    onset = math.tan(block.alpha)
+    return float(brentq(excess, onset, 40.0 * onset, xtol=1e-14))
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary, and the largest errors of period and decay over the swings."""
+    model = MODEL_OF.get(job.source, "exact")
+    period_error = decay_error = math.nan
+    tops = turning_points(response)
+    if response.outcome is Outcome.ROCKED and len(tops) > 1:
+        times = [impact.time for impact in response.impacts]
+        periods = [
+            (later - before) / (2.0 * quarter_period(job.block, top, model)) - 1.0
+            for before, later, top in zip(times, times[1:], tops[1:], strict=False)
+        ]
+        period_error = max(map(abs, periods))
+        decays = [
+            after / next_amplitude(job.block, before, model) - 1.0
+            for before, after in itertools.pairwise(tops)
+        ]
+        decay_error = max(map(abs, decays))
+    return {
+        **summary(job, response),
+        "swings": max(len(tops) - 1, 0),
+        "period_error": period_error,
+        "decay_error": decay_error,
+    }
+
+
+def next_amplitude(block: RigidBlock, theta: float, model: str) -> float:
+    """Return the rotation [rad] that follows the impact after `theta`, by energy."""
+    if model == "exact":
+        return free_amplitude(block, theta, 1)
+    saddle = block.alpha if model == "housner" else math.tan(block.alpha)
+    left = block.restitution**2 * theta * (2.0 * saddle - theta)
+    return left / (saddle + math.sqrt(saddle**2 - left))
+
+
+def turning_points(response: Response) -> list[float]:
+    """Return the largest rotation [rad] before each of the first impacts, from the history."""
+    history = response.history
+    if history is None or not response.impacts:
+        return []
+    times = [0.0, *(impact.time for impact in response.impacts[: SWINGS + 1])]
+    theta = np.abs(history.theta)
+    tops = []
+    for begin, end in itertools.pairwise(times):
+        inside = np.nonzero((history.time > begin) & (history.time < end))[0]
+        if inside.size < 5:
+            break
+        tops.append(crest(theta, inside))
+    return tops
+
+
+def crest(theta: FloatArray, inside: np.ndarray[tuple[int, ...], np.dtype[np.intp]]) -> float:
+    """Return the maximum of the parabola through the largest sample and its neighbours."""
+    place = int(inside[np.argmax(theta[inside])])
+    place = min(max(place, 1), len(theta) - 2)
+    left, top, right = theta[place - 1 : place + 2]
+    bend = left - 2.0 * top + right
+    return float(top - (right - left) ** 2 / (8.0 * bend)) if bend < 0.0 else float(top)
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's free.csv; write and return the text."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    text = f"{table_text(read(folder))}\n\n{headline(folder)}"
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def read(folder: Path) -> pd.DataFrame:
+    """Read a free.csv back."""
+    return pd.read_csv(folder / "free.csv", dtype={"message": str}).fillna({"message": ""})
+
+
+def table_text(rows: pd.DataFrame) -> str:
+    """Return, for each source and tilt, the largest errors over the aspect ratios."""
+    lines = rows.groupby(["source", "tilt"], sort=False)[["period_error", "decay_error"]].max()
+    cells = lines["period_error"].map(scientific) + " " + lines["decay_error"].map(scientific)
+    table = cells.unstack("tilt").rename_axis(index=None, columns="θ0/α")
+    head = "Largest relative error of the time between impacts and of the next rotation:"
+    return f"{head}\n{table.loc[list(rows['source'].unique())].to_string()}"
+
+
+def headline(folder: Path) -> str:
+    """Say how far each source is from the closed forms of its model."""
+    rows = read(folder).groupby("source", sort=False)[["period_error", "decay_error"]].max()
+    words = [
+        f"{source} {scientific(line['period_error'])} and {scientific(line['decay_error'])}"
+        for source, line in rows.iterrows()
+    ]
+    return (
+        "Free rocking against the closed forms of each source's model, largest relative error of "
+        f"the time between two impacts and of the rotation after one: {', '.join(words)}."
+    )
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the errors of a folder from its free.csv alone."""
+    from studies.drawing.diagrams import draw_free
+
+    return {"free": draw_free(read(folder))}

@@ -1,0 +1,218 @@
+"""The paper's time histories, figures 2, 4 and 5, and what it says about them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pandas as pd
+
+from studies.kit import provenance
+from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
+from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
+from studies.drawing.comparison import samples
+from studies.kit.executors import Executor, choose
+from studies.measures.findings import Finding, findings_text
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, own_folder, run_jobs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DEFAULT_SOURCES = {
+    2: ("exact", "rk4", "average-acceleration"),
+    4: ("exact", "housner", "modified"),
+    5: ("exact", "housner", "modified"),
+}
+"""What the paper draws; its numerical solution is the exact model's."""
+
+TITLES = {
+    2: "Figure 2: fourth-order Runge–Kutta and average acceleration",
+    4: "Figure 4: half-sine pulse",
+    5: "Figure 5: full-sine pulse",
+}
+
+
+def command(
+    *,
+    out: Path,
+    figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
+    sources: Annotated[tuple[str, ...] | None, several] = None,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+    cluster: str | None = None,
+) -> int:
+    """Draw the paper's time histories and test what it says about them.
+
+    Writes, for each figure, its samples (CSV), its drawing (PNG) and the findings (text).
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    figure
+        Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default.
+    sources
+        By default what the paper draws: exact, rk4 and average-acceleration in figure 2; exact,
+        housner and modified in 4 and 5. Any other source may be named.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    """
+    refuse_repeats("--figure", figure)
+    if sources is not None:
+        check_sources(sources)
+    executor = choose(jobs, time_limit, cluster)
+    products = [f"figure-{number}.csv" for number in HISTORIES]
+    rows: list[Row] = []
+    with own_folder(out, "histories", products, sources=sources):
+        for number in figure:
+            rows += one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
+    return exit_code(rows)
+
+
+def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Executor) -> list[Row]:
+    """Run, store, draw and judge one figure; return its rows."""
+    from studies.drawing.figures import save_all
+
+    cases = HISTORIES[figure]
+    rows = run_jobs(
+        [history_job(case, source) for case in cases for source in sources],
+        executor=executor,
+        reduce=lambda job, response: {**summary(job, response), "response": response},
+    )
+    table = tidy(cases, rows)
+    if len(table):
+        provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
+        save_all({f"figure-{figure}": drawn(folder, figure)}, folder)
+    text = report(figure, rows, table)
+    provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
+    print(text, end="\n\n")
+    return rows
+
+
+def history_job(case: HistoryCase, source: str) -> Job:
+    """Return the job of one line in one panel."""
+    window = free_rocking_window(case.block, case.motion)
+    return Job(
+        labels={"figure": case.figure, "panel": case.panel},
+        block=case.block,
+        motion=case.motion,
+        source=source,
+        duration=window,
+        times=np.linspace(0.0, window, 1501),
+    )
+
+
+def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
+    """Return the samples of every row under each other."""
+    by_panel = {case.panel: case for case in cases}
+    parts = []
+    for row in rows:
+        case = by_panel[row["panel"]]
+        labels = {
+            "figure": case.figure,
+            "panel": case.panel,
+            "pulse": case.pulse,
+            "width_m": case.width_m,
+            "height_m": case.height_m,
+            "amplitude_g": case.amplitude_g,
+            "source": row["source"],
+        }
+        if row["response"].history is not None:
+            parts.append(samples(row["response"], case.block, case.motion, labels))
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw every figure of a folder from its CSV alone."""
+    figures = [n for n in HISTORIES if (folder / f"figure-{n}.csv").is_file()]
+    return {f"figure-{n}": drawn(folder, n) for n in figures}
+
+
+def headline(folder: Path) -> str:
+    """Say how many of the paper's statements about its histories hold."""
+    text = "\n".join(path.read_text() for path in sorted(folder.glob("figure-*.txt")))
+    lines = text.splitlines()
+    held, missed = (
+        sum(line.startswith(word) for line in lines) for word in ("holds:", "does not hold:")
+    )
+    return f"Of the paper's {held + missed} statements about its time histories {held} hold."
+
+
+def drawn(folder: Path, figure: int) -> "Figure":
+    """Draw one figure from its CSV alone."""
+    from studies.drawing.figures import draw_histories
+
+    return draw_histories(pd.read_csv(folder / f"figure-{figure}.csv"), TITLES[figure])
+
+
+def report(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> str:
+    """Return the peaks of a figure as a table, and its findings."""
+    peaks = pd.DataFrame(rows).assign(
+        shown=lambda f: (
+            f["peak_ratio"].map("{:.4f}".format).where(f["outcome"] == "rocked", f["outcome"])
+        )
+    )
+    shown = peaks.pivot(index="panel", columns="source", values="shown")
+    shown = shown[list(dict.fromkeys(row["source"] for row in rows))]
+    shown.index = [f"{figure}-{panel}" for panel in shown.index]
+    shown.columns.name = "θmax/θcr"
+    return f"{TITLES[figure]}\n{shown.to_string()}\n{findings_text(judge(figure, rows, table))}"
+
+
+def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> list[Finding]:
+    """Test what the paper says about a figure."""
+    checks = {2: solvers_coincide, 4: housner_strays, 5: housner_overturns}
+    needed = {2: {"rk4", "average-acceleration"}}.get(figure, {"exact", "housner", "modified"})
+    check = checks[figure]
+    statement = str(check.__doc__).splitlines()[0].rstrip(".")
+    if not needed.issubset(row["source"] for row in rows):
+        return [Finding(statement, None, f"needs the sources {', '.join(sorted(needed))}")]
+    holds, numbers = check(rows, table)
+    return [Finding(statement, holds, numbers)]
+
+
+def solvers_coincide(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """Runge–Kutta and average acceleration coincide (within 0.001 of θcr)."""
+    lines = table.pivot(index=["panel", "time_s"], columns="source", values="theta_ratio")
+    apart = (lines["rk4"] - lines["average-acceleration"]).abs().groupby("panel").max()
+    words = ", ".join(f"2-{panel} {value:.1e}" for panel, value in apart.items())
+    return bool((apart < 1e-3).all()), f"largest difference of θ/θcr: {words}"
+
+
+def housner_strays(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """Housner's error grows as H/B falls, and the modified linearization's stays smaller."""
+    peak = {(row["panel"], row["source"]): row["peak_ratio"] for row in rows}
+    errors = {
+        name: [peak[panel, name] / peak[panel, "exact"] - 1.0 for panel in "abc"]
+        for name in ("housner", "modified")
+    }
+    far, near = errors["housner"], errors["modified"]
+    holds = abs(far[0]) < abs(far[1]) < abs(far[2]) and all(
+        abs(m) < abs(h) for h, m in zip(far, near, strict=True)
+    )
+    words = (
+        f"{name} " + ", ".join(f"{value:+.1%}" for value in values)
+        for name, values in errors.items()
+    )
+    return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
+
+
+def housner_overturns(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
+    """In 5-b and 5-c the block overturns by Housner alone, and survives otherwise."""
+    outcome = {(row["panel"], row["source"]): row["outcome"] for row in rows}
+    holds = all(
+        outcome[panel, "housner"] == "overturned"
+        and outcome[panel, "exact"] == outcome[panel, "modified"] == "rocked"
+        for panel in "bc"
+    )
+    words = (
+        f"5-{panel}: " + ", ".join(f"{name} {outcome[panel, name]}" for name in DEFAULT_SOURCES[5])
+        for panel in "bc"
+    )
+    return holds, "; ".join(words)

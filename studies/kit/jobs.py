@@ -1,0 +1,95 @@
+"""One question to one source: its identity, its answer, the row that is made of it."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from analytic.response import Response
+from studies.kit.journal import Row
+from studies.sources.registry import Source, resolve
+
+LONG = 1e7
+"""Steps, about a second of a compiled solver, beyond which a job gets a process of its own."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One question to one source.
+
+    Attributes
+    ----------
+    labels : mapping
+        The first columns of the row.
+    block, motion : RigidBlock, Motion
+    source : str
+        A source's name, as the user wrote it.
+    duration, times
+        As in `studies.respond`.
+    options : mapping
+        Further settings of the source.
+    """
+
+    labels: Mapping[str, Any]
+    block: RigidBlock
+    motion: Motion
+    source: str
+    duration: float | None = None
+    times: FloatArray | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def key(self) -> str:
+        """The identity of the job: everything that its result depends on."""
+        preset = resolve(self.source).preset
+        parts = [asdict(self), type(self.motion).__name__, preset]
+        text = json.dumps(parts, default=_plain, sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+    @property
+    def is_long(self) -> bool:
+        """Whether a stepping source would take so many steps that it needs a time limit."""
+        observed = self.motion.duration if self.duration is None else self.duration
+        return observed * self.block.p > LONG * float(self.options.get("step", 1e-3))
+
+
+def _plain(value: Any) -> Any:
+    if is_dataclass(value) and not isinstance(value, type):
+        return asdict(value)
+    if isinstance(value, np.ndarray):
+        return [str(value.dtype), value.shape, hashlib.sha256(value.tobytes()).hexdigest()]
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{value!r} cannot be part of a job's identity")
+
+
+def ask(job: Job, source: Source) -> Response:
+    """Run one job; whatever it raises becomes a failed response."""
+    try:
+        return source.call(
+            job.block, job.motion, duration=job.duration, times=job.times, **job.options
+        )
+    except Exception as error:
+        return Response.failure(one_line(error))
+
+
+def summary(_: Job, response: Response) -> Row:
+    """Return the columns that every study shares."""
+    return {
+        "outcome": response.outcome.value,
+        "peak_ratio": float(response.peak_ratio),
+        "impacts": len(response.impacts),
+        "steps": int(response.steps),
+        "wall_s": round(float(response.wall_s), 9),
+        "message": response.message,
+    }
+
+
+def one_line(error: Exception) -> str:
+    """Return an exception in one line, its kind first."""
+    return " ".join(f"{type(error).__name__}: {error}".split())

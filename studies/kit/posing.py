@@ -1,0 +1,55 @@
+"""From the options of a command line to a block and the motion of its base."""
+
+from pathlib import Path
+
+from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.motion import SinePulse
+from analytic.record import Record
+from studies.cases.accelerograms import read_record
+from studies.kit.arguments import BadInputError
+from studies.cases.paper import PULSES
+
+
+def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
+    if pulse and half_cycles:
+        raise BadInputError(
+            f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
+        )
+    return half_cycles or PULSES[pulse or "full-sine"]
+
+
+def posed_block(width: float, height: float) -> RigidBlock:
+    """Return the block of --width and --height."""
+    try:
+        return RigidBlock(width=width, height=height)
+    except ValueError as error:
+        raise BadInputError(f"--{error}") from error
+
+
+def posed_pulse(
+    amplitude: float | None, omega: float | None, pulse: str | None, half_cycles: int | None
+) -> SinePulse:
+    """Return the pulse of --amplitude, --omega and either --pulse or --half-cycles."""
+    number = _half_cycles(pulse, half_cycles)
+    if amplitude is None or omega is None:
+        missing = " and ".join(
+            name for name, value in (("--amplitude", amplitude), ("--omega", omega)) if not value
+        )
+        raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
+    try:
+        return SinePulse(amplitude=amplitude * STANDARD_GRAVITY, omega=omega, half_cycles=number)
+    except ValueError as error:
+        raise BadInputError(f"--{error}") from error
+
+
+def posed_record(path: Path, units: str | None, scale: float | None, pga: float | None) -> Record:
+    """Return the record of --record and --units, scaled by --scale or to --pga."""
+    if scale is not None and pga is not None:
+        raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
+    record = read_record(path, units)
+    try:
+        if pga is not None:
+            return record.scaled_to(pga * STANDARD_GRAVITY)
+        return record.scaled(1.0 if scale is None else scale)
+    except ValueError as error:
+        raise BadInputError(f"--record: {error}") from error

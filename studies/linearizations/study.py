@@ -1,0 +1,295 @@
+"""What in a linearization matters: its onset, its frequency, its saddle, each changed alone."""
+
+import itertools
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from analytic import peak_ratios
+from analytic.models import Model
+from analytic.motion import FloatArray
+from studies.kit import provenance
+from studies.cases.paper import PULSES, sweep_cases
+from studies.measures.differences import posed_cases, scientific
+from studies.measures.findings import Finding, findings_text
+from studies.kit.runner import own_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PRODUCTS = ("linearizations.csv", "quantiles.csv", "linearizations.png", "findings.txt")
+
+HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
+NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
+"""What of (onset, frequency, saddle) is changed from Housner's -> the model's name."""
+
+QUANTILES = np.linspace(0.0, 1.0, 201)
+GRIDS = ("paper", "wide")
+
+
+def variant(onset: int, frequency: int, saddle: int) -> Model:
+    """Return the linear model with Housner's or the modified onset, frequency and saddle.
+
+    The onset is g alpha or g tan(alpha), the frequency p or p sqrt(cos(alpha)), the saddle alpha or
+    tan(alpha); the forcing factor is the saddle over the onset.
+    """
+
+    def angle(changed: int, alpha: FloatArray) -> FloatArray:
+        return np.tan(alpha) if changed else np.asarray(alpha, np.float64)
+
+    words = (
+        "onset " + ("g tan α" if onset else "g α"),
+        "p√cos α" if frequency else "p",
+        "saddle " + ("tan α" if saddle else "α"),
+    )
+    known = NAMED.get((onset, frequency, saddle))
+    return Model(
+        name=known or ", ".join(words),
+        title=", ".join(words) + (f" ({known})" if known else ""),
+        linear=True,
+        saddle=lambda alpha: angle(saddle, alpha),
+        frequency=lambda alpha: np.sqrt(np.cos(alpha)) if frequency else np.ones_like(alpha),
+        forcing=lambda alpha: angle(saddle, alpha) / angle(onset, alpha),
+    )
+
+
+VARIANTS = {changed: variant(*changed) for changed in itertools.product((0, 1), repeat=3)}
+"""Changes from Housner's (onset, frequency, saddle) -> the model: all eight."""
+
+
+def grid(name: str) -> pd.DataFrame:
+    """Return the cases of a grid: aspect, amplitude_g, omega_over_p, half_cycles.
+
+    "paper" is that of figures 6 to 9, without the copies by similarity; "wide" has H/B from 1.5 to
+    10, amplitudes from 1.02 to 4 onsets and omega/p from 0.2 to 8.
+    """
+    if name == "paper":
+        cases = [c for c in sweep_cases([6, 7, 8, 9]) if c.width_m == 0.5]
+        rows = [(c.aspect, c.amplitude_g, c.omega_over_p, PULSES[c.pulse]) for c in cases]
+    else:
+        rows = [
+            (aspect, onsets / aspect, omega, half_cycles)
+            for aspect in np.geomspace(1.5, 10.0, 12)
+            for onsets in np.geomspace(1.02, 4.0, 30)
+            for omega in np.linspace(0.2, 8.0, 40)
+            for half_cycles in PULSES.values()
+        ]
+    columns = ["aspect", "amplitude_g", "omega_over_p", "half_cycles"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def command(*, out: Path) -> int:
+    """Take a linearization apart: onset, frequency and saddle, each changed alone.
+
+    All eight combinations of Housner's and the modified choices, against the exact solution, on
+    the paper's cases and on a wider grid; what the paper concludes, with the numbers.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    """
+    with own_folder(out, "linearizations", PRODUCTS):
+        errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
+        tables = {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
+        for name, table in tables.items():
+            provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
+        print(report(out, errors))
+    return 0
+
+
+def held(name: str) -> pd.DataFrame:
+    """Return every case of a grid through every variant, held against the exact solution."""
+    cases = grid(name)
+    posed = posed_cases(cases)
+    exact, outcome = peak_ratios(*posed)
+    parts = []
+    for changed, model in VARIANTS.items():
+        peak, found = peak_ratios(*posed, model=model)
+        both = np.isfinite(peak) & np.isfinite(exact) & (exact > 0.0) & (peak > 0.0)
+        parts.append(
+            cases.assign(
+                grid=name,
+                changed="".join(map(str, changed)),
+                error=np.divide(peak, exact, where=both, out=np.full(len(cases), np.nan)) - 1.0,
+                difference=np.subtract(peak, exact, where=both, out=np.full(len(cases), np.nan)),
+                false=np.isinf(peak) & ~np.isinf(exact),
+                missed=~np.isinf(peak) & np.isinf(exact),
+                wrong=found != outcome,
+            )
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def summarize(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each grid and variant; errors are relative, differences in theta_cr."""
+    groups = errors.groupby(["grid", "changed"], sort=False)
+    table = groups.agg(
+        cases=("wrong", "size"),
+        wrong=("wrong", "sum"),
+        false=("false", "sum"),
+        missed=("missed", "sum"),
+        survivors=("error", "count"),
+        median_error=("error", lambda e: e.abs().median()),
+        rms_error=("error", lambda e: np.sqrt((e**2).mean())),
+        max_error=("error", lambda e: e.abs().max()),
+        rms_difference=("difference", lambda e: np.sqrt((e**2).mean())),
+        max_difference=("difference", lambda e: e.abs().max()),
+    ).reset_index()
+    titles = [VARIANTS[key(word)].title for word in table["changed"]]
+    return table.assign(title=titles)
+
+
+def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return the quantiles of the absolute relative error of each grid and variant."""
+    parts = [
+        pd.DataFrame(
+            {
+                "grid": name,
+                "changed": changed,
+                "quantile": QUANTILES,
+                "error": rows["error"].abs().dropna().quantile(QUANTILES).to_numpy(),
+            }
+        )
+        for (name, changed), rows in errors.groupby(["grid", "changed"], sort=False)
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def key(word: str) -> tuple[int, ...]:
+    """Return a variant's key from its column "changed"."""
+    return tuple(map(int, word))
+
+
+def report(folder: Path, errors: pd.DataFrame) -> str:
+    """Draw the folder's tables, and write and return the text."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    table = read(folder, "linearizations")
+    text = "\n\n".join(
+        [
+            *(f"On the {name} grid:\n" + table_text(table, name) for name in GRIDS),
+            findings_text(conclusions(table, errors)),
+        ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def read(folder: Path, name: str) -> pd.DataFrame:
+    """Read a table of a folder back."""
+    return pd.read_csv(folder / f"{name}.csv", dtype={"changed": str})
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
+    from studies.drawing.diagrams import draw_distributions
+
+    titles = {"".join(map(str, changed)): model.title for changed, model in VARIANTS.items()}
+    return {"linearizations": draw_distributions(read(folder, "quantiles"), titles)}
+
+
+def headline(folder: Path) -> str:
+    """Say how far each change alone takes Housner's linearization on the wide grid."""
+    table = read(folder, "linearizations")
+    wide = table[table["grid"] == "wide"].set_index("changed")
+    words = [
+        f"{VARIANTS[key(str(name))].title} {scientific(float(line['median_error']))} and "
+        f"{line['wrong'] / line['cases']:.1%}"
+        for name, line in wide.iterrows()
+        if key(str(name)) in NAMED
+    ]
+    return (
+        f"Median error of the peak and share of wrong outcomes on a wide grid: {'; '.join(words)}."
+    )
+
+
+def table_text(table: pd.DataFrame, name: str) -> str:
+    """Return the lines of a grid as an aligned table."""
+    rows = table[table["grid"] == name]
+    shown = pd.DataFrame(
+        {
+            "linearization": rows["title"],
+            "wrong": rows["wrong"].astype(str) + "/" + rows["cases"].astype(str),
+            "false": rows["false"],
+            "missed": rows["missed"],
+            "median": rows["median_error"].map(scientific),
+            "RMS": rows["rms_error"].map(scientific),
+            "max": rows["max_error"].map(scientific),
+            "RMS Δ": rows["rms_difference"].map(scientific),
+            "max Δ": rows["max_difference"].map(scientific),
+        }
+    )
+    return shown.to_string(index=False)
+
+
+def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
+    """Hold the paper's conclusions (a), (b) and (c) against the numbers."""
+    return [frequency_matters(table), maps_mislead(errors), modified_is_better(errors)]
+
+
+def frequency_matters(table: pd.DataFrame) -> Finding:
+    """(a) p√cos α in place of p brings a linearization closer, other things being equal."""
+    lines = table.set_index(["grid", "changed"])["median_error"]
+    pairs = [
+        (name, onset, saddle, lines[name, f"{onset}0{saddle}"], lines[name, f"{onset}1{saddle}"])
+        for name in GRIDS
+        for onset in (0, 1)
+        for saddle in (0, 1)
+    ]
+    words = [
+        f"{name} grid, onset g {('α', 'tan α')[onset]}, saddle {('α', 'tan α')[saddle]}: "
+        f"{before:.2%} to {after:.2%}"
+        for name, onset, saddle, before, after in pairs
+    ]
+    closer = sum(after < before for *_, before, after in pairs)
+    return Finding(
+        str(frequency_matters.__doc__).splitlines()[0].rstrip("."),
+        closer == len(pairs),
+        f"the median error falls in {closer} of {len(pairs)} comparisons ({'; '.join(words)})",
+    )
+
+
+def maps_mislead(errors: pd.DataFrame) -> Finding:
+    """(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more."""
+    housner = errors[errors["changed"] == "000"]
+    words = []
+    for name, rows in housner.groupby("grid", sort=False):
+        slender = rows[rows["aspect"] >= 3.0]
+        words.append(
+            f"{name} grid: {int(rows['false'].sum())} of {len(rows)} falsely overturned "
+            f"({int(slender['false'].sum())} of {len(slender)} at H/B ≥ 3), "
+            f"{int(rows['missed'].sum())} missed"
+        )
+    slender = housner[(housner["aspect"] >= 3.0) & (housner["grid"] == "paper")]
+    return Finding(
+        str(maps_mislead.__doc__).splitlines()[0].rstrip("."),
+        bool(slender["false"].any()),
+        "; ".join(words),
+    )
+
+
+def modified_is_better(errors: pd.DataFrame) -> Finding:
+    """(c) The modified linearization is closer than Housner's at every slenderness tried."""
+    wide = errors[errors["grid"] == "wide"].assign(size=errors["error"].abs())
+    medians = wide.groupby(["changed", "aspect"])["size"].median().unstack("aspect")
+    wrong = wide.groupby(["changed", "aspect"])["wrong"].mean().unstack("aspect")
+    words = [
+        f"H/B {float(aspect):.3g}: {shares(medians[aspect])} (wrong outcomes "
+        f"{shares(wrong[aspect])})"
+        for aspect in medians.columns[::3]
+    ]
+    better = (medians.loc["111"] < medians.loc["000"]) & (wrong.loc["111"] <= wrong.loc["000"])
+    return Finding(
+        str(modified_is_better.__doc__).splitlines()[0].rstrip("."),
+        bool(better.all()),
+        "median errors of housner, modified, onset-matched: " + "; ".join(words),
+    )
+
+
+def shares(values: "pd.Series[float]") -> str:
+    """Return the values of housner, modified and onset-matched in per cent."""
+    return ", ".join(f"{float(values[changed]):.1%}" for changed in ("000", "111", "100"))

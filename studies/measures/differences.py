@@ -1,0 +1,196 @@
+"""Rows beside the exact solution: errors, outcomes, the summary table."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from analytic import condition_numbers, peak_ratios
+from analytic.motion import FloatArray
+from studies.cases.paper import PULSES
+
+SUMMARY_COLUMNS = [
+    "figure",
+    "source",
+    "cases",
+    "agree",
+    "median_error",
+    "p90_error",
+    "max_error",
+    "max_error_over_kappa",
+    "max_difference",
+    "false_overturnings",
+    "missed_overturnings",
+    "failed",
+    "wall_s",
+]
+
+
+def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add the exact outcome and peak of every case, and the difference of each row from them.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns that `exact_peaks` takes, and outcome and peak_ratio.
+
+    Returns
+    -------
+    DataFrame
+        With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
+        (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
+        missed_overturning, and the columns of `with_conditioning`.
+    """
+    peak, outcome = exact_peaks(rows)
+    known = with_conditioning(rows)
+    joined = known.assign(exact_peak=peak, exact_outcome=[_word(item) for item in outcome])
+    found, right = joined["outcome"], joined["exact_outcome"]
+    both_rocked = (found == "rocked") & (right == "rocked")
+    return joined.assign(
+        agrees=found == right,
+        error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rocked),
+        difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rocked),
+        false_overturning=(found == "overturned") & (right != "overturned"),
+        missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
+    )
+
+
+def posed_cases(
+    cases: pd.DataFrame,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the first four arguments of `peak_ratios`.
+
+    The cases have columns aspect and omega_over_p, amplitude_g or excess_g, half_cycles or pulse.
+    """
+    steepness = 1.0 / cases["aspect"].to_numpy(float)
+    amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
+    half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
+    return (
+        np.arctan(np.asarray(steepness, np.float64)),
+        np.asarray(amplitude, np.float64),
+        np.asarray(cases["omega_over_p"], np.float64),
+        np.asarray(half_cycles, np.float64),
+    )
+
+
+def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
+    """Return the exact peaks and outcomes of the cases."""
+    return peak_ratios(*posed_cases(cases))
+
+
+def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
+    """Add kappa = d ln(peak)/d ln(a_p) and kappa_eta = d ln(peak)/d ln(eta) of the exact solution.
+
+    They are the factors by which a small relative error of the pulse, or of the velocity ratio at
+    impacts, grows into one of the peak; nan where no peak survives.
+    """
+    found = condition_numbers(*posed_cases(cases))
+    return cases.assign(kappa=found.amplitude, kappa_eta=found.restitution)
+
+
+def conditioning_of(cases: pd.DataFrame) -> "pd.Series[float]":
+    """Return the larger of abs(kappa) and abs(kappa_eta), at least 1."""
+    return cases[["kappa", "kappa_eta"]].abs().max(axis=1, skipna=False).clip(lower=1.0)
+
+
+def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the case in which each source errs most, with its condition numbers."""
+    erring = compared.dropna(subset="error")
+    place = erring["error"].abs().groupby(erring["source"]).idxmax()
+    order = [source for source in compared["source"].unique() if source in place]
+    worst = erring.loc[place.loc[order]]
+    columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
+    return worst[[*columns, "kappa", "kappa_eta"]]
+
+
+def worst_text(worst: pd.DataFrame) -> str:
+    """Return the worst cases as an aligned table."""
+    shown = worst.assign(
+        exact_peak=worst["exact_peak"].map("{:.4f}".format),
+        error=worst["error"].map(scientific),
+        kappa=worst["kappa"].map("{:.3g}".format),
+        kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
+    )
+    return shown.rename(
+        columns={
+            "aspect": "H/B",
+            "width_m": "B m",
+            "omega_over_p": "ω/p",
+            "exact_peak": "θmax/θcr",
+            "kappa": "κ",
+            "kappa_eta": "κη",
+        }
+    ).to_string(index=False)
+
+
+def _word(outcome: object) -> str:
+    return str(getattr(outcome, "value", outcome))
+
+
+def summarize(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return one line for each figure and source, and for all figures where there are several.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        From `with_reference`.
+    """
+    lines = _lines(compared)
+    if compared["figure"].nunique() > 1:
+        lines += _lines(compared.assign(figure="all"))
+    return pd.DataFrame(lines, columns=SUMMARY_COLUMNS)
+
+
+def _lines(compared: pd.DataFrame) -> list[list[object]]:
+    return [
+        [figure, source, *_line(group)]
+        for (figure, source), group in compared.groupby(["figure", "source"], sort=False)
+    ]
+
+
+def _line(group: pd.DataFrame) -> list[object]:
+    errors = group["error"].abs().dropna()
+    return [
+        len(group),
+        int(group["agrees"].sum()),
+        errors.median(),
+        errors.quantile(0.9) if len(errors) else math.nan,
+        errors.max(),
+        (errors / conditioning_of(group)).max(),
+        group["difference"].abs().max(),
+        int(group["false_overturning"].sum()),
+        int(group["missed_overturning"].sum()),
+        int((group["outcome"] == "failed").sum()),
+        group["wall_s"].sum(),
+    ]
+
+
+def summary_text(summary: pd.DataFrame) -> str:
+    """Return the summary as an aligned table; errors are relative, over the survivors."""
+    shown = pd.DataFrame(
+        {
+            "figure": summary["figure"].astype(str),
+            "source": summary["source"],
+            "outcomes": summary["agree"].astype(str) + "/" + summary["cases"].astype(str),
+            "median": summary["median_error"].map(scientific),
+            "p90": summary["p90_error"].map(scientific),
+            "max": summary["max_error"].map(scientific),
+            "max/κ": summary["max_error_over_kappa"].map(scientific),
+            "false": summary["false_overturnings"],
+            "missed": summary["missed_overturnings"],
+            "failed": summary["failed"],
+            "time s": summary["wall_s"].map("{:.3g}".format),
+        }
+    )
+    repeated = shown["figure"].eq(shown["figure"].shift())
+    shown["figure"] = shown["figure"].mask(repeated, "")
+    return shown.to_string(index=False)
+
+
+def scientific(value: float) -> str:
+    """Return a number in two digits, "-" for nan."""
+    if math.isnan(value):
+        return "-"
+    return f"{value:.1e}" if value else "0"

@@ -1,0 +1,76 @@
+"""The energy of free rocking, read from a history: what a method loses or adds by itself."""
+
+import itertools
+import math
+
+import numpy as np
+
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from analytic.response import History, Outcome, Response
+from studies.kit.jobs import Job
+
+SAMPLES = 400
+"""Samples of a history from which energies are read."""
+
+
+def energy(block: RigidBlock, history: History) -> FloatArray:
+    """Return the exact model's energy of each sample, over m g R."""
+    y = np.abs(history.theta)
+    kinetic = 0.5 * (history.velocity / block.p) ** 2
+    result: FloatArray = kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
+    return result
+
+
+NEAR = 0.15
+"""Part of a flight at either end in which a coarse step may still feel the impact."""
+
+
+def flights(
+    block: RigidBlock, motion: Motion, response: Response, near: float = 0.0
+) -> list[FloatArray]:
+    """Return the energies of the samples between two impacts, after the ground motion.
+
+    Left out are the samples next to an impact, those in the part `near` of a flight at either end,
+    and what follows the last impact.
+    """
+    history = response.history
+    if history is None or len(history.time) < 2:
+        return []
+    energies = energy(block, history)
+    edges = [motion.duration, *(i.time for i in response.impacts)]
+    edges = [edge for edge in edges if edge >= motion.duration]
+    margin = 2.0 * float(history.time[1] - history.time[0])
+    result = []
+    for start, end in itertools.pairwise(edges):
+        apart = max(margin, near * (end - start))
+        inside = (history.time > start + apart) & (history.time < end - apart)
+        if np.count_nonzero(inside) > 1:
+            result.append(energies[inside])
+    return result
+
+
+def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
+    """Return the largest rise of energy during free rocking over its largest value; or nan.
+
+    A rise is counted from the least energy before it, through all flights and impacts: free
+    rocking of a rigid block can only lose energy.
+    """
+    parts = flights(block, motion, response, NEAR)
+    if not parts:
+        return float("nan")
+    energies = np.concatenate(parts)
+    rise = float((energies - np.minimum.accumulate(energies)).max())
+    return rise / float(energies.max()) if rise > 0.0 else 0.0
+
+
+def energy_drift(job: Job, response: Response) -> float:
+    """Return how much the energy of free rocking varies between two impacts, relative; or nan.
+
+    The largest over the flights after the ground motion; the energy is the exact model's, over its
+    value at the flight's end, and the samples next to an impact are left out.
+    """
+    if response.outcome is not Outcome.ROCKED:
+        return math.nan
+    drifts = (float(np.ptp(e) / e[-1]) for e in flights(job.block, job.motion, response))
+    return max(drifts, default=math.nan)

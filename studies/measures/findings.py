@@ -1,0 +1,208 @@
+"""The paper's conclusions held against a sweep's numbers, reported whichever way they fall."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from textwrap import fill
+
+import pandas as pd
+
+PAPER_PAIR = ("housner", "modified")
+MODELS = ("exact", *PAPER_PAIR, "onset-matched")
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A statement, whether it holds (None: a source that it needs was not asked), the numbers."""
+
+    statement: str
+    holds: bool | None
+    numbers: str
+
+    @property
+    def text(self) -> str:
+        """The finding as a reader sees it."""
+        verdict = {True: "holds", False: "does not hold", None: "not tested"}[self.holds]
+        lines = fill(self.numbers, 99, initial_indent="    ", subsequent_indent="    ")
+        return f"{verdict}: {self.statement}\n{lines}"
+
+
+def findings(compared: pd.DataFrame) -> list[Finding]:
+    """Test every conclusion.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        From `studies.measures.differences.with_reference`.
+    """
+    checks = (
+        (false_overturnings, ("housner",)),
+        (missed_overturnings, ("modified",)),
+        (modified_is_closer, PAPER_PAIR),
+        (agreement_at_high_frequency, PAPER_PAIR),
+        (squat_blocks_differ_more, ("housner",)),
+        (onset_explains, ("housner", "onset-matched")),
+    )
+    named = set(compared["source"])
+    tested = [
+        check(compared)
+        if named.issuperset(needed)
+        else Finding(_statement(check), None, f"needs the sources {', '.join(needed)}")
+        for check, needed in checks
+    ]
+    return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
+
+
+def _statement(check: object) -> str:
+    return str(check.__doc__).splitlines()[0].rstrip(".")
+
+
+def false_overturnings(compared: pd.DataFrame) -> Finding:
+    """Housner's linearization overturns blocks that survive, even at H/B = 3."""
+    housner = _of(compared, "housner")
+    wrong = housner[housner["false_overturning"]]
+    return Finding(
+        _statement(false_overturnings),
+        bool((wrong["aspect"] >= 3).any()),
+        f"{len(wrong)} of {len(housner)} cases{_where(wrong)}",
+    )
+
+
+def missed_overturnings(compared: pd.DataFrame) -> Finding:
+    """The modified linearization never lets a block survive that overturns."""
+    modified = _of(compared, "modified")
+    wrong = modified[modified["missed_overturning"]]
+    return Finding(
+        _statement(missed_overturnings),
+        wrong.empty,
+        f"{len(wrong)} of {len(modified)} cases missed{_where(wrong)}",
+    )
+
+
+def modified_is_closer(compared: pd.DataFrame) -> Finding:
+    """The modified linearization stays closer to the exact solution than Housner's."""
+    housner, modified = (_by_case(_of(compared, name)) for name in PAPER_PAIR)
+    both = pd.DataFrame({"h": housner["error"].abs(), "m": modified["error"].abs()}).dropna()
+    closer = int((both["m"] < both["h"]).sum())
+    return Finding(
+        _statement(modified_is_closer),
+        bool(both["m"].median() < both["h"].median() and closer > len(both) / 2),
+        f"closer in {closer} of {len(both)} cases where all three survive; median error "
+        f"{both['m'].median():.2%} against {both['h'].median():.2%}, p90 "
+        f"{both['m'].quantile(0.9):.2%} against {both['h'].quantile(0.9):.2%}; outcomes right in "
+        f"{int(modified['agrees'].sum())} against {int(housner['agrees'].sum())} "
+        f"of {len(housner)} cases",
+    )
+
+
+def agreement_at_high_frequency(compared: pd.DataFrame) -> Finding:
+    """Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)."""
+    medians, words = [], []
+    for name in PAPER_PAIR:
+        rows = _of(compared, name)
+        high = rows.loc[rows["omega_over_p"] >= 3.0, "error"].abs()
+        middle = rows.loc[rows["omega_over_p"].between(0.5, 1.5), "error"].abs()
+        medians.append(high.median())
+        apart = rows.loc[rows["omega_over_p"] >= 3.0, "difference"].abs().median()
+        words.append(
+            f"{name} {high.median():.2%}, that is {apart:.4f} of θcr "
+            f"(at ω/p from 0.5 to 1.5: {middle.median():.2%})"
+        )
+    return Finding(_statement(agreement_at_high_frequency), max(medians) < 0.05, "; ".join(words))
+
+
+def squat_blocks_differ_more(compared: pd.DataFrame) -> Finding:
+    """The smaller the aspect ratio, the larger Housner's error in the median of its figure."""
+    housner = _of(compared, "housner")
+    medians = housner["error"].abs().groupby([housner["figure"], housner["aspect"]]).median()
+    table = medians.unstack("aspect")
+    falling = bool((table.diff(axis=1).iloc[:, 1:] <= 0.0).all(axis=None))
+    words = [
+        f"figure {figure}: "
+        + ", ".join(f"{value:.2%} at {aspect:g}" for aspect, value in row.items())
+        for figure, row in table.iterrows()
+    ]
+    return Finding(_statement(squat_blocks_differ_more), falling, "; ".join(words))
+
+
+def onset_explains(compared: pd.DataFrame) -> Finding:
+    """Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment."""
+    housner, matched = (_by_case(_of(compared, name)) for name in ("housner", "onset-matched"))
+    both = pd.DataFrame({"h": housner["error"].abs(), "o": matched["error"].abs()}).dropna()
+    explained = 1.0 - both["o"].median() / both["h"].median()
+    wrong_h, wrong_o = (int((~rows["agrees"]).sum()) for rows in (housner, matched))
+    return Finding(
+        _statement(onset_explains),
+        bool(explained > 0.5 and wrong_o <= wrong_h / 2),
+        f"with the onset matched the median error falls from {both['h'].median():.2%} to "
+        f"{both['o'].median():.2%} ({explained:.0%} of it), wrong outcomes from {wrong_h} to "
+        f"{wrong_o} (of {len(housner)} cases)",
+    )
+
+
+def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
+    """Say for every solver and engine whether, and where not, its outcomes are the exact ones."""
+    others = compared[~compared["source"].isin(MODELS)]
+    return [
+        Finding(
+            f"every outcome of {source} is that of the exact solution",
+            bool(rows["agrees"].all()),
+            f"{int((~rows['agrees']).sum())} of {len(rows)} cases differ"
+            f"{_where(rows[~rows['agrees']])}",
+        )
+        for source, rows in others.groupby("source", sort=False)
+    ]
+
+
+def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
+    """Hold the two widths of every source against each other: similarity says they are equal."""
+    keys = ["figure", "aspect", "omega_over_p"]
+    result = []
+    for source, rows in compared.groupby("source", sort=False):
+        peaks = rows.pivot(index=keys, columns="width_m", values="peak_ratio")
+        outcomes = rows.pivot(index=keys, columns="width_m", values="outcome")
+        spread = (peaks.max(axis=1) / peaks.min(axis=1) - 1.0).max()
+        differing = int((outcomes.nunique(axis=1) > 1).sum())
+        result.append(
+            Finding(
+                f"the left and right panels coincide for {source} (within 1e-6)",
+                bool(spread < 1e-6 and differing == 0),
+                f"largest relative difference of the peaks {spread:.1e}, "
+                f"{differing} of {len(outcomes)} outcomes differ",
+            )
+        )
+    return result
+
+
+def findings_text(items: Iterable[Finding]) -> str:
+    """Return the findings, one after the other."""
+    return "\n".join(item.text for item in items)
+
+
+def _of(compared: pd.DataFrame, source: str) -> pd.DataFrame:
+    return compared[compared["source"] == source]
+
+
+def _by_case(rows: pd.DataFrame) -> pd.DataFrame:
+    return rows.set_index(["figure", "aspect", "width_m", "omega_over_p"])
+
+
+def _where(wrong: pd.DataFrame) -> str:
+    """Return where the cases lie: ranges of ω/p for each figure and aspect ratio."""
+    places = [
+        f"figure {figure} H/B {aspect:g}: ω/p {_ranges(group['omega_over_p'].unique())}"
+        for (figure, aspect), group in wrong.groupby(["figure", "aspect"])
+    ]
+    return ("; " + "; ".join(places)) if places else ""
+
+
+def _ranges(values: Iterable[float]) -> str:
+    """Return tenths as ranges: 0.3, 0.4, 0.5, 0.8 -> "0.3–0.5, 0.8"."""
+    runs: list[list[int]] = []
+    for tenth in sorted(round(10.0 * value) for value in values):
+        if runs and tenth == runs[-1][-1] + 1:
+            runs[-1].append(tenth)
+        else:
+            runs.append([tenth])
+    return ", ".join(
+        f"{run[0] / 10:g}" if len(run) == 1 else f"{run[0] / 10:g}–{run[-1] / 10:g}" for run in runs
+    )

@@ -1,0 +1,142 @@
+"""Engines on an overturning map: on a coarse grid, beside edges, and their own thresholds.
+
+The edges are those of the exact solution; the adapters never see them, only pulses.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from analytic.motion import SinePulse
+from analytic.response import Outcome, Response
+from studies.kit.jobs import Job, ask, summary
+from studies.kit.journal import Row
+from studies.sources.registry import Source
+from studies.cases.window import Window
+
+OFFSETS = (-1e-2, -1e-3, -1e-4, 1e-4, 1e-3, 1e-2)
+"""Relative distances from an edge at which an engine is asked for the outcome."""
+ROOM = 0.04
+"""Relative width on both sides that an edge needs to be asked about."""
+SPREAD = 0.03
+"""Relative distance within which an engine's own threshold is looked for."""
+THRESHOLD_WIDTH = 1e-6
+"""Relative width to which it is bisected."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bisected(Response):
+    """The last response of a bisection, and the relative distance of the threshold; or nan."""
+
+    shift: float
+    runs: int
+
+
+def grid_jobs(window: Window, engines: Sequence[str], count: int) -> list[Job]:
+    """Return a job for each engine at each cell centre of a coarse grid."""
+    return [
+        _job(window, source, float(x), float(onsets), {"table": "engines"})
+        for x in window.centres(count)
+        for onsets in window.amplitudes(count)
+        for source in engines
+    ]
+
+
+def edge_jobs(window: Window, engines: Sequence[str], edges: pd.DataFrame) -> list[Job]:
+    """Return the jobs beside chosen edges, and a search for each engine's own threshold."""
+    jobs = []
+    for edge in edges.itertuples():
+        x, onsets = float(str(edge.x)), float(str(edge.low))
+        rises = int(str(edge.above)) >= 0
+        labels = {"edge": onsets, "overturns": "above" if rises else "below"}
+        for source in engines:
+            jobs += [
+                _job(
+                    window,
+                    source,
+                    x,
+                    onsets * (1.0 + offset),
+                    {"table": "edges", **labels, "offset": offset},
+                )
+                for offset in OFFSETS
+            ]
+            jobs.append(_job(window, source, x, onsets, {"table": "thresholds", **labels}))
+    return jobs
+
+
+def _job(window: Window, source: str, x: float, onsets: float, labels: Row) -> Job:
+    block, motion = window.case(x, onsets)
+    return Job(
+        labels={**labels, "x": x, "onsets": onsets}, block=block, motion=motion, source=source
+    )
+
+
+def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
+    """Return the edges of the columns nearest to positions that have room; and how many have not.
+
+    `edges` has an `x`; an edge has room where the next ones are further than ROOM.
+    """
+    columns = np.unique(edges["x"])
+    wanted = {float(columns[np.argmin(abs(columns - x))]) for x in positions}
+    kept, narrow = [], 0
+    for _, group in edges[edges["x"].isin(wanted)].groupby("x"):
+        gaps = np.diff(np.log(group["low"]))
+        below, above = np.append(math.inf, gaps), np.append(gaps, math.inf)
+        room = np.minimum(below, above) > ROOM
+        kept.append(group[room])
+        narrow += int((~room).sum())
+    return (pd.concat(kept) if kept else edges.iloc[:0]), narrow
+
+
+def put(job: Job, source: Source) -> Response:
+    """Put a job of any of the three tables to its source."""
+    if job.labels["table"] != "thresholds":
+        return ask(job, source)
+    return threshold(job, source)
+
+
+def threshold(job: Job, source: Source) -> Response:
+    """Bisect the amplitude at which a source's outcome changes, near that of the job."""
+    pulse = job.motion
+    if not isinstance(pulse, SinePulse):
+        raise TypeError(f"{pulse!r} has no amplitude to bisect")
+    low, high, runs = -SPREAD, SPREAD, 0
+
+    def run(shift: float) -> Response:
+        nonlocal runs
+        runs += 1
+        scaled = replace(pulse, amplitude=pulse.amplitude * (1.0 + shift))
+        return ask(replace(job, motion=scaled), source)
+
+    first, last = run(low), run(high)
+    for response in (first, last):
+        if response.outcome is Outcome.FAILED:
+            return response
+    shift = math.nan
+    if (first.outcome is Outcome.OVERTURNED) != (last.outcome is Outcome.OVERTURNED):
+        while high - low > THRESHOLD_WIDTH:
+            middle = 0.5 * (low + high)
+            response = run(middle)
+            if response.outcome is Outcome.FAILED:
+                return response
+            same = (response.outcome is Outcome.OVERTURNED) == (first.outcome is Outcome.OVERTURNED)
+            low, high = (middle, high) if same else (low, middle)
+        shift = 0.5 * (low + high)
+    kept = {name: getattr(last, name) for name in Response.__slots__}
+    return Bisected(**kept, shift=shift, runs=runs)
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the columns that follow the labels of a job's table."""
+    if job.labels["table"] != "thresholds":
+        return summary(job, response)
+    found = isinstance(response, Bisected)
+    return {
+        "outcome": response.outcome.value,
+        "shift": response.shift if isinstance(response, Bisected) else math.nan,
+        "runs": response.runs if found else 0,  # type: ignore[attr-defined]
+        "message": response.message,
+    }

@@ -1,0 +1,171 @@
+"""The pictures of an overturning map: the modes, and where the sources differ from exact."""
+
+import math
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from analytic.motion import FloatArray
+from studies.measures.differences import conditioning_of
+from studies.drawing.figures import style_of
+from studies.overturning.report import modes_at, no_impact_line, with_exact
+from studies.cases.window import LEAST_ONSETS, Window
+
+PIXELS = 900
+# the palette of Okabe and Ito, lightened where a whole area is filled
+MODE_COLOURS = {
+    "survives": "#FFFFFF",
+    "no impact": "#8CC7EE",
+    "after 1": "#F5D58A",
+    "after 2": "#7FCDB8",
+    "after 3 or more": "#CC79A7",
+}
+DIFFERENCE_COLOURS = {
+    "both survive": "#FFFFFF",
+    "both overturn": "#D9D9D9",
+    "false overturning": "#E69F00",
+    "missed overturning": "#0072B2",
+    "failed": "#000000",
+}
+
+
+def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
+    """Draw the exact modes, and the first edge of every model, from the columns of map.csv."""
+    drawing = Figure(figsize=(8.6, 6.4), layout="constrained")
+    axes = drawing.subplots()
+    exact = areas[areas["model"] == "exact"]
+    modes = picture(exact, window)
+    shown = _paint(axes, np.clip(modes, -1, 3) + 1, MODE_COLOURS, window)
+    handles: list[Line2D | Patch] = [
+        Patch(facecolor=colour, edgecolor="#888888", label=name)
+        for name, colour in MODE_COLOURS.items()
+        if name in shown
+    ]
+    for model, part in areas.groupby("model", sort=False):
+        over = part[part["mode"] >= 0].groupby("x")["low"].min()
+        style = style_of(str(model))
+        line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
+        axes.plot(over.index, over, **line)  # type: ignore[arg-type]
+        handles.append(Line2D([], [], label=f"{model}: least that overturns", **line))  # type: ignore[arg-type]
+    x = window.centres(200)
+    axes.plot(x, no_impact_line(x, window, "housner"), color="#D55E00", linewidth=0.8)
+    handles.append(
+        Line2D([], [], color="#D55E00", linewidth=0.8, label="housner: no impact, closed form")
+    )
+    _frame(axes, window)
+    axes.set_title(f"Exact solution: {window.title}", fontsize=11)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    return drawing
+
+
+def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window) -> Figure:
+    """Draw where each source differs from exact, from the columns of map.csv and engines.csv."""
+    models = [name for name in areas["model"].unique() if name != "exact"]
+    cells = with_exact(engines, window) if len(engines) else engines
+    sources = list(cells["source"].unique()) if len(cells) else []
+    count = len(models) + len(sources)
+    across = min(count, 3)
+    down = math.ceil(count / across)
+    drawing = Figure(figsize=(3.9 * across, 3.5 * down + 0.6), layout="constrained")
+    grid = drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    right = picture(areas[areas["model"] == "exact"], window)
+    panels = list(grid.flat)
+    for axes, model in zip(panels, models, strict=False):
+        found = picture(areas[areas["model"] == model], window)
+        codes = np.where(found >= 0, np.where(right >= 0, 1, 2), np.where(right >= 0, 3, 0))
+        _paint(axes, codes, DIFFERENCE_COLOURS, window)
+        axes.set_title(model, fontsize=10)
+    for axes, source in zip(panels[len(models) :], sources, strict=False):
+        part = cells[cells["source"] == source]
+        _paint(axes, _cell_codes(part), DIFFERENCE_COLOURS, window)
+        axes.set_title(f"{source}, {len(part)} cells", fontsize=10)
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    for number, axes in enumerate(panels[:count]):
+        _frame(axes, window, below=number + across >= count, left=number % across == 0)
+    drawing.suptitle(f"Difference from the exact solution: {window.title}", fontsize=11)
+    drawing.legend(
+        handles=[
+            Patch(facecolor=colour, edgecolor="#888888", label=name)
+            for name, colour in DIFFERENCE_COLOURS.items()
+        ],
+        loc="outside lower center",
+        ncols=5,
+        frameon=False,
+        fontsize=9,
+    )
+    return drawing
+
+
+def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
+    """Draw by how much a small error grows into one of the exact peak, where the block survives.
+
+    Parameters
+    ----------
+    table : DataFrame
+        The columns of conditioning.csv.
+    window : Window
+    """
+    drawing = Figure(figsize=(8.6, 5.8), layout="constrained")
+    axes = drawing.subplots()
+    values = table.assign(kappa=conditioning_of(table)).pivot(
+        index="x", columns="onsets", values="kappa"
+    )
+    axes.set_facecolor("#d9d9d9")
+    shown = axes.imshow(
+        values.to_numpy().T,
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
+        cmap="viridis",
+        norm=LogNorm(1.0, 1e4),
+    )
+    drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
+    _frame(axes, window)
+    axes.set_title(f"Conditioning: {window.title}; grey: overturns or stays at rest")
+    return drawing
+
+
+def picture(areas: pd.DataFrame, window: Window) -> FloatArray:
+    """Return the modes of a model on a grid as fine as a picture shows."""
+    columns = min(areas["x"].nunique(), PIXELS)
+    return modes_at(areas, window.centres(columns), window.amplitudes(PIXELS))
+
+
+def _cell_codes(cells: pd.DataFrame) -> FloatArray:
+    both = np.where(cells["exact_mode"] >= 0, 1, 0)
+    codes = np.select(
+        [cells["verdict"] == name for name in ("false", "missed", "failed")], [2, 3, 4], both
+    )
+    marked = cells.assign(code=codes)
+    return marked.pivot_table(index="x", columns="onsets", values="code").to_numpy()
+
+
+def _paint(axes: Axes, codes: FloatArray, colours: dict[str, str], window: Window) -> set[str]:
+    """Fill the panel with coded cells; return the names of the colours that it shows."""
+    axes.imshow(
+        codes.T,
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
+        cmap=ListedColormap(list(colours.values())),
+        norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
+    )
+    names = list(colours)
+    return {names[int(code)] for code in np.unique(codes)}
+
+
+def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True) -> None:
+    axes.set(xlim=(window.low, window.high), ylim=(LEAST_ONSETS, window.onsets))
+    if below:
+        axes.set_xlabel(window.label)
+        axes.tick_params(labelbottom=True)
+    if left:
+        axes.set_ylabel("amplitude of the pulse  $a_p$ / (g tan α)  [–]")

@@ -1,0 +1,97 @@
+"""One self-contained page: what each study found, its figures, its tables, what failed."""
+
+import base64
+import io
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader
+from matplotlib.figure import Figure
+
+from studies.kit import provenance
+from studies.catalogue import CHAPTERS, Chapter
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A cell of a table: what is shown, and what it is sorted by."""
+
+    text: str
+    key: str
+
+
+def write_page(path: Path, folder: Path, full: bool) -> None:
+    """Write the page about the results in `folder`, one folder inside for each chapter."""
+    environment = Environment(loader=PackageLoader("studies", "."), autoescape=True)
+    text = environment.get_template("page.html").render(
+        chapters=[_section(chapter, folder / chapter.folder, full) for chapter in CHAPTERS],
+        made=_provenance(folder / CHAPTERS[0].folder),
+        full=full,
+    )
+    provenance.write_text(path, text)
+
+
+def _section(chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
+    from studies.__main__ import COMMANDS
+
+    return {
+        "folder": chapter.folder,
+        "question": chapter.question,
+        "headline": chapter.headline(folder),
+        "how": COMMANDS[chapter.study],
+        "command": "rocking " + " ".join(chapter.command_line(Path("DIR"), full)),
+        "pictures": [(name, embedded(drawn)) for name, drawn in chapter.pictures(folder).items()],
+        "texts": [(path.stem, path.read_text()) for path in sorted(folder.glob("*.txt"))],
+        "tables": [(name, *table(folder / name)) for name in chapter.tables],
+        "failures": failures(folder, chapter.source),
+    }
+
+
+def embedded(drawing: Figure) -> str:
+    """Return a figure as the address of an image that holds it, vectors and all."""
+    target = io.BytesIO()
+    drawing.savefig(target, format="svg", metadata={"Date": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
+
+
+def table(path: Path) -> tuple[list[str], list[list[Cell]]]:
+    """Return the heads and rows of a CSV."""
+    rows = pd.read_csv(path, keep_default_na=False, na_values=["nan"])
+    return list(rows.columns), [[cell(value) for value in row] for row in rows.to_numpy(object)]
+
+
+def cell(value: Any) -> Cell:
+    """Return a value as a cell; a number is shown in four digits and sorted in full."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return Cell(str(value), str(value))
+    if math.isnan(value):
+        return Cell("–", "")
+    return Cell(f"{value:.4g}", repr(value))
+
+
+def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
+    """Return how often each source of a study failed, and of what."""
+    found: list[dict[Any, Any]] = []
+    for path in sorted(folder.glob(pattern)):
+        rows = pd.read_csv(path, keep_default_na=False, na_values=["nan"])
+        if "message" in rows:
+            failed = rows[rows["outcome"] == "failed"]
+            counts = failed.groupby(["source", "message"], sort=False).size().reset_index(name="n")
+            found += counts.to_dict("records")
+    return found
+
+
+def _provenance(folder: Path) -> list[tuple[str, str]]:
+    """Return what the page says of versions and machine."""
+    record = json.loads((folder / "provenance.json").read_text())
+    versions = {**record["engines"], "python": record["python"], **record["packages"]}
+    return [
+        ("project", f"{record['version']}, commit {(record['git'] or {}).get('commit', '-')}"),
+        ("versions", ", ".join(f"{name} {version}" for name, version in versions.items())),
+        ("machine", ", ".join(f"{name} {value}" for name, value in record["machine"].items())),
+        ("made", record["runs"][-1]["start"]),
+    ]

@@ -1,0 +1,92 @@
+"""What a scene costs, reported: three tables and a figure, from their CSVs alone."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from studies.kit import provenance
+from studies.measures.differences import scientific
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def report(folder: Path) -> str:
+    """Draw a folder's tables; write and return them as text."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    text = "\n\n".join(
+        [
+            "Where the time of a step goes:\n" + shares_text(read(folder, "shares")),
+            "What a scene leaves out, put back one at a time (time over the scene as it is):\n"
+            + scenes_text(read(folder, "scenes")),
+            "What the exact solution leaves out:\n" + reference_text(read(folder, "reference")),
+        ]
+    )
+    provenance.write_text(folder / "cost.txt", text + "\n")
+    return text
+
+
+def read(folder: Path, name: str) -> pd.DataFrame:
+    """Read a table back with empty words as such."""
+    return pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=["nan"])
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw a folder's scenes.csv: time and error of each thing put back."""
+    from studies.drawing.diagrams import draw_scenes
+
+    return {"cost": draw_scenes(read(folder, "scenes"))}
+
+
+def headline(folder: Path) -> str:
+    """Say how long a step takes, and how much of that is the engine's own."""
+    words = [
+        f"{line['engine']} {1e6 * line['step_s']:.0f} µs "
+        f"(the engine's own step {1e6 * line['engine_s']:.0f} µs)"
+        for _, line in read(folder, "shares").iterrows()
+    ]
+    return f"A step of the stepping loop takes {', '.join(words)}."
+
+
+def shares_text(shares: pd.DataFrame) -> str:
+    """Return the parts of a step [µs], and the share that is not the engine's."""
+    parts = shares.set_index("engine").filter(like="_s") * 1e6
+    own = 1.0 - shares["engine_s"] / shares["step_s"]
+    shown = parts.rename(columns=lambda name: name.removesuffix("_s") + " µs").map("{:.2f}".format)
+    shown["beside the engine"] = [f"{share:.0%}" for share in own]
+    return shown.reset_index().to_string(index=False)
+
+
+def scenes_text(scenes: pd.DataFrame) -> str:
+    """Return what each omission costs when it is put back; failures are named below."""
+    base = scenes.groupby("engine")["wall_s"].transform("first")
+    shown = pd.DataFrame(
+        {
+            "engine": scenes["engine"].mask(scenes["engine"].duplicated(), ""),
+            "put back": scenes["scene"],
+            "outcome": scenes["outcome"],
+            "error": scenes["error"].map(scientific),
+            "steps": scenes["steps"],
+            "time": (scenes["wall_s"] / base).map("{:.2f} x".format),
+            "step µs": (1e6 * scenes["step_s"]).map("{:.1f}".format),
+            "set-up ms": (1e3 * scenes["setup_s"]).map("{:.2f}".format),
+            "memory KiB": scenes["memory_kib"].map("{:.0f}".format),
+        }
+    )
+    notes = [
+        f"{engine}, {scene}: {message}"
+        for engine, scene, message in scenes[["engine", "scene", "message"]].to_numpy()
+        if message
+    ]
+    return "\n".join([shown.to_string(index=False), *notes])
+
+
+def reference_text(reference: pd.DataFrame) -> str:
+    """Return the times [µs] of the exact solution."""
+    table = pd.DataFrame(
+        {"exact solution": reference["scene"], "µs": (1e6 * reference["wall_s"]).round(1)}
+    )
+    return table.to_string(index=False)

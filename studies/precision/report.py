@@ -1,0 +1,216 @@
+"""Error against run time, reported: errors, orders, cheapest settings, from the CSV alone."""
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from analytic import simulate
+from analytic.response import Outcome, Response
+from studies.precision import cost_report
+from studies.kit import provenance
+from studies.cases.paper import Case, free_rocking_window
+from studies.measures.differences import scientific
+from studies.precision.methods import METHODS, Method
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
+CASE = ("figure", "aspect", "width_m", "omega_over_p")
+"""Columns that tell one case from another."""
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's precision.csv; return tables and findings as text."""
+    from studies.drawing.figures import save_all
+
+    rows = pd.read_csv(folder / "precision.csv", dtype={"message": str})
+    table = work_precision(with_errors(rows))
+    provenance.write_text(folder / "work-precision.csv", table.to_csv(index=False, na_rep="nan"))
+    save_all({"precision": drawn(folder)}, folder)
+    typical = table[table["set"] == "typical"]
+    text = "\n".join(
+        [
+            "Cheapest setting whose largest error of the peak stays below a target, typical cases;",
+            "cost over that of the Taylor series at its tightest:",
+            cheapest(typical).to_string(index=False),
+            "\nErrors at the finest setting, where they stop falling, and the observed order:",
+            floor_text(typical),
+            "",
+            findings(typical),
+        ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def headline(folder: Path) -> str:
+    """Return the findings of a folder's work-precision.csv."""
+    table = pd.read_csv(folder / "work-precision.csv")
+    return findings(table[table["set"] == "typical"])
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
+    return {"precision": drawn(folder), **cost_report.pictures(folder)}
+
+
+def drawn(folder: Path) -> "Figure":
+    """Draw the work-precision diagram of a folder's work-precision.csv."""
+    from studies.precision.figure import draw_precision
+
+    return draw_precision(pd.read_csv(folder / "work-precision.csv"))
+
+
+def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add to every row its errors: of the peak, against its method's own finest run, of impacts.
+
+    A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
+    """
+    exact = {}
+    for case in (case for cases in chosen_cases(quick=False).values() for case in cases):
+        window = free_rocking_window(case.block, case.motion)
+        exact[tuple(asdict(case)[name] for name in CASE)] = (
+            simulate(case.block, case.motion, duration=window),
+            case,
+        )
+    names = list(rows[list(CASE)].itertuples(index=False, name=None))
+    peaks = np.array([exact[name][0].peak_ratio for name in names])
+    failed = rows["outcome"] == Outcome.FAILED.value
+    error = (rows["peak_ratio"] / peaks - 1.0).abs()
+    finest = rows.groupby(["method", "figure", "aspect", "set"])["peak_ratio"].transform("last")
+    own = (rows["peak_ratio"] / finest - 1.0).abs()
+    late = [
+        _impact_error(json.loads(found), *exact[name])
+        for found, name in zip(rows["impact_times"], names, strict=True)
+    ]
+    return rows.assign(
+        error=error.mask(failed),
+        own_error=own.mask(failed),
+        impact_error=pd.Series(late, index=rows.index).mask(failed),
+        failed=failed,
+        pulse_s=[exact[name][1].motion.duration for name in names],
+    )
+
+
+def _impact_error(found: list[float], response: Response, case: Case) -> float:
+    """Return the largest error of the first impact times [1/p]; inf where one is missing."""
+    wanted = [impact.time * case.block.p for impact in response.impacts[:COMPARED_IMPACTS]]
+    if len(found) < len(wanted):
+        return math.inf
+    pairs = zip(found, wanted, strict=False)
+    return max((abs(a - b) for a, b in pairs), default=0.0)
+
+
+def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each method, setting and set: errors over the cases, cost of one case."""
+    groups = compared.groupby(["set", "method", "value"], sort=False)
+    table = groups.agg(
+        cases=("error", "size"),
+        failed=("failed", "sum"),
+        median_error=("error", "median"),
+        max_error=("error", "max"),
+        own_error=("own_error", "median"),
+        impact_error=("impact_error", "median"),
+        energy_drift=("energy_drift", "median"),
+        steps=("steps", "mean"),
+        wall_s=("wall_s", "mean"),
+        setup_s=("setup_s", "mean"),
+        pulse_s=("pulse_s", "mean"),
+    ).reset_index()
+    table["real_time_factor"] = table["pulse_s"] / table["wall_s"]
+    return table.drop(columns="pulse_s")
+
+
+def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
+    """Return the order of the median error in the step with its standard error; nan if unclear.
+
+    A line through the logarithms, over the settings whose error is above three times the floor, and
+    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
+    """
+    usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
+    floor = usable["median_error"].min()
+    reached = usable["value"][usable["median_error"] == floor].max()
+    usable = usable[(usable["median_error"] > 3.0 * floor) & (usable["value"] > reached)]
+    usable = usable[usable["median_error"] < 0.3]
+    if not method.stepping or len(usable) < 3:
+        return math.nan, math.nan
+    x, y = np.log(usable["value"]), np.log(usable["median_error"])
+    (slope, _), covariance = np.polyfit(x, y, 1, cov="unscaled")
+    residual = y - np.polyval(np.polyfit(x, y, 1), x)
+    spread = math.sqrt(float((residual**2).sum()) / max(len(x) - 2, 1) * covariance[0, 0])
+    return float(slope), spread
+
+
+def cheapest(table: pd.DataFrame) -> pd.DataFrame:
+    """Return, for each method and target, the cheapest setting whose largest error is below it.
+
+    Costs are over that of the Taylor series at its tightest tolerance.
+    """
+    unit = table[table["method"] == "Taylor series"]["wall_s"].iloc[-1]
+    lines = []
+    for name, group in table.groupby("method", sort=False):
+        line: dict[str, object] = {"method": name}
+        for target in TARGETS:
+            good = group[(group["failed"] == 0) & (group["max_error"] <= target)]
+            if good.empty:
+                line[f"{target:.0e}"] = "-"
+                continue
+            best = good.sort_values("wall_s").iloc[0]
+            setting = f" at {best['value']:.0e}" if METHODS[str(name)].setting else ""
+            line[f"{target:.0e}"] = f"{best['wall_s'] / unit:.3g} x{setting}"
+        lines.append(line)
+    return pd.DataFrame(lines)
+
+
+def floor_text(table: pd.DataFrame) -> str:
+    """Return for each method its smallest median error, its order and the errors beside it."""
+    lines = []
+    for name, group in table.groupby("method", sort=False):
+        best = group.sort_values("median_error").iloc[0]
+        order, spread = observed_order(group, METHODS[str(name)])
+        lines.append(
+            {
+                "method": name,
+                "best setting": f"{best['value']:.0e}" if METHODS[str(name)].setting else "-",
+                "median": scientific(best["median_error"]),
+                "max": scientific(best["max_error"]),
+                "impact times": scientific(best["impact_error"]),
+                "energy": scientific(best["energy_drift"]),
+                "order": "-" if math.isnan(order) else f"{order:.2f} ± {spread:.2f}",
+                "steps": f"{best['steps']:.0f}",
+                "time": f"{best['wall_s'] * 1e6:.0f} µs",
+                "set-up": f"{best['setup_s'] * 1e6:.0f} µs",
+                "failed": int(group["failed"].sum()),
+            }
+        )
+    return pd.DataFrame(lines).to_string(index=False)
+
+
+def findings(table: pd.DataFrame) -> str:
+    """Return the findings in a few sentences, from the numbers."""
+    engines = table[table["method"].str.contains("pybullet|mujoco")]
+    sentences = []
+    for target in TARGETS[:3]:
+        good = engines[(engines["failed"] == 0) & (engines["max_error"] <= target)]
+        if good.empty:
+            sentences.append(f"No engine reaches {target:.0e} on every case.")
+            continue
+        best = good.sort_values("wall_s").iloc[0]
+        sentences.append(
+            f"The cheapest engine below {target:.0e} on every case is {best['method']} at "
+            f"{best['value']:.0e}: {best['wall_s'] * 1e3:.2g} ms a case, "
+            f"{best['real_time_factor']:.0f} times faster than real time."
+        )
+    exact = table[table["method"] == "Taylor series"].iloc[-1]
+    sentences.append(
+        f"The exact solution takes {exact['wall_s'] * 1e6:.0f} µs a case to "
+        f"{scientific(exact['max_error'])}."
+    )
+    return " ".join(sentences)

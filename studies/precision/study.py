@@ -1,0 +1,143 @@
+"""Error against run time: every method along its own setting, on the same cases."""
+
+import functools
+import json
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic.response import Outcome, Response
+from studies.precision import cost, cost_report
+from studies.kit.arguments import Positive
+from studies.cases.paper import free_rocking_window
+from studies.measures.energy import SAMPLES, energy_drift
+from studies.kit.executors import Local
+from studies.kit.jobs import Job, ask, summary
+from studies.kit.journal import Row
+from studies.precision.methods import METHODS, Method
+from studies.precision.report import headline, pictures, report
+from studies.kit.runner import exit_code, fill_folder
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.sources.registry import Source
+
+__all__ = ["command", "headline", "pictures", "report"]
+
+if TYPE_CHECKING:
+    pass
+
+PRODUCTS = (
+    *("precision.csv", "work-precision.csv", "precision.png", "findings.txt"),
+    *cost.PRODUCTS,
+)
+BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
+"""Time [s] spent on timing one case with one setting."""
+
+
+def command(
+    *,
+    out: Path,
+    quick: bool = False,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Report error against run time, and what a scene does not need.
+
+    Every method along its own setting (tolerance, step, solver iterations) on 12 cases of the
+    paper whose peaks lie before or after impacts, and 12 near overturning. Timing is serial, on
+    one thread, warm, the best of several runs; building and compiling are apart.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    quick
+        Fewer cases and settings: less than a minute on 2 cores.
+    time_limit
+        Wall-clock time [s] after which one case with one setting is given up.
+    """
+    rows = fill_folder(
+        out,
+        "precision",
+        precision_jobs(quick),
+        executor=Local(
+            workers=1,
+            time_limit_s=time_limit,
+            ask=functools.partial(measure, budget_s=QUICK_BUDGET_S if quick else BUDGET_S),
+        ),
+        reduce=reduce,
+        settings={"quick": quick},
+        growing={},
+        products=PRODUCTS,
+    )
+    if not (out / "scenes.csv").is_file():
+        cost.measure(out, quick)
+    print(report(out), cost_report.report(out), sep="\n\n")
+    return exit_code(rows)
+
+
+def precision_jobs(quick: bool) -> list[Job]:
+    """Return a job for every method, setting and case."""
+    return [
+        Job(
+            labels={"method": name, "value": value, "set": kind, **asdict(case)},
+            block=case.block,
+            motion=case.motion,
+            source=method.source,
+            duration=free_rocking_window(case.block, case.motion),
+            times=np.linspace(0.0, free_rocking_window(case.block, case.motion), SAMPLES),
+            options=method.options_at(value),
+        )
+        for name, method in METHODS.items()
+        for value in (quick_values(method) if quick else method.values)
+        for kind, cases in chosen_cases(quick).items()
+        for case in cases
+    ]
+
+
+def quick_values(method: Method) -> tuple[float, ...]:
+    """Return every other setting of a method without its two dearest."""
+    return method.values[: max(len(method.values) - 2, 1) : 2]
+
+
+def measure(job: Job, source: Source, *, budget_s: float) -> Response:
+    """Run a job once with all records, then time it without any: to its peak only.
+
+    Returns
+    -------
+    Response
+        The recorded one with the outcome, peak and steps of the timed ones, the shortest of their
+        run times and of their set-up times.
+    """
+    recorded = ask(job, source)
+    plain = replace(job, duration=None, times=None)
+    began = time.perf_counter()
+    timed: list[Response] = []
+    setups: list[float] = []
+    while not timed or time.perf_counter() - began < budget_s:
+        start = time.perf_counter()
+        timed.append(ask(plain, source))
+        setups.append(time.perf_counter() - start - timed[-1].wall_s)
+    best = min(timed, key=lambda response: response.wall_s)
+    if Outcome.FAILED in (recorded.outcome, best.outcome):
+        return best if best.outcome is Outcome.FAILED else recorded
+    return replace(
+        recorded,
+        outcome=best.outcome,
+        peak_ratio=best.peak_ratio,
+        steps=best.steps,
+        wall_s=best.wall_s,
+        setup_s=min(setups),
+    )
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary, the set-up time, the first impact times and the drift of energy."""
+    times = [impact.time * job.block.p for impact in response.impacts[:COMPARED_IMPACTS]]
+    return {
+        **summary(job, response),
+        "setup_s": round(response.setup_s, 9),
+        "impact_times": json.dumps(times),
+        "energy_drift": energy_drift(job, response),
+    }

@@ -1,0 +1,141 @@
+"""Who answers: the models, the paper's solvers and the engines, each by its name."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Literal
+
+from analytic import MODELS, integrate, simulate
+from analytic.block import RigidBlock
+from analytic.motion import FloatArray, Motion
+from analytic.response import Response
+from engines import ENGINES, PRESETS
+from studies.sources.scipy_peers import solve_ivp_response
+
+Kind = Literal["model", "solver", "peer", "engine"]
+"""Models and solvers take microseconds, peers (general-purpose integrators) milliseconds, and
+none of them crashes; an engine may."""
+
+
+class UnknownSourceError(ValueError):
+    """A source or preset that does not exist."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
+
+    It can be sent to another process or machine. `preset` is an engine's, by default the best
+    there is; `stepping` sources have an option `step`, p dt.
+    """
+
+    kind: Kind
+    call: Callable[..., Response]
+    preset: str = ""
+    stepping: bool = False
+
+
+def run_engine(
+    block: RigidBlock,
+    motion: Motion,
+    *,
+    engine: str,
+    preset: str,
+    duration: float | None = None,
+    times: FloatArray | None = None,
+    **options: Any,
+) -> Response:
+    """Build the scene and let the engine run it; `options` are settings of the `Scene`."""
+    from engines import run
+    from engines.scene import Scene
+
+    scene = Scene(
+        block=block,
+        motion=motion,
+        preset=preset,
+        duration=duration,
+        times=None if times is None else times.tolist(),
+        **options,
+    )
+    return run(engine, scene)
+
+
+def _engine(name: str, preset: str) -> Source:
+    call = partial(run_engine, engine=name, preset=preset)
+    return Source("engine", call, preset, stepping=True)
+
+
+def _peer(method: str) -> Source:
+    return Source("peer", partial(solve_ivp_response, method=method))
+
+
+BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"
+"""The preset that an engine's plain name stands for."""
+
+SOURCES: dict[str, Source] = {
+    **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
+    "rk4": Source("solver", partial(integrate, method="rk4"), stepping=True),
+    "average-acceleration": Source(
+        "solver", partial(integrate, method="average-acceleration"), stepping=True
+    ),
+    **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
+    **{name: _engine(name, BEST_PRESET) for name in ENGINES},
+}
+"""Every source; a new model or engine appears here by being registered in its own storey."""
+
+
+def resolve(name: str) -> Source:
+    """Return the source called `name`, which may be an engine with a preset after a colon.
+
+    Raises
+    ------
+    UnknownSourceError
+        If there is no such source or preset; the message lists what there is.
+    """
+    plain, colon, preset = name.partition(":")
+    source = SOURCES.get(plain)
+    if source is None or (colon and (source.kind != "engine" or preset not in PRESETS)):
+        raise UnknownSourceError(f"source is {name!r}; it must be one of {allowed()}")
+    if not colon:
+        return source
+    return replace(source, call=partial(source.call, preset=preset), preset=preset)
+
+
+def allowed() -> str:
+    """Return the sentence that lists the sources and presets."""
+    names = ", ".join(SOURCES)
+    return f"{names}; an engine takes a preset after a colon: {', '.join(PRESETS)}"
+
+
+Accuracy = Literal["loose", "standard", "tight"]
+"""Of an engine whose steps land on impacts; `engines.scene.ACCURACIES` says how many steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How finely to step, for the sources that step; None leaves it to them.
+
+    Attributes
+    ----------
+    step : float or None
+        p dt.
+    accuracy : str or None
+        Of an engine whose steps land on impacts.
+    """
+
+    step: float | None = None
+    accuracy: Accuracy | None = None
+
+    def options(self, name: str) -> dict[str, Any]:
+        """Return the options that this means for a source."""
+        source = resolve(name)
+        chosen: dict[str, Any] = {}
+        if self.step is not None and source.stepping:
+            chosen["step"] = self.step
+        if self.accuracy is not None and source.preset == "landing":
+            chosen["accuracy"] = self.accuracy
+        return chosen
+
+
+DEFAULT_EFFORT = Effort()
+"""Every source as finely as it sees fit."""

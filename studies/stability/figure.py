@@ -1,0 +1,144 @@
+"""The matrix of extreme cases and methods: one mark for each verdict."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+
+from studies.measures.verdicts import ACCEPTED, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Colour of a cell, its symbol, and the symbol's colour."""
+
+    colour: str
+    symbol: str
+    ink: str = "#000000"
+
+
+# the palette of Okabe and Ito; no two verdicts share a symbol
+MARKS = {
+    Verdict.GOOD: Mark("#B5E0D3", "✓"),
+    Verdict.UNSEEN: Mark("#E3F3EE", "·"),
+    Verdict.COARSE: Mark("#F7EE8A", "~"),
+    Verdict.OFF: Mark("#F2B33D", "≠"),
+    Verdict.SLIDES: Mark("#E3B3CE", "→"),
+    Verdict.ENERGY: Mark("#56A0D3", "↑"),
+    Verdict.OUTCOME: Mark("#D55E00", "✗", "#FFFFFF"),
+    Verdict.FAILED: Mark("#222222", "!", "#FFFFFF"),
+    Verdict.INVALID: Mark("#D9D9D9", "○", "#555555"),
+}
+
+
+def draw_matrix(rows: pd.DataFrame) -> Figure:
+    """Draw the cases as rows and the methods as columns.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of stability.csv.
+    """
+    cases = rows[["group", "case"]].drop_duplicates()
+    names, sources = list(cases["case"]), list(rows["source"].unique())
+    width, height = 3.0 + 0.62 * len(sources) + 2.2, 0.235 * len(names) + 3.6
+    drawing = Figure(figsize=(max(width, 7.5), height), layout="constrained")
+    axes = drawing.subplots()
+    for row in rows.itertuples():
+        place = (sources.index(str(row.source)), names.index(str(row.case)))
+        _cell(axes, place, Verdict(row.verdict), float(str(row.error)))
+    _label_methods(axes, sources)
+    _label_cases(axes, rows, names)
+    _separate_groups(axes, list(cases["group"]), len(sources))
+    _score(axes, rows, sources, len(names))
+    axes.set(xlim=(0, len(sources)), ylim=(len(names) + 1, 0))
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    drawing.suptitle("Extreme cases: what each method's answer is worth", fontsize=12)
+    _legend(drawing, {Verdict(value) for value in rows["verdict"]})
+    return drawing
+
+
+def _cell(axes: Axes, place: tuple[int, int], verdict: Verdict, error: float) -> None:
+    mark, (i, j) = MARKS[verdict], place
+    axes.add_patch(Rectangle((i, j), 1, 1, facecolor=mark.colour, edgecolor="white", linewidth=1.2))
+    exponent = _exponent(error)
+    style = {"ha": "center", "va": "center_baseline", "color": mark.ink}
+    axes.text(i + (0.3 if exponent else 0.5), j + 0.52, mark.symbol, fontsize=10, **style)  # type: ignore[arg-type]
+    if exponent:
+        axes.text(i + 0.68, j + 0.53, exponent, fontsize=7, **style)  # type: ignore[arg-type]
+
+
+def _exponent(error: float) -> str:
+    """Return the size of an error as a power of ten, rounded up; empty if there is none."""
+    if math.isnan(error) or error == 0.0:
+        return ""
+    return f"1e{max(math.ceil(math.log10(abs(error))), -16):d}"
+
+
+def _label_methods(axes: Axes, sources: list[str]) -> None:
+    axes.xaxis.tick_top()
+    labels = [
+        source.replace(":", "\n").replace("average-acc", "average-\nacc") for source in sources
+    ]
+    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8)
+    for label in axes.get_xticklabels():
+        label.set(rotation=40, ha="left", rotation_mode="anchor", linespacing=0.9)
+
+
+def _label_cases(axes: Axes, rows: pd.DataFrame, names: list[str]) -> None:
+    axes.set_yticks([j + 0.5 for j in range(len(names))], names, fontsize=8.5)
+    first = rows.drop_duplicates("case")
+    exact = [
+        _reference(str(outcome), float(peak))
+        for outcome, peak in zip(first["exact_outcome"], first["exact_peak"], strict=True)
+    ]
+    right = axes.secondary_yaxis("right")
+    right.set_yticks(
+        [j + 0.5 for j in range(len(names))],
+        exact,
+        fontsize=7.5,
+        color="#555555",
+    )
+    right.tick_params(length=0)
+    right.spines["right"].set_visible(False)
+    axes.text(1.02, 1.005, "exact peak", transform=axes.transAxes, fontsize=7.5, color="#555555")
+
+
+def _reference(outcome: str, peak: float) -> str:
+    return f"{peak:.3g} θcr" if outcome == "rocked" else outcome
+
+
+def _score(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
+    """Write under each method how many of its cases are right, of those that are valid."""
+    style = {"va": "center", "fontsize": 8, "color": "#333333"}
+    axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **style)  # type: ignore[arg-type]
+    for i, source in enumerate(sources):
+        found = [Verdict(value) for value in rows.loc[rows["source"] == source, "verdict"]]
+        valid = [verdict for verdict in found if verdict is not Verdict.INVALID]
+        right = sum(verdict in ACCEPTED for verdict in valid)
+        axes.text(i + 0.5, level + 0.6, f"{right}/{len(valid)}", ha="center", **style)  # type: ignore[arg-type]
+
+
+def _separate_groups(axes: Axes, groups: list[str], width: int) -> None:
+    for j, (before, after) in enumerate(itertools.pairwise(groups), start=1):
+        if before != after:
+            axes.plot([-0.2, width + 0.2], [j, j], color="#666666", linewidth=0.8, clip_on=False)
+
+
+def _legend(drawing: Figure, present: set[Verdict]) -> None:
+    handles = [
+        Patch(
+            facecolor=mark.colour, edgecolor="#888888", label=f"{mark.symbol}  {verdict.sentence}"
+        )
+        for verdict, mark in MARKS.items()
+        if verdict in present
+    ]
+    handles.append(Patch(facecolor="white", edgecolor="#888888", label="    does not apply"))
+    handles.append(Patch(alpha=0.0, label="1e-3  error of the peak below"))
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)

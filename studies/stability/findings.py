@@ -1,0 +1,138 @@
+"""What the study of extreme cases found, in a paragraph made from its tables."""
+
+import math
+
+import pandas as pd
+
+from studies.stability.largest_step import OWN_CONTACT
+from studies.stability.remedies import NOTHING
+from studies.stability.sensitivity import FRICTION
+from studies.measures.verdicts import ACCEPTED
+
+ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
+
+
+def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> str:
+    """Return the findings in a few sentences, from the numbers."""
+    return " ".join(
+        [*_on_verdicts(matrix), *_on_limits(matrix), *_on_steps(steps), *_on_sensitivity(moved)]
+    )
+
+
+def verdicts_sentence(matrix: pd.DataFrame) -> str:
+    """Return how many of the extreme cases each source gets right."""
+    valid = matrix[matrix["verdict"] != "invalid"]
+    passed = valid["verdict"].isin(ACCEPTED_WORDS).groupby(valid["source"], sort=False)
+    scores = ", ".join(f"{source} {int(good.sum())} of {len(good)}" for source, good in passed)
+    return (
+        "Of the extreme cases where the reference, which is the exact solution, holds, outcome "
+        f"right and peak within 1 %: {scores}."
+    )
+
+
+def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
+    wrong = failures(matrix)
+    tried = wrong[wrong["remedy"] != ""]
+    mended = tried[tried["remedy"] != NOTHING]
+    void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
+    unbounded = int(wrong["reason"].str.contains("not finite|thrown|BADQACC").sum())
+    return [
+        verdicts_sentence(matrix),
+        f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
+        f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
+        f"Another setting mends {len(mended)} of {len(wrong)} failures.",
+        f"In {void['case'].nunique()} cases an engine differs where the reference itself does not "
+        f"hold ({'; '.join(void['case'].unique())}).",
+    ]
+
+
+def _on_limits(matrix: pd.DataFrame) -> list[str]:
+    """Say where an engine did not get what was asked for, and how far a block crept."""
+    sentences = []
+    clamped = matrix[(matrix["case"] == "friction 1e9") & (matrix["friction"] < 1e9)]
+    if len(clamped):
+        sources = ", ".join(clamped["source"])
+        sentences.append(
+            f"Friction of 1e9 is friction of {clamped['friction'].max():g} in {sources}, the most "
+            "that the library takes."
+        )
+    crept = matrix[(matrix["case"] == "60 s at rest") & matrix["slip_widths"].notna()]
+    if len(crept):
+        pairs = zip(crept["source"], crept["slip_widths"], strict=True)
+        words = ", ".join(f"{source} {slip:.1e} B" for source, slip in pairs)
+        sentences.append(f"A block that shakes without rocking and rests for 60 s creeps: {words}.")
+    return sentences
+
+
+def _on_steps(steps: pd.DataFrame) -> list[str]:
+    if steps.empty:
+        return []
+    sentences = []
+    for source, group in steps.groupby("source", sort=False):
+        usual = group[group["contact_s"].isna() | (source == "mujoco:naive")]
+        usual = usual[usual["invalid"] == ""]
+        accurate = usual["largest_accurate"]
+        if accurate.notna().any():
+            missing = int(accurate.isna().sum())
+            never = f", none in {missing} of {len(accurate)} problems" if missing else ""
+            sentences.append(f"{source} {span(accurate)}{never}")
+        else:
+            sentences.append(f"{source} none")
+    words = f"The largest p dt that is accurate to 1 %: {'; '.join(sentences)}."
+    return [words, *_on_contacts(steps)]
+
+
+def _on_contacts(steps: pd.DataFrame) -> list[str]:
+    """Say for which steps a contact with a time of its own is stable."""
+    own = steps[steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()]
+    return [
+        f"A contact of {OWN_CONTACT:g}/p in {source} is stable up to steps of "
+        f"{span(group['stable_over_contact'])} of that time and accurate up to "
+        f"{span(group['accurate_over_contact'])} of it."
+        for source, group in own.groupby("source", sort=False)
+    ]
+
+
+def span(values: "pd.Series[float]") -> str:
+    """Return the least and the largest of some numbers."""
+    low, high = values.min(), values.max()
+    if math.isnan(low):
+        return "none"
+    return f"{low:.2g}" if low == high else f"{low:.2g}–{high:.2g}"
+
+
+def _on_sensitivity(moved: pd.DataFrame) -> list[str]:
+    part = moved[(moved["quantity"] == "amplitude") & (moved["delta"] > 0.0)]
+    follows = (part["change_over_exact"] - 1.0).abs() <= 0.1
+    words = [
+        f"{source} {_from_which(follows[group.index], group['delta'])}"
+        for source, group in part.groupby("source", sort=False)
+    ]
+    sentences = [
+        "A perturbed amplitude moves the peak as far as it moves the exact one, within 10 %: "
+        f"{'; '.join(words)}."
+    ]
+    largest = moved[moved["quantity"] == "friction"].groupby("source", sort=False)["change"]
+    if len(largest):
+        found = [f"{name} {value:.0e}" for name, value in largest.apply(_largest).items()]
+        sentences.append(
+            f"Friction, on which the exact peak does not depend, changes ln(peak) "
+            f"at {FRICTION:g} by at most: {'; '.join(found)}."
+        )
+    return sentences
+
+
+def _from_which(follows: "pd.Series[bool]", delta: "pd.Series[float]") -> str:
+    """Say from which size of perturbation on all are followed."""
+    rough = delta[~follows].max()
+    smooth = delta[delta > rough] if (~follows).any() else delta
+    return f"from {smooth.min():.0e} on" if len(smooth) else "at no size tried"
+
+
+def _largest(values: "pd.Series[float]") -> float:
+    return float(values.abs().max())
+
+
+def failures(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows whose verdict is a failure of their source."""
+    return matrix[~matrix["verdict"].isin(ACCEPTED_WORDS)]

@@ -1,0 +1,179 @@
+"""Stiff and extreme cases: who stays finite, keeps the outcome, the energy and the peak."""
+
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+from analytic import simulate
+from analytic.response import Response
+from studies.kit.arguments import Count, Positive, check_sources, several
+from studies.kit.executors import Executor, choose
+from studies.cases.extreme import Extreme, extremes
+from studies.kit.jobs import Job, summary
+from studies.kit.jobs import ask as plain
+from studies.kit.journal import Row
+from studies.stability.largest_step import reduce_steps, search, step_jobs
+from studies.stability.remedies import Remedied, answer
+from studies.kit.runner import exit_code, fill_folder
+from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
+from studies.sources.registry import Source
+from studies.stability.report import headline, pictures, report
+from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
+
+__all__ = ["command", "headline", "pictures", "report"]
+
+PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
+METHODS = (
+    "exact",
+    "rk4",
+    "average-acceleration",
+    "dop853",
+    "radau",
+    "pybullet",
+    "pybullet:fixed",
+    "pybullet:naive",
+    "mujoco",
+    "mujoco:fixed",
+    "mujoco:naive",
+)
+SAMPLES = 400
+"""Samples of the free rocking, from which its energy is read."""
+RUN_SHARE = 0.02
+"""Part of the time limit that each run of a search for a step may take."""
+
+
+def command(
+    *,
+    out: Path,
+    quick: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 180.0,
+    cluster: str | None = None,
+    sources: Annotated[tuple[str, ...], several] = METHODS,
+) -> int:
+    """Put extreme cases to every method.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    quick
+        Fewer cases, steps to 30 % and three perturbations: less than a minute on 2 cores.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case, its remedies included, or its search for
+        the largest step is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    sources
+        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
+        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+    """
+    check_sources(sources)
+    ask = functools.partial(put, time_limit_s=time_limit)
+    executor = choose(jobs, time_limit, cluster, ask)
+    rows = stability(sources, out, quick=quick, executor=executor)
+    print(report(out))
+    return exit_code(speechless(rows))
+
+
+def speechless(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of sources that gave no result at all; other failures are answers."""
+    failed = {row["source"] for row in rows if row["outcome"] == "failed"}
+    failed -= {row["source"] for row in rows if row["outcome"] != "failed"}
+    return [row for row in rows if row["source"] in failed]
+
+
+def stability(
+    sources: Sequence[str], folder: Path, *, quick: bool, executor: Executor
+) -> list[Row]:
+    """Run what the folder does not hold yet, and write its three tables.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    return fill_folder(
+        folder,
+        "stability",
+        [
+            *matrix_jobs(sources, quick),
+            *step_jobs(sources, quick),
+            *sensitivity_jobs(sources, quick),
+        ],
+        executor=executor,
+        reduce=reduce,
+        settings={"quick": quick, "bands": BANDS},
+        growing={"source": sources},
+        products=PRODUCTS,
+        tables="table",
+    )
+
+
+def matrix_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return a job for each extreme case and each source to which it applies."""
+    return [
+        Job(
+            labels={"table": "stability", "group": case.group, "case": case.name},
+            block=case.block,
+            motion=case.motion,
+            source=source,
+            duration=case.duration,
+            times=np.linspace(case.motion.duration, case.duration, SAMPLES),
+            options=case.options(source),
+        )
+        for case in extremes(quick)
+        for source in sources
+        if case.applies(source)
+    ]
+
+
+def case_of(job: Job) -> Extreme:
+    """Return the extreme case of a job of the matrix."""
+    return next(case for case in extremes(False) if case.name == job.labels["case"])
+
+
+def put(job: Job, source: Source, *, time_limit_s: float) -> Response:
+    """Put a job of any of the three tables to its source."""
+    table = job.labels["table"]
+    if table == "steps":
+        return search(job, source, RUN_SHARE * time_limit_s)
+    if table == "stability":
+        return answer(case_of(job), job, source, time_limit_s)
+    return plain(job, source)
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the columns that follow the labels of a job's table."""
+    table = job.labels["table"]
+    if table == "steps":
+        return reduce_steps(job, response)
+    if table == "sensitivity":
+        return reduce_sensitivity(job, response)
+    return {**summary(job, response), **judged(case_of(job), job.source, response)}
+
+
+def judged(case: Extreme, source: str, response: Response) -> Row:
+    """Return the columns that hold a response against the reference."""
+    exact = simulate(case.block, case.motion)
+    found = judge(case, source, response)
+    return {
+        "exact_outcome": exact.outcome.value,
+        "exact_peak": exact.peak_ratio,
+        "error": found.error,
+        "kappa": condition_number(case, "amplitude"),
+        "energy_growth": found.energy_growth,
+        "slip_widths": response.slip_m / case.block.width,
+        "friction": friction_of(case, source),
+        "friction_needed": exact.friction_needed,
+        "min_normal": exact.min_normal,
+        "invalid": invalidity(case, source, exact),
+        "verdict": found.verdict.value,
+        "reason": found.reason,
+        "remedy": response.remedy if isinstance(response, Remedied) else "",
+    }

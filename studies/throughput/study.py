@@ -1,0 +1,165 @@
+"""Cases per second of a map: every model, and general-purpose integrators on the same cases."""
+
+import math
+import resource
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from analytic.maps import FAILED, Modes
+from analytic.models import MODELS
+from analytic.motion import FloatArray
+from analytic.response import Outcome
+from studies.kit import provenance
+from studies.kit.arguments import Count
+from studies.cases.paper import PULSES
+from studies.kit.runner import own_folder
+from studies.cases.window import Window
+
+PRODUCTS = ("throughput.csv", "findings.txt")
+CASES, QUICK_CASES = 1_000_000, 40_000
+PEER_CASES, QUICK_PEER_CASES = 900, 100
+RUNS = 3
+"""The shortest of so many is reported, the first one, which compiles, apart."""
+
+
+def command(*, out: Path, quick: bool = False, threads: Count | None = None) -> int:
+    """Report how many cases of an overturning map are solved in a second.
+
+    The models on all threads and on one, SciPy's DOP853 and, where it is installed, heyoka.py on
+    a sample of the same cases, on one. All find the outcome only: no peaks, nothing after the
+    pulse but its energy; SciPy follows the free rocking to its turning point.
+
+    Parameters
+    ----------
+    out
+        Folder for the table; made if there is none.
+    quick
+        Fewer cases: a few seconds.
+    threads
+        By default the number of cores.
+    """
+    count, peers = (QUICK_CASES, QUICK_PEER_CASES) if quick else (CASES, PEER_CASES)
+    with own_folder(out, "throughput", PRODUCTS, quick=quick):
+        table = pd.DataFrame(
+            [
+                row
+                for pulse in PULSES
+                for row in measured(Window(pulse=pulse), count, peers, threads or usable())
+            ]
+        )
+        provenance.write_text(out / "throughput.csv", table.to_csv(index=False, na_rep="nan"))
+        provenance.write_text(out / "findings.txt", text(table) + "\n")
+    print(text(table))
+    return 0
+
+
+def usable() -> int:
+    """Return the number of threads to use."""
+    return provenance.usable_cores()
+
+
+def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return the abscissae and amplitudes of a square grid of about `count` points, flat."""
+    side = math.isqrt(count)
+    x, onsets = np.meshgrid(window.centres(side), window.amplitudes(side))
+    return x.ravel(), onsets.ravel()
+
+
+def measured(window: Window, count: int, peers: int, threads: int) -> list[dict[str, object]]:
+    """Return a row for each model, on all threads and on one, and for each peer."""
+    x, onsets = points(window, count)
+    rows, alone = [], 0.0
+    for model in MODELS:
+        for used in dict.fromkeys((threads, 1)):
+            found, seconds = timed(partial(window.modes, x, onsets, model, used))
+            row = _row(window, model, used, len(x), seconds)
+            failed = int((found.mode == FAILED).sum())
+            rows.append({**row, "steps": float(found.steps.mean()), "wrong": failed})
+            if model == "exact" and used == 1:
+                alone = seconds / len(x)
+    rows += [_peer_row(window, name, ask, peers) for name, ask in peer_solvers().items()]
+    return [
+        {**row, "times_exact": float(str(row["us_a_case_and_core"])) / alone / 1e6} for row in rows
+    ]
+
+
+def timed(solve: Callable[[], Modes]) -> tuple[Modes, float]:
+    """Return what a call finds and the shortest of RUNS run times [s], compiling apart."""
+    found, best = solve(), math.inf
+    for _ in range(RUNS):
+        began = time.perf_counter()
+        solve()
+        best = min(best, time.perf_counter() - began)
+    return found, best
+
+
+def _row(window: Window, name: str, threads: int, cases: int, seconds: float) -> dict[str, object]:
+    return {
+        "pulse": window.pulse,
+        "source": name,
+        "threads": threads,
+        "cases": cases,
+        "seconds": seconds,
+        "cases_a_second": cases / seconds,
+        "us_a_case_and_core": 1e6 * seconds * threads / cases,
+    }
+
+
+Overturns = Callable[[Window, float, float], bool]
+"""Says whether the block of a point of the map overturns."""
+
+
+def peer_solvers() -> dict[str, Overturns]:
+    """Return the general-purpose integrators that are installed."""
+    solvers: dict[str, Overturns] = {"dop853 (SciPy)": by_scipy}
+    try:
+        from studies.sources.heyoka_peer import HeyokaSolver
+    except ImportError:
+        return solvers
+    return {**solvers, "heyoka.py": HeyokaSolver()}
+
+
+def by_scipy(window: Window, x: float, onsets: float) -> bool:
+    """Ask SciPy's DOP853 with its events, at a relative tolerance of 1e-9."""
+    from studies.sources.registry import resolve
+
+    response = resolve("dop853").call(*window.case(x, onsets))
+    return bool(response.outcome is Outcome.OVERTURNED)
+
+
+def _peer_row(window: Window, name: str, ask: Overturns, count: int) -> dict[str, object]:
+    x, onsets = points(window, count)
+    right = window.modes(x, onsets).mode >= 0
+    ask(window, float(x[0]), float(onsets[0]))
+    began = time.perf_counter()
+    found = [ask(window, float(a), float(b)) for a, b in zip(x, onsets, strict=True)]
+    row = _row(window, name, 1, len(x), time.perf_counter() - began)
+    return {**row, "steps": math.nan, "wrong": int((np.array(found) != right).sum())}
+
+
+def text(table: pd.DataFrame) -> str:
+    """Return the table for a reader, and the memory that the run took."""
+    shown = table.assign(
+        seconds=table["seconds"].map("{:.3g}".format),
+        cases_a_second=table["cases_a_second"].map("{:,.0f}".format),
+        us_a_case_and_core=table["us_a_case_and_core"].map("{:.3g}".format),
+        steps=table["steps"].map(lambda steps: "-" if math.isnan(steps) else f"{steps:.2f}"),
+        times_exact=table["times_exact"].map("{:.3g}".format),
+    ).rename(columns={"times_exact": "time / exact"})
+    # kilobytes on Linux, bytes on macOS
+    unit = 1024.0**2 if sys.platform == "darwin" else 1024.0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+    return "\n".join(
+        [
+            "Outcomes of overturning maps; time / exact is per case and core, exact on one thread;",
+            "steps are Taylor steps of exact and evaluations of the linear closed forms:",
+            shown.to_string(index=False),
+            f"Peak memory of this process: {peak:.0f} MiB",
+        ]
+    )

@@ -1,0 +1,211 @@
+"""Where the reference is valid: no lift-off, no slip; and what the engines do beyond."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pandas as pd
+
+from analytic import simulate
+from analytic.response import Response
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
+from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
+from studies.sources.registry import resolve
+from studies.validity.cases import ValidityCase, grid, reference_map
+from studies.validity.report import compared, findings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
+MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
+"""Amplitude over g tan alpha, and omega/p, of the map of the reference."""
+
+ONSETS = (1.2, 1.6, 2.4, 3.6, 5.4)
+OMEGAS = (1.0, 2.0, 4.0, 8.0)
+"""The same of the engines' cases."""
+
+FACTORS = (0.5, 0.8, 0.95, 1.05, 1.25)
+QUICK_FACTORS = (0.8, 1.05)
+"""Friction of an engine over the least that the reference needs, ..."""
+
+MOST_NEEDED = 8.0
+"""... where that is no more: near N = 0 it grows without bound, and PyBullet takes 10 at most."""
+
+DEFAULT_SOURCES = ("pybullet:fixed", "mujoco:fixed")
+PRODUCTS = (
+    *("validity.csv", "map.csv", "compared.csv"),
+    *("validity.png", "findings.txt", "provenance.json"),
+)
+
+
+def command(
+    *,
+    out: Path,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    quick: bool = False,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+    cluster: str | None = None,
+) -> int:
+    """Map where the reference is valid, and see what engines do beyond.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    sources
+        Engines, with a preset after a colon, as in pybullet:fixed.
+    quick
+        Every other case of the engines, and fewer frictions.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which an engine's case is given up.
+    cluster
+        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    """
+    check_sources(sources)
+    for name in sources:
+        if resolve(name).kind != "engine":
+            raise BadInputError(f"--sources names {name!r}; it must name engines, which can slide")
+    every = 2 if quick else 1
+    onsets, omegas = ONSETS[::every], OMEGAS[::every]
+    factors = QUICK_FACTORS if quick else FACTORS
+    executor = choose(jobs, time_limit, cluster)
+    rows = validity(list(grid(onsets, omegas)), factors, sources, out, executor=executor)
+    table = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
+    provenance.write_text(out / "map.csv", table.to_csv(index=False, na_rep="nan"))
+    print(report(out))
+    # a block that slid away is what was asked for, and no failure of the study
+    return exit_code([row for row in rows if row["verdict"] == "failed"])
+
+
+def validity(
+    cases: Sequence[ValidityCase],
+    factors: Sequence[float],
+    sources: Sequence[str],
+    folder: Path,
+    *,
+    executor: Executor,
+) -> list[Row]:
+    """Run the engines' cases that the folder does not hold yet, and write its table.
+
+    Every case with the engine's own friction, and those in which the reference needs a friction
+    of MOST_NEEDED or less also with parts of it.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used.
+    """
+    jobs = []
+    for case in cases:
+        needed = simulate(case.block, case.motion).friction_needed
+        for source in sources:
+            jobs.append(_job(case, source, math.nan, {}))
+            if needed <= MOST_NEEDED:
+                jobs += [_job(case, source, f, {"friction": f * needed}) for f in factors]
+    return fill_folder(
+        folder,
+        "validity",
+        jobs,
+        executor=executor,
+        reduce=_reduce,
+        settings={
+            "onsets": sorted({case.onsets for case in cases}),
+            "omegas": sorted({case.omega_over_p for case in cases}),
+            "factors": factors,
+        },
+        growing={"source": sources},
+        products=PRODUCTS,
+    )
+
+
+def _job(case: ValidityCase, source: str, factor: float, options: dict[str, float]) -> Job:
+    return Job(
+        labels={**case.labels, "friction_factor": factor},
+        block=case.block,
+        motion=case.motion,
+        source=source,
+        options=options,
+    )
+
+
+LIFTED_WIDTHS = 3e-5
+"""A pivot that rises by this part of the width has lifted off; three times what it does where the
+reference needs no pull, ..."""
+
+SLID_WIDTHS = 3e-4
+"""... and one that moves along the base by this part has slid, five times the creep of a contact
+that holds."""
+
+LEFT = {"slid": "slid away", "thrown": "flew off"}
+"""Word of a failure's message -> verdict."""
+
+
+def _reduce(job: Job, response: Response) -> Row:
+    row = summary(job, response)
+    slip, hop = response.slip_m / job.block.width, response.hop_m / job.block.width
+    gone = [verdict for word, verdict in LEFT.items() if word in response.message]
+    if response.message:
+        verdict = gone[0] if gone else "failed"
+    elif slip > SLID_WIDTHS:
+        verdict = "slid and lifted off" if hop > LIFTED_WIDTHS else "slid"
+    else:
+        verdict = "lifted off" if hop > LIFTED_WIDTHS else "held"
+    if gone:
+        # an answer of the study: it is not tried again
+        row["outcome"] = "left"
+    return {**row, "slip_widths": slip, "hop_widths": hop, "verdict": verdict}
+
+
+def report(folder: Path) -> str:
+    """Reduce a folder's tables to compared.csv, the drawing and the findings; return these."""
+    from studies.drawing.figures import save_all
+
+    rows = pd.read_csv(folder / "validity.csv", dtype={"message": str})
+    table = pd.read_csv(folder / "map.csv")
+    exact = reference_map(_cases(rows))
+    beside = compared(rows, exact)
+    provenance.write_text(folder / "compared.csv", beside.to_csv(index=False, na_rep="nan"))
+    text = findings(beside, table)
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    save_all(pictures(folder), folder)
+    return text
+
+
+def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
+    named = rows[["aspect", "onsets", "omega_over_p"]].drop_duplicates()
+    return [
+        ValidityCase(aspect=aspect, onsets=onsets, omega_over_p=omega)
+        for aspect, onsets, omega in named.to_numpy(float).tolist()
+    ]
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw a folder's figure from its tables alone."""
+    from studies.validity.figure import draw_validity
+
+    tables = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
+    return {"validity": draw_validity(*tables)}
+
+
+def headline(folder: Path) -> str:
+    """Say in which part of the map the reference holds for a block that survives."""
+    table = pd.read_csv(folder / "map.csv")
+    rocked = table[table["outcome"] == "rocked"]
+    words = [
+        f"H/B {aspect:g}: {(group['min_normal'] < 0.0).mean():.0%}"
+        for aspect, group in rocked.groupby("aspect")
+    ]
+    return (
+        "Of the full-sine pulses that a block survives, the part in which the reference would have "
+        f"to hold its pivot down, so that an engine is right to differ: {', '.join(words)}."
+    )

@@ -1,0 +1,57 @@
+"""Roots on the unit interval: none missed, each once."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.polynomial import Polynomial
+
+from analytic.kernels.polynomial import MAX_DEPTH, ORDER, next_root, slope, to_bernstein, value
+
+
+def all_roots(coefficients):
+    a = np.zeros(ORDER + 1)
+    a[: len(coefficients)] = coefficients
+    pool = np.empty((MAX_DEPTH + 2, ORDER + 1))
+    found, x = [], 0.0
+    while (x := next_root(a, len(coefficients) - 1, x, pool)) <= 1.0:
+        found.append(x)
+    return found
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.floats(-0.6, 1.6), min_size=1, max_size=9), st.floats(0.1, 10))
+def test_the_roots_put_in_come_out(roots, scale):
+    roots = [r for r in roots if abs(r) > 1e-3 and abs(r - 1) > 1e-3]
+    gaps = np.diff(sorted(roots))
+    if not roots or (gaps.size and gaps.min() < 1e-2):
+        return
+    inside = sorted(r for r in roots if 0 < r < 1)
+    found = all_roots((scale * Polynomial.fromroots(roots)).coef)
+    # a root moves by the rounding of the coefficients times its condition number
+    np.testing.assert_allclose(found, inside, atol=1e-6)
+
+
+def test_roots_at_the_points_where_intervals_are_halved():
+    found = all_roots(Polynomial.fromroots([0.25, 0.5, 0.75]).coef)
+    np.testing.assert_allclose(found, [0.25, 0.5, 0.75], atol=1e-14)
+
+
+def test_two_roots_close_together():
+    found = all_roots(Polynomial.fromroots([0.3, 0.3 + 1e-6]).coef)
+    assert len(found) == 2
+
+
+def test_touching_polynomial_without_a_crossing():
+    a = (Polynomial.fromroots([0.3, 0.3]) + 1e-12).coef
+    assert all_roots(a) == []
+
+
+def test_value_slope_and_bernstein_form():
+    a = np.random.default_rng(1).normal(size=ORDER + 1)
+    p = Polynomial(a)
+    assert abs(value(a, ORDER, 0.7) - p(0.7)) < 1e-12
+    assert abs(slope(a, ORDER, 0.7) - p.deriv()(0.7)) < 1e-10
+    b = np.empty(ORDER + 1)
+    to_bernstein(a, ORDER, b)
+    assert b[0] == a[0]
+    assert abs(b[-1] - p(1.0)) < 1e-11

@@ -1,0 +1,337 @@
+"""Every engine under every preset, by what must hold of any engine."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from analytic import simulate
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from analytic.response import Outcome, Response
+from engines import ENGINES, FRAMES, PRESETS, Scene, run
+from engines.drive import _simulate
+from engines.scene import Pose, Step, World
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+TUNED = tuple(name for name in PRESETS if name != "naive")
+
+
+def pulse(
+    onset_ratio: float, omega_over_p: float, half_cycles: int = 1, block: RigidBlock = BLOCK
+) -> SinePulse:
+    """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
+    return SinePulse(
+        amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
+        omega=omega_over_p * block.p,
+        half_cycles=half_cycles,
+    )
+
+
+def scene(motion: SinePulse, **options: object) -> Scene:
+    return Scene(block=BLOCK, motion=motion, **options)  # type: ignore[arg-type]
+
+
+def everything(response: Response) -> tuple[object, ...]:
+    """Return all of a response that must repeat, bit by bit."""
+    return tuple(replace(response, wall_s=0.0).__getstate__())[:8]  # type: ignore[arg-type]
+
+
+@pytest.fixture(params=ENGINES)
+def engine(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(params=PRESETS)
+def preset(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_onset(engine: str, preset: str, frame: str) -> None:
+    """Below g tan(alpha) nothing lifts and above it something does, or the base is not felt."""
+    below = run(engine, scene(pulse(0.95, 1.0), preset=preset, frame=frame))
+    above = run(engine, scene(pulse(1.05, 1.0), preset=preset, frame=frame))
+    assert (below.outcome, below.peak_ratio) == (Outcome.AT_REST, 0.0)
+    assert above.outcome is Outcome.ROCKED
+    assert above.peak_ratio > 0.0
+
+
+def test_mirror(engine: str, preset: str) -> None:
+    """Shaking the other way leans the block the other way."""
+    times = [0.1 * i for i in range(1, 20)]
+    motion = pulse(1.3, 3.0, 2)
+    there = run(engine, scene(motion, preset=preset, times=times))
+    back = run(
+        engine, scene(replace(motion, amplitude=-motion.amplitude), preset=preset, times=times)
+    )
+    assert there.history is not None
+    assert back.history is not None
+    # as it comes, a solver ends its iterations early, and visits the corners in one order
+    tolerance = 1e-9 if preset in TUNED else 1e-3
+    assert there.history.theta == pytest.approx(-back.history.theta, abs=tolerance)
+    assert there.peak_ratio > 0.01
+
+
+def test_rest_stays_rest(engine: str, preset: str) -> None:
+    response = run(engine, scene(pulse(0.5, 1.0), preset=preset, duration=5.0, times=[1.0, 5.0]))
+    assert response.outcome is Outcome.AT_REST
+    assert response.history is not None
+    # the contact may settle, by less than a thousandth of what would topple the block
+    assert abs(response.history.theta).max() < 1e-3 * BLOCK.alpha
+
+
+@pytest.mark.parametrize("preset", TUNED)
+def test_frames_agree(engine: str, preset: str) -> None:
+    """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
+    motion = pulse(1.3, 3.0, 2)
+    peaks = [run(engine, scene(motion, preset=preset, frame=frame)).peak_ratio for frame in FRAMES]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
+    assert peaks[0] > 0.1
+
+
+def test_peak_without_impact(engine: str) -> None:
+    """A peak before any impact: a fixed step is of first order only where the uplift falls in a
+    step, at most p dt late, which at the cube root of the excess is a part 1e-3 of the peak."""
+    motion = pulse(1.3, 2.0)
+    exact = simulate(BLOCK, motion).peak_ratio
+    assert run(engine, scene(motion, preset="fixed")).peak_ratio == pytest.approx(exact, rel=1e-3)
+
+
+def test_peak_after_impact(engine: str) -> None:
+    """An impact falls anywhere in its step, so that its velocity is off by p dt times the
+    acceleration over p times the velocity: a few p dt = 5e-4, doubled in the energy."""
+    motion = pulse(1.3, 3.0, 2)
+    exact = simulate(BLOCK, motion)
+    response = run(engine, scene(motion, preset="fixed"))
+    assert len(response.impacts) == len(exact.impacts) == 1
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2e-2)
+
+
+def test_first_order(engine: str) -> None:
+    """A quarter of the step makes about a quarter of the error, in the mean over cases whose
+    impacts fall anywhere in their steps."""
+    motions = [pulse(1.3, 3.0 + 0.13 * i, 2) for i in range(8)]
+    errors = []
+    for step in (4e-3, 1e-3):
+        ratios = [
+            run(engine, scene(motion, preset="fixed", step=step)).peak_ratio
+            / simulate(BLOCK, motion).peak_ratio
+            for motion in motions
+        ]
+        errors.append(sum(abs(ratio - 1.0) for ratio in ratios) / len(ratios))
+    assert 0.6 < math.log(errors[0] / errors[1], 4.0) < 1.6
+
+
+def test_naive_is_worse_than_fixed(engine: str) -> None:
+    motions = [pulse(1.3, omega, 2) for omega in (2.5, 3.0, 3.5, 4.0)]
+    worst = {}
+    for preset in ("naive", "fixed"):
+        peaks = [run(engine, scene(motion, preset=preset)).peak_ratio for motion in motions]
+        exact = [simulate(BLOCK, motion).peak_ratio for motion in motions]
+        worst[preset] = max(abs(a / b - 1.0) for a, b in zip(peaks, exact, strict=True))
+    assert worst["fixed"] < 0.2 * worst["naive"]
+
+
+def test_impacts_and_rest(engine: str) -> None:
+    """A squat block rocks, loses its speed by Housner's ratio at each impact, and comes to rest."""
+    block = RigidBlock(width=1.0, height=1.5)
+    motion = pulse(1.5, 3.0, 1, block)
+    exact = simulate(block, motion, duration=6.0)
+    response = run(engine, Scene(block=block, motion=motion, preset="fixed", duration=6.0))
+    assert response.outcome is Outcome.ROCKED
+    assert len(response.uplifts) == len(response.rests) == 1
+    # the time of rest is the sum of a geometric series whose ratio carries the error of the step
+    assert response.rests[0] == pytest.approx(exact.rests[0], abs=0.05)
+    for seen, true in zip(response.impacts[:3], exact.impacts, strict=False):
+        assert seen.time == pytest.approx(true.time, abs=0.01)
+        assert seen.ratio == pytest.approx(block.restitution, abs=0.02)
+
+
+def test_overturning(engine: str, preset: str) -> None:
+    response = run(engine, scene(pulse(2.0, 0.5), preset=preset))
+    assert response.outcome is Outcome.OVERTURNED
+    assert response.crossed
+    assert response.peak_ratio == math.inf
+
+
+def test_crossed_is_not_overturned(engine: str) -> None:
+    """The second half of a pulse brings back a block that the first took past alpha."""
+    motion = pulse(3.5, 3.0, 2)
+    exact = simulate(BLOCK, motion)
+    assert (exact.outcome, exact.crossed) == (Outcome.ROCKED, True)
+    response = run(engine, scene(motion, preset="fixed"))
+    assert (response.outcome, response.crossed) == (Outcome.ROCKED, True)
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-2)
+
+
+def test_geometry_can_be_put_back(engine: str) -> None:
+    """Four corners in space move as two in the plane do."""
+    motion = pulse(1.3, 2.0)
+    plane = run(engine, scene(motion, preset="fixed"))
+    space = run(engine, scene(motion, preset="fixed", settings={"planar": False}))
+    assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=1e-3)
+    assert space.peak_ratio != plane.peak_ratio
+
+
+def test_history(engine: str) -> None:
+    """Samples stand where the exact ones do, within the first-order error of one impact."""
+    motion = pulse(1.3, 3.0, 2)
+    times = [0.05 * i for i in range(60)]
+    response = run(engine, scene(motion, preset="fixed", duration=3.0, times=times))
+    exact = simulate(BLOCK, motion, duration=3.0, times=times)
+    assert response.history is not None
+    assert exact.history is not None
+    assert response.history.time == pytest.approx(times)
+    assert response.history.theta == pytest.approx(exact.history.theta, abs=1e-2 * BLOCK.alpha)
+
+
+def test_history_ends_with_the_response(engine: str) -> None:
+    response = run(engine, scene(pulse(2.0, 0.5), preset="fixed", times=[0.1, 0.5, 1e3]))
+    assert response.history is not None
+    assert list(response.history.time) == [0.1, 0.5]
+
+
+def test_repeats_bit_by_bit(engine: str, preset: str) -> None:
+    """Whatever was simulated in between, in whichever process."""
+    first = run(engine, scene(pulse(1.3, 3.0, 2), preset=preset))
+    run(engine, Scene(block=RigidBlock(width=2.0, height=3.0), motion=pulse(1.5, 1.0)))
+    assert everything(run(engine, scene(pulse(1.3, 3.0, 2), preset=preset))) == everything(first)
+
+
+@pytest.mark.parametrize("preset", TUNED)
+def test_a_sliding_block_is_no_rocking_block(engine: str, preset: str) -> None:
+    response = run(engine, scene(pulse(1.3, 1.0), preset=preset, friction=0.05))
+    assert response.outcome is Outcome.FAILED
+    assert "slid" in response.message
+    assert math.isnan(response.peak_ratio)
+
+
+@pytest.mark.parametrize(
+    ("limit", "message"),
+    [({"time_limit_s": 1e-6}, "not decided within 1e-06 s"), ({"max_steps": 9}, "9 steps")],
+)
+def test_limits(engine: str, limit: dict[str, float], message: str) -> None:
+    response = run(engine, scene(pulse(1.3, 1.0), preset="fixed", **limit))
+    assert response.outcome is Outcome.FAILED
+    assert message in response.message
+
+
+def test_too_stiff_a_contact_is_a_failure() -> None:
+    """k dt^2 = 1e6 corrects a penetration a million times over."""
+    stiff = {"stiffness": 1e6}
+    response = run("mujoco", scene(pulse(1.3, 1.0), preset="fixed", settings=stiff))
+    assert response.outcome is Outcome.FAILED
+    assert "thrown" in response.message
+
+
+def test_a_silent_reset_is_a_failure(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo puts a state that is not a number back to its start and goes on."""
+    from engines.adapters import mujoco
+
+    monkeypatch.chdir(str(tmp_path))
+    motion = scene(pulse(1.3, 1.0), preset="fixed")
+    world = mujoco.build(motion)
+    world._data.qpos[2] = math.nan
+    response = _simulate(world, motion)
+    world.close()
+    assert response.outcome is Outcome.FAILED
+    assert "BADQPOS" in response.message
+    assert not list(tmp_path.iterdir())  # type: ignore[attr-defined]
+
+
+class Lost:
+    """A world that hands out what a broken engine might."""
+
+    dt_s = 1e-3
+
+    def __init__(self, pose: Pose) -> None:
+        self._pose = pose
+
+    def step(self, step: Step) -> None:
+        pass
+
+    def pose(self) -> Pose:
+        return self._pose
+
+    def fault(self) -> str:
+        return ""
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("pose", "message"),
+    [
+        (Pose(0.0, 0.75, math.nan, 0.0), "not finite"),
+        (Pose(0.0, math.inf, 0.0, 0.0), "not finite"),
+        (Pose(0.0, 0.75, math.inf, 0.0), "not finite"),
+        (Pose(0.0, 0.5, 0.0, 0.0), "sank 0.25 m"),
+        (Pose(0.0, 2.75, 0.0, 0.0), "thrown 2 m"),
+        (Pose(0.2, 0.75, 0.0, 0.0), "slid 0.2 m"),
+    ],
+)
+def test_poses_that_are_no_rocking_block(pose: Pose, message: str) -> None:
+    world: World = Lost(pose)
+    response = _simulate(world, scene(pulse(1.3, 1.0)))
+    assert response.outcome is Outcome.FAILED
+    assert message in response.message
+
+
+def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A library that takes a setting and does not keep it makes a failed response."""
+    from engines.adapters import bullet
+
+    change = bullet.BulletWorld._change
+
+    def forgetful(self: bullet.BulletWorld, body: int, **wanted: object) -> None:
+        change(self, body, **{**wanted, "lateralFriction": 0.5})
+
+    monkeypatch.setattr(bullet.BulletWorld, "_change", forgetful)
+    response = run("pybullet", scene(pulse(1.3, 1.0), preset="fixed"))
+    assert response.outcome is Outcome.FAILED
+    assert response.message == "friction of the block was set to 10.0 but reads 0.5"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"preset": "best"}, "preset is 'best'; it must be one of naive, fixed"),
+        ({"frame": "moon"}, "frame is 'moon'; it must be one of base, world"),
+        ({"density": -1.0}, "density is -1.0; it must be positive"),
+        ({"step": 0.0}, "step is 0.0; it must be positive"),
+        ({"duration": 0.1}, "duration is 0.1; it must be at least the motion's"),
+        ({"times": [1.0, 0.5]}, "they must increase"),
+    ],
+)
+def test_a_scene_refuses_what_is_not_allowed(options: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        scene(pulse(1.3, 1.0), **options)
+
+
+def test_misuse_is_raised(engine: str) -> None:
+    with pytest.raises(ValueError, match="setting is 'bounce'; it must be one of geometry, planar"):
+        run(engine, scene(pulse(1.3, 1.0), preset="fixed", settings={"bounce": 1}))
+    with pytest.raises(ValueError, match="geometry is 'ball'; it must be one of box, corners"):
+        run(engine, scene(pulse(1.3, 1.0), preset="fixed", settings={"geometry": "ball"}))
+    with pytest.raises(ValueError, match="engine is 'ode'; it must be one of pybullet, mujoco"):
+        run("ode", scene(pulse(1.3, 1.0)))
+
+
+def test_an_engine_is_imported_when_named_and_says_nothing(engine: str) -> None:
+    other = {"pybullet": "mujoco", "mujoco": "pybullet"}[engine]
+    script = (
+        "import sys, engines, engines.scene\n"
+        "from analytic.block import RigidBlock\n"
+        "from analytic.motion import SinePulse\n"
+        "assert not {'pybullet', 'mujoco'} & set(sys.modules)\n"
+        "block = RigidBlock(width=0.5, height=1.5)\n"
+        "scene = engines.Scene(block=block, motion=SinePulse(amplitude=4.0, omega=20.0))\n"
+        f"engines.run({engine!r}, scene)\n"
+        f"assert {other!r} not in sys.modules\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")

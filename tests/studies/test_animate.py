@@ -1,0 +1,91 @@
+"""Films: what is shown, which case, what is refused."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from analytic import RigidBlock, SinePulse
+from studies.__main__ import run
+from studies.animate.study import most_different, shown
+from studies.kit.arguments import BadInputError
+from studies.kit.executors import Local
+from studies.drawing.film import outline
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
+
+
+@pytest.mark.parametrize("theta", [0.3, -0.3])
+def test_a_leaning_block_stands_on_one_corner(theta):
+    corners = outline(BLOCK, theta)
+    lowest = corners[np.argmin(corners[:, 1])]
+    assert lowest == pytest.approx([math.copysign(0.25, theta), 0.0])
+    assert corners[:, 1].min() >= 0.0
+    # the top leans the same way
+    assert math.copysign(1.0, corners[2:, 0].mean()) == math.copysign(1.0, theta)
+    sides = np.linalg.norm(np.diff(corners, axis=0, append=corners[:1]), axis=1)
+    assert sides == pytest.approx([0.5, 1.5, 0.5, 1.5])
+
+
+def test_an_overturned_block_lies():
+    pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    times = np.linspace(0.0, 4.0, 60)
+    rows = shown(BLOCK, pulse, ("exact", "housner"), times, Local(1, 10.0))
+    assert abs(rows[1]["theta"][-1]) == pytest.approx(math.pi / 2)
+    assert abs(rows[0]["theta"]).max() < BLOCK.alpha
+    flat = outline(BLOCK, float(rows[1]["theta"][-1]))
+    assert flat[:, 1].max() == pytest.approx(0.5)
+
+
+def sweep(folder, peaks):
+    common = {"figure": 8, "pulse": "full-sine", "excess_g": 0.1, "aspect": 3, "width_m": 0.5}
+    rows = [
+        {**common, "omega_over_p": omega, "source": source, "peak_ratio": peak}
+        for omega, pair in peaks.items()
+        for source, peak in zip(("exact", "housner"), pair, strict=True)
+    ]
+    pd.DataFrame(rows).to_csv(folder / "sweep.csv", index=False)
+
+
+def test_the_case_is_the_one_where_the_sources_differ_most(tmp_path):
+    sweep(tmp_path, {1.0: (0.5, 0.6), 1.1: (0.1, 0.2), 1.2: (math.inf, math.inf)})
+    assert most_different(tmp_path, ["exact", "housner"]).omega_over_p == 1.1
+    sweep(tmp_path, {1.0: (0.5, math.inf), 1.1: (0.1, 0.9), 1.2: (0.3, math.inf)})
+    assert most_different(tmp_path, ["exact", "housner"]).omega_over_p == 1.2
+    with pytest.raises(BadInputError, match="lacks mujoco"):
+        most_different(tmp_path, ["mujoco"])
+
+
+def test_a_film_moves(tmp_path):
+    film = tmp_path / "film.gif"
+    arguments = [*CASE, "--sources", "exact", "modified", "--slower", "0.2", "--out", str(film)]
+    assert run(["animate", *arguments]) == 0
+    with Image.open(film) as images:
+        assert images.n_frames > 10
+        first = np.asarray(images.convert("RGB"), dtype=float)
+        images.seek(images.n_frames // 3)
+        later = np.asarray(images.convert("RGB"), dtype=float)
+    assert np.abs(first - later).max() > 100.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([*CASE, "--out", "film.avi"], ("--out", ".gif")),
+        ([*CASE, "--out", "/nowhere/film.gif"], ("--out", "folder")),
+        (["--out", "film.gif"], ("--width", "missing")),
+        ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
+        (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
+        ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
+    ],
+)
+def test_bad_input_is_one_clear_line(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["animate", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert all(word in error for word in words)
+    assert list(tmp_path.iterdir()) == []

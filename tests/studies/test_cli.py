@@ -1,0 +1,230 @@
+"""The command line: bad input, JSON, exit codes, pipes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from analytic.response import Response
+from studies.__main__ import COMMANDS, run
+from studies.catalogue import CHAPTERS
+from studies.sources.registry import SOURCES, Effort, Source
+
+ROOT = Path(__file__).parent.parent
+CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
+FIELDS = ["source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"]
+
+
+def rocking(*arguments, **options):
+    return subprocess.run(
+        [sys.executable, "-m", "studies", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        timeout=60.0,
+        **options,
+    )
+
+
+def compare_with(**changed):
+    arguments = ["compare", *CASE]
+    for name, value in changed.items():
+        arguments[arguments.index(f"--{name}") + 1] = value
+    return arguments
+
+
+# (command, the argument that is named, the value that is shown, part of what is allowed)
+BAD_INPUT = [
+    (compare_with(width="0"), "--width", "'0'", "positive"),
+    (compare_with(height="-1.5"), "--height", "'-1.5'", "positive"),
+    (compare_with(width="inf"), "--width", "'inf'", "finite"),
+    (compare_with(height="nan"), "--height", "'nan'", "finite"),
+    (compare_with(width="wide"), "--width", "'wide'", "number"),
+    (compare_with(amplitude="0"), "--amplitude", "'0'", "positive"),
+    (compare_with(amplitude="-0.4"), "--amplitude", "'-0.4'", "positive"),
+    (compare_with(amplitude="-inf"), "--amplitude", "'-inf'", "positive"),
+    (compare_with(omega="0"), "--omega", "'0'", "positive"),
+    (compare_with(omega="nan"), "--omega", "'nan'", "positive"),
+    (compare_with(omega="fast"), "--omega", "'fast'", "positive"),
+    (compare_with(amplitude="1e308"), "--amplitude", "inf", "finite"),
+    (["compare", *CASE, "--sources", "exact", "bullet"], "--sources", "'bullet'", "modified"),
+    (["compare", *CASE, "--sources", "mujoco:best"], "--sources", "'mujoco:best'", "naive"),
+    (["compare", *CASE, "--sources", "exact", "exact"], "--sources", "'exact'", "once"),
+    (["compare", *CASE, "--sources"], "--sources", "empty", "housner"),
+    (["compare", *CASE, "--pulse", "quarter"], "--pulse", "quarter", "half-sine"),
+    (["compare", *CASE, "--half-cycles", "1.5"], "--half-cycles", "'1.5'", "whole"),
+    (["compare", *CASE, "--duration", "0.5"], "--duration", "0.5", "0.999998 s"),
+    (["compare", *CASE, "--step", "-1"], "--step", "'-1'", "positive"),
+    (["compare", *CASE, "--jobs", "0"], "--jobs", "'0'", "positive"),
+    (["compare", *CASE, "--plot", "a.txt"], "--plot", "'a.txt'", ".png"),
+    (["compare", *CASE, "--plot", "/nowhere/a.png"], "--plot", "'/nowhere/a.png'", "written"),
+    (["compare", *CASE[2:]], "--width", "", "requires"),
+    (["compare", *CASE, "--hight", "2"], "--hight", "", "--height"),
+    (["sweep", "--figure", "5", "--out", "DIR"], "--figure", "'5'", "6, 7, 8, 9"),
+    (["sweep", "--figure", "6.5", "--out", "DIR"], "--figure", "'6.5'", "6, 7, 8, 9"),
+    (["sweep", "--figure", "6", "6", "--out", "DIR"], "--figure", "6", "once"),
+    (["sweep", "--sources", "nobody", "--out", "DIR"], "--sources", "'nobody'", "mujoco"),
+    (["sweep", "--out", "/dev/null/results"], "--out", "'/dev/null/results'", "folder"),
+    (["sweep", "--time-limit", "0", "--out", "DIR"], "--time-limit", "'0'", "positive"),
+    (["histories", "--figure", "3", "--out", "DIR"], "--figure", "'3'", "2, 4, 5"),
+    (["redraw", "DIR"], "FOLDER", "DIR", "sweep.csv"),
+    (["weep"], "weep", "", "sweep"),
+    (["contact", "--out", ""], "--out", "empty", "given"),
+    (["precision", "--out", "DIR", "--time-limit", "nan"], "--time-limit", "'nan'", "positive"),
+    (["stability", "--out", "DIR", "--sources", "exact", "exact"], "--sources", "exact", "once"),
+    (["free", "--out", "DIR", "--jobs", "1.5"], "--jobs", "'1.5'", "whole"),
+    (["report", "--out", "/dev/null"], "--out", "'/dev/null'", "folder"),
+    (["cost", "--out", "/dev/null"], "--out", "'/dev/null'", "folder"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "name", "value", "allowed"), BAD_INPUT)
+def test_bad_input_is_one_clear_line(arguments, name, value, allowed, tmp_path, capsys):
+    folder = tmp_path / "DIR"
+    arguments = [str(folder) if argument == "DIR" else argument for argument in arguments]
+    assert run(arguments) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert len(output.err.splitlines()) == 1
+    for part in (name, value, allowed):
+        assert part in output.err
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize(("arguments", "name", "value", "allowed"), BAD_INPUT[::3])
+def test_bad_input_ends_the_process_with_2(arguments, name, value, allowed, tmp_path):
+    done = rocking(*[tmp_path / "DIR" if item == "DIR" else item for item in arguments])
+    assert (done.returncode, done.stdout) == (2, "")
+    assert len(done.stderr.splitlines()) == 1
+    assert name in done.stderr
+    assert value in done.stderr
+
+
+def test_json_is_one_object_a_line_and_nothing_else():
+    sources = ["exact", "housner", "modified", "pybullet", "mujoco"]
+    arguments = ["compare", *CASE, "--pulse", "full-sine", "--sources", *sources, "--json"]
+    done = rocking(*arguments)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    rows = [json.loads(line, parse_constant=pytest.fail) for line in done.stdout.splitlines()]
+    assert [row["source"] for row in rows] == sources
+    assert all(list(row) == FIELDS for row in rows)
+    by_source = {row["source"]: row for row in rows}
+    assert by_source["housner"]["outcome"] == "overturned"
+    assert by_source["housner"]["peak_ratio"] is None
+    for name in ("exact", "modified", "pybullet", "mujoco"):
+        assert by_source[name]["outcome"] == "rocked"
+        assert by_source[name]["peak_ratio"] == pytest.approx(0.3852, rel=0.07)
+        assert by_source[name]["impacts"] >= 3
+        assert by_source[name]["steps"] > 0
+        assert by_source[name]["wall_s"] > 0.0
+
+
+def test_a_gentle_pulse_leaves_the_block_at_rest(capsys):
+    assert run([*compare_with(amplitude="0.2"), "--sources", "exact", "housner", "--json"]) == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [(row["outcome"], row["peak_ratio"]) for row in rows] == [("at rest", 0.0)] * 2
+
+
+def test_the_table_fits_the_screen_and_states_its_window(capsys, tmp_path):
+    plot = tmp_path / "histories.png"
+    arguments = ["compare", *CASE, "--duration", "2.5", "--sources", "rk4", "average-acceleration"]
+    assert run([*arguments, "housner", "--plot", str(plot)]) == 0
+    text = capsys.readouterr().out
+    assert max(len(line) for line in text.splitlines()) <= 100
+    assert "observed for 2.5 s" in text
+    assert "η = 0.85" in text
+    assert "0.850000" in text
+    assert "exact " not in text.splitlines()[-3]
+    assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_half_cycles_replace_the_pulse(capsys):
+    names = ["--sources", "exact", "--json", "--duration", "3"]
+    peaks = []
+    for pulse in (["--half-cycles", "2"], ["--pulse", "full-sine"], ["--half-cycles", "3"]):
+        assert run(["compare", *CASE, *pulse, *names]) == 0
+        peaks.append(json.loads(capsys.readouterr().out)["peak_ratio"])
+    assert peaks[0] == peaks[1] != peaks[2]
+
+
+def test_a_failed_row_is_named_and_the_exit_code_is_1(monkeypatch, capsys, tmp_path):
+    def never(block, motion, *, duration, times):
+        return Response.failure("it never converged")
+
+    monkeypatch.setitem(SOURCES, "never", Source("model", never))
+    assert run(["compare", *CASE, "--sources", "exact", "never", "--json"]) == 1
+    output = capsys.readouterr()
+    assert output.err.splitlines() == ["failed: never: it never converged"]
+    assert json.loads(output.out.splitlines()[1])["peak_ratio"] is None
+    arguments = ["sweep", "--figure", "6", "--sources", "exact", "never", "--out", str(tmp_path)]
+    assert run(arguments) == 1
+    errors = capsys.readouterr().err.splitlines()
+    assert len(errors) == 11
+    assert "figure 6, aspect 2, width_m 0.5, omega_over_p 0.1" in errors[0]
+    assert errors[-1] == "failed: 230 more"
+    table = pd.read_csv(tmp_path / "sweep.csv", keep_default_na=False)
+    failed = table[table["outcome"] == "failed"]
+    assert len(failed) == 240
+    assert set(failed["peak_ratio"]) == {"nan"}
+    assert set(failed["message"]) == {"it never converged"}
+
+
+def test_a_sweep_through_the_command_line(tmp_path):
+    arguments = ["--figure", "6", "7", "--sources", "exact", "modified", "--jobs", "2"]
+    done = rocking("sweep", *arguments, "--out", tmp_path / "made" / "here")
+    # no progress bar in a pipe
+    assert (done.returncode, done.stderr) == (0, "")
+    made = {path.name for path in (tmp_path / "made" / "here").iterdir()}
+    assert made >= {
+        *("sweep.csv", "summary.csv", "findings.txt", "provenance.json"),
+        *("figure-6.png", "figure-7.png"),
+    }
+    table = pd.read_csv(tmp_path / "made" / "here" / "sweep.csv")
+    assert table.groupby(["figure", "source"]).size().to_dict() == {
+        (figure, source): 240 for figure in (6, 7) for source in ("exact", "modified")
+    }
+    assert not table.duplicated(["figure", "aspect", "width_m", "omega_over_p", "source"]).any()
+
+
+def test_help_explains_units():
+    done = rocking("--help")
+    assert all(name in done.stdout for name in COMMANDS)
+    text = " ".join(rocking("compare", "--help").stdout.split())
+    for unit in ("[m]", "[g]", "[rad/s]", "[s]"):
+        assert unit in text
+    assert all(source in text for source in SOURCES)
+
+
+def test_a_reader_who_leaves_early_is_no_error():
+    command = [sys.executable, "-m", "studies", "compare", *CASE, "--sources", "exact"]
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        process.stdout.close()
+        errors = process.stderr.read()
+    assert errors == b""
+    assert process.returncode == 141
+
+
+def test_accuracy_and_step_reach_only_the_sources_they_are_for():
+    effort = Effort(step=1e-3, accuracy="tight")
+    assert effort.options("exact") == {}
+    assert effort.options("rk4") == {"step": 1e-3}
+    assert effort.options("pybullet:fixed") == {"step": 1e-3}
+    assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}
+
+
+@pytest.mark.parametrize("study", [chapter.study for chapter in CHAPTERS if chapter.quick])
+def test_a_table_of_unknown_origin_is_left_alone(study, tmp_path, capsys):
+    chapter = next(chapter for chapter in CHAPTERS if chapter.study == study)
+    table = tmp_path / chapter.source
+    table.write_text("mine")
+    assert run(chapter.command_line(tmp_path, full=False)) == 2
+    assert "unknown origin" in capsys.readouterr().err
+    assert table.read_text() == "mine"
+    assert run(["redraw", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

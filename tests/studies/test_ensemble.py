@@ -1,0 +1,262 @@
+"""Ensembles: families of motions, fragility, agreement one by one and in distribution."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.stats import CensoredData, binomtest, lognorm, norm
+
+from analytic import Outcome, Record, RigidBlock, simulate
+from studies import respond
+from studies.__main__ import run
+from studies.ensemble.agreement import agreement, confusion
+from studies.ensemble.study import drawn, ensemble_cases
+from studies.ensemble.report import curves, stripes
+from studies.ensemble.fragility import (
+    Fit,
+    bounds,
+    choose,
+    fit_lognormal,
+    fragilities,
+    resampled_fits,
+    share_bounds,
+)
+from studies.cases.motions import FAMILIES
+
+LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_family_is_reproducible_and_of_unit_peak(family):
+    one, again, other = (FAMILIES[family](seed) for seed in (5, 5, 6))
+    assert isinstance(one, Record)
+    assert one == again
+    assert one != other
+    assert one.peak == pytest.approx(1.0, rel=1e-12)
+
+
+def test_cases_are_scaled_to_their_intensity():
+    cases = list(ensemble_cases("near-fault", drawn("near-fault", 3, 1)))
+    assert len(cases) == 3 * 3 * 6
+    for case, motion in cases[::7]:
+        block = RigidBlock(width=case.width_m, height=case.height_m)
+        onset = 9.81 * math.tan(block.alpha)
+        assert motion.peak == pytest.approx(case.intensity * onset, rel=1e-12)
+    gentle = next(ensemble_cases("noise", drawn("noise", 1, 1), intensities=[0.999]))
+    assert simulate(gentle[0].block, gentle[1]).outcome is Outcome.AT_REST
+
+
+def capacities(seed, count=40, median=2.6, beta=0.35):
+    drawn = np.random.default_rng(seed).normal(math.log(median), beta, count)
+    return np.exp(drawn)[:, None] <= LEVELS
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_fit_is_scipys_of_censored_capacities(seed):
+    """An overturning says that the capacity lies below, a survival that it lies above."""
+    overturned = capacities(seed)
+    fit = fit_lognormal(LEVELS, overturned.sum(axis=0).astype(float), np.full(6, 40.0))
+    levels = np.broadcast_to(LEVELS, overturned.shape)
+    censored = CensoredData(left=levels[overturned], right=levels[~overturned])
+    beta, _, median = lognorm.fit(censored, floc=0)
+    assert fit.median == pytest.approx(median, rel=1e-4)
+    assert fit.beta == pytest.approx(beta, rel=1e-3)
+    expected = norm.cdf(np.log(LEVELS / fit.median) / fit.beta)
+    assert fit.probability(LEVELS) == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_fit_recovers_what_was_put_in():
+    """With 20 000 motions the median is known to 0.3 %."""
+    overturned = capacities(1, 20_000)
+    fit = fit_lognormal(LEVELS, overturned.sum(axis=0).astype(float), np.full(6, 2e4))
+    assert fit.median == pytest.approx(2.6, rel=0.01)
+    assert fit.beta == pytest.approx(0.35, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("overturned", "median"),
+    [
+        ([0, 0, 0, 8, 8, 8], math.sqrt(2.5 * 3.0)),
+        ([0, 0, 3, 8, 8, 8], 2.5),
+        ([0] * 6, math.inf),
+        ([8] * 6, 0.0),
+    ],
+)
+def test_counts_that_hold_no_spread(overturned, median):
+    fit = fit_lognormal(LEVELS, np.array(overturned, float), np.full(6, 8.0))
+    assert fit == Fit(pytest.approx(median), 0.0)
+    steps = fit.probability(np.array([1e-3, 1e3]))
+    assert steps.tolist() == [float(median == 0.0), float(median < math.inf)]
+
+
+def test_bounds_hold_the_truth_as_often_as_they_say():
+    """95 % bounds of 24 ensembles of 40 motions: fewer than 19 hits have a chance of 1e-3."""
+    hits = 0
+    for seed in range(24):
+        overturned = capacities(seed).astype(float)
+        fits = resampled_fits(LEVELS, overturned, np.ones((40, 6)), choose(40, resamples=40))
+        low, high = bounds(np.array([fit.median for fit in fits]))
+        hits += low <= 2.6 <= high
+    assert hits >= 19
+
+
+def test_the_bounds_of_a_share_are_clopper_pearsons():
+    low, high = share_bounds(3, 20)
+    # the shares at which so many or more, so many or fewer, have the chance 2.5 %
+    assert binomtest(3, 20, low, alternative="greater").pvalue == pytest.approx(0.025, rel=1e-6)
+    assert binomtest(3, 20, high, alternative="less").pvalue == pytest.approx(0.025, rel=1e-6)
+    assert share_bounds(0, 0) == (0.0, 1.0)
+
+
+def made_up(change):
+    """Return rows of 30 motions: exact, and a source that differs from it as `change` says."""
+    draw = np.random.default_rng(3)
+    rows = []
+    for motion in range(30):
+        capacity = math.exp(draw.normal(math.log(2.6), 0.4))
+        for level in LEVELS:
+            peaks = {"exact": level / capacity, "other": change(level / capacity, motion)}
+            rows += [
+                {
+                    "width_m": 0.5,
+                    "height_m": 1.5,
+                    "motion": motion,
+                    "intensity": level,
+                    "source": source,
+                    "outcome": "overturned" if peak > 1 else "rocked",
+                    "peak_ratio": math.inf if peak > 1 else peak,
+                }
+                for source, peak in peaks.items()
+            ]
+    return pd.DataFrame(rows)
+
+
+def test_a_source_that_is_exact_agrees_in_all():
+    rows = made_up(lambda peak, _: peak)
+    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    assert (row["right"], row["false"], row["missed"], row["predicted"]) == (180, 0, 0, 1.0)
+    assert (row["ks"], row["ks_p"], row["mcnemar_p"]) == (0.0, 1.0, 1.0)
+    assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
+    diagonal = confusion(rows)
+    assert (diagonal["outcome"] == diagonal["exact_outcome"]).all()
+
+
+def test_a_source_that_scatters_is_wrong_one_by_one_and_right_in_distribution():
+    """Peaks exchanged among motions: no single one is predicted, their distribution is exact."""
+    rows = made_up(lambda peak, _: peak)
+    other = rows["source"] == "other"
+    for level in LEVELS:
+        here = other & (rows["intensity"] == level)
+        columns = ["outcome", "peak_ratio"]
+        rows.loc[here, columns] = np.roll(rows.loc[here, columns].to_numpy(), 7, axis=0)
+    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    assert row["predicted"] < 0.6
+    assert row["median_error"] > 0.1
+    assert row["ks"] == 0.0
+    assert row["false"] == row["missed"] > 0
+    assert row["mcnemar_p"] == pytest.approx(1.0)
+    assert row["capacity_ratio"] == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_source_that_is_biased_is_found_out():
+    rows = made_up(lambda peak, _: 1.5 * peak)
+    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    assert row["capacity_ratio"] == pytest.approx(1 / 1.5, abs=0.06)
+    assert row["ratio_high"] < 0.9
+    assert row["mcnemar_p"] < 1e-6
+    assert row["ks_rejected"] >= 2
+    assert row["missed"] == 0 < row["false"]
+
+
+def test_failed_rows_count_as_failed_and_not_as_survivors():
+    rows = made_up(lambda peak, _: peak)
+    lost = rows.index[(rows["source"] == "other") & (rows["intensity"] == 4.0)][:5]
+    rows.loc[lost, "outcome"], rows.loc[lost, "peak_ratio"] = "failed", math.nan
+    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    assert (row["failed"], row["right"]) == (5, 175)
+    # its capacity is held against the exact one of the same 175 cases
+    assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
+    assert row["predicted"] == pytest.approx(175 / 180)
+    table = stripes(rows).set_index(["source", "intensity"])
+    assert table.loc[("other", 4.0), "cases"] == 25
+    assert table["share_low"].le(table["share"]).all()
+    assert table["share_high"].ge(table["share"]).all()
+
+
+def test_curves_rise_between_their_bounds():
+    rows = made_up(lambda peak, _: peak)
+    table = curves(rows, fragilities(rows))
+    for _, curve in table.groupby("source"):
+        assert (np.diff(curve["probability"]) >= 0).all()
+        assert (curve["low"] <= curve["probability"] + 1e-9).all()
+        assert (curve["high"] >= curve["probability"] - 1e-9).all()
+
+
+def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys):
+    arguments = ["ensemble", "--out", str(tmp_path), "--quick", "--motions", "3", "--jobs", "1"]
+    assert run([*arguments, "--sources", "modified"]) == 0
+    text = capsys.readouterr().out
+    assert "single responses predicted" in text
+    assert text == (tmp_path / "findings.txt").read_text()
+    assert len(pd.read_csv(tmp_path / "ensemble.csv")) == 3 * 3 * 3
+    for name in ("stripes", "curves", "agreement", "confusion"):
+        assert len(pd.read_csv(tmp_path / f"{name}.csv")) > 1
+    (tmp_path / "ensemble.png").unlink()
+    assert run(["redraw", str(tmp_path)]) == 0
+    assert (tmp_path / "ensemble.png").stat().st_size > 20_000
+
+
+def test_records_of_the_users_own(tmp_path, capsys):
+    paths = []
+    for seed in (1, 2):
+        motion = FAMILIES["ricker"](seed)
+        table = np.column_stack([motion.breakpoints, motion.samples])
+        paths.append(str(tmp_path / f"{seed}.csv"))
+        np.savetxt(paths[-1], table, header="units: m/s2", fmt="%.12g")
+    arguments = ["ensemble", "--quick", "--sources", "housner", "--out", str(tmp_path / "out")]
+    assert run([*arguments, "--records", *paths]) == 0
+    assert "2 motions of 'records'" in capsys.readouterr().out
+    rows = pd.read_csv(tmp_path / "out" / "ensemble.csv")
+    block = RigidBlock(width=0.5, height=1.5)
+    first = rows[(rows["source"] == "exact") & (rows["strength"] == 1)].iloc[0]
+    motion = FAMILIES["ricker"](1).scaled_to(first["intensity"] * 9.81 / 3)
+    # the file holds twelve digits
+    assert first["peak_ratio"] == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--records", "FILE", "--seed", "2"], "--seed is 2; it may be given only without --rec"),
+        (["--records", "FILE", "--family", "noise"], "--family is noise"),
+        (["--records", "FILE", "FILE"], "twice"),
+        (["--records", "FILE"], "it is zero throughout"),
+        (["--records", "/nowhere"], "--records is '/nowhere'; it must be a file"),
+        (["--units", "g"], "--units is g; it may be given only with --records"),
+        (["--family", "wind"], "--family"),
+    ],
+)
+def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
+    path = tmp_path / "still.csv"
+    path.write_text("# units: g\n0 0\n0.1 0\n0.2 0\n")
+    given = [str(path) if option == "FILE" else option for option in options]
+    assert run(["ensemble", "--out", str(tmp_path / "out"), *given]) == 2
+    errors = capsys.readouterr().err
+    assert len(errors.splitlines()) == 1
+    assert words in errors
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_block_that_leans_in_a_soft_contact_comes_to_rest():
+    """It lay with both corners 1e-8 m deep in MuJoCo's base, taken for a swing: 500 000 steps.
+    A record of 1201 samples should take some steps of 1/200 p each, and some tens an impact."""
+    case, motion = next(
+        (case, motion)
+        for case, motion in ensemble_cases("noise", drawn("noise", 17, 1))
+        if (case.motion, case.height_m, case.intensity) == (16, 2.0, 1.5)
+    )
+    response = respond("mujoco", case.block, motion)
+    exact = simulate(case.block, motion)
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
+    assert response.steps < 10 * (motion.samples.size + 200 * case.block.p * motion.duration)

@@ -1,0 +1,85 @@
+"""Free rocking of the sources against the closed forms."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from analytic import RigidBlock, SinePulse, peak_ratios, simulate
+from analytic.response import Outcome
+from studies.free import study as free
+from studies.kit.executors import Local
+from studies.free.study import (
+    OMEGA_OVER_P,
+    crest,
+    next_amplitude,
+    reduce,
+    released,
+    tilting_amplitude,
+    turning_points,
+)
+from studies.kit.jobs import ask
+from studies.sources.registry import SOURCES, resolve
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+
+
+@pytest.mark.parametrize("model", ["exact", "housner", "modified"])
+@pytest.mark.parametrize("tilt", [0.1, 0.9])
+def test_the_pulse_tilts_the_block_as_asked_and_is_over_by_then(model, tilt):
+    amplitude = tilting_amplitude(BLOCK, tilt, model)
+    peak, _ = peak_ratios(BLOCK.alpha, amplitude, OMEGA_OVER_P, 1, model)
+    assert float(peak) == pytest.approx(tilt, rel=1e-10)
+    pulse = SinePulse(amplitude=amplitude * 9.81, omega=OMEGA_OVER_P * BLOCK.p)
+    window = pulse.duration + 1.0
+    times = np.linspace(0, window, 4000)
+    history = simulate(BLOCK, pulse, model, duration=window, times=times).history
+    assert times[np.argmax(np.abs(history.theta))] > pulse.duration
+
+
+@pytest.mark.parametrize("model", ["housner", "modified"])
+def test_next_amplitude_is_that_of_the_linear_energy(model):
+    saddle = BLOCK.alpha if model == "housner" else math.tan(BLOCK.alpha)
+    theta = 0.4 * BLOCK.alpha
+    after = next_amplitude(BLOCK, theta, model)
+    energy, later = (x * (2 * saddle - x) for x in (theta, after))
+    assert later == pytest.approx(BLOCK.restitution**2 * energy, rel=1e-13)
+
+
+def test_crest_of_a_parabola_between_samples():
+    t = np.linspace(0, 1, 21)
+    theta = 1.0 - (t - 0.513) ** 2
+    assert crest(theta, np.arange(21)) == pytest.approx(1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(("source", "allowed"), [("exact", 1e-9), ("modified", 1e-9)])
+def test_models_rock_as_their_closed_forms(source, allowed):
+    job = released(2.0, 0.5, source)
+    response = ask(job, resolve(source))
+    assert len(turning_points(response)) == free.SWINGS + 1
+    row = reduce(job, response)
+    assert row["swings"] == free.SWINGS
+    # a parabola through samples of a crest
+    assert row["period_error"] < allowed
+    assert row["decay_error"] < allowed
+
+
+@pytest.mark.parametrize("engine", [name for name in SOURCES if SOURCES[name].kind == "engine"])
+def test_engines_rock_as_the_closed_forms(engine):
+    job = released(3.0, 0.7, engine)
+    row = reduce(job, ask(job, resolve(engine)))
+    # the band of the sweep
+    assert row["period_error"] < 1e-4
+    assert row["decay_error"] < 1e-4
+
+
+def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):
+    def fails(*_, **__):
+        raise RuntimeError("no")
+
+    source = resolve("exact")
+    monkeypatch.setitem(SOURCES, "fails", type(source)("model", fails))
+    rows = free.free(["exact", "fails"], tmp_path, quick=True, executor=Local(1, 10.0))
+    assert {row["outcome"] for row in rows if row["source"] == "fails"} == {Outcome.FAILED.value}
+    assert re.search(r"^fails +- -", free.report(tmp_path), re.MULTILINE)

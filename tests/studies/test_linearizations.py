@@ -1,0 +1,68 @@
+"""The eight linearizations: the named ones among them, what changes what, the page."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import MODELS, peak_ratios
+from studies.linearizations import study as linearizations
+from studies.page import redraw
+from studies.linearizations.study import NAMED, VARIANTS, grid, held
+
+
+@pytest.mark.parametrize(("changed", "name"), NAMED.items())
+def test_the_named_models_are_among_the_variants(changed, name):
+    alpha = np.linspace(0.05, 1.2, 9)
+    for ours, theirs in zip(
+        VARIANTS[changed].constants(alpha), MODELS[name].constants(alpha), strict=True
+    ):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-15)
+
+
+@pytest.mark.parametrize("changed", VARIANTS)
+def test_each_change_is_what_it_says(changed):
+    onset, frequency, saddle = changed
+    law = VARIANTS[changed].law(0.6, 0.7)
+    assert law.onset == pytest.approx(math.tan(0.6) if onset else 0.6)
+    assert law.k == pytest.approx(math.sqrt(math.cos(0.6)) if frequency else 1.0)
+    assert law.saddle == pytest.approx(math.tan(0.6) if saddle else 0.6)
+
+
+def test_the_saddle_alone_scales_the_rotation_and_changes_no_outcome():
+    """A linear model's equation holds for any multiple of y that scales saddle and forcing."""
+    cases = grid("paper").iloc[::7]
+    posed = (np.arctan(1.0 / cases["aspect"]), *cases.iloc[:, 1:].to_numpy().T)
+    for onset, frequency in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        at_alpha, outcome = peak_ratios(*posed, model=VARIANTS[onset, frequency, 0])
+        at_tangent, same = peak_ratios(*posed, model=VARIANTS[onset, frequency, 1])
+        # but for a block whose side touches the ground, at 90 degrees whatever its saddle
+        assert np.mean(outcome == same) > 0.99
+        both = np.isfinite(at_alpha) & np.isfinite(at_tangent)
+        scale = (np.tan(posed[0]) / posed[0]).to_numpy()
+        np.testing.assert_allclose(at_tangent[both], (scale * at_alpha)[both], rtol=1e-11)
+
+
+def test_grids_have_no_copies_and_errors_are_against_the_exact_peak():
+    assert len(grid("paper")) == 480
+    assert not grid("wide").duplicated().any()
+    errors = held("paper")
+    row = errors[(errors["changed"] == "111") & errors["error"].notna()].iloc[40]
+    posed = (math.atan(1 / row["aspect"]), *row[["amplitude_g", "omega_over_p", "half_cycles"]])
+    peaks = [float(peak_ratios(*posed, model=name)[0]) for name in ("modified", "exact")]
+    assert row["error"] == pytest.approx(peaks[0] / peaks[1] - 1.0)
+    assert row["difference"] == pytest.approx(peaks[0] - peaks[1])
+
+
+def test_the_page_and_its_figure(tmp_path, capsys):
+    assert linearizations.command(out=tmp_path) == 0
+    text = capsys.readouterr().out
+    assert (tmp_path / "findings.txt").read_text() == text
+    assert "(a)" in text and "(b)" in text and "(c)" in text
+    table = pd.read_csv(tmp_path / "linearizations.csv", dtype={"changed": str})
+    assert len(table) == 16
+    before = (tmp_path / "linearizations.png").read_bytes()
+    (tmp_path / "linearizations.png").unlink()
+    assert redraw.command(tmp_path) == 0
+    assert (tmp_path / "linearizations.png").read_bytes() == before

@@ -1,0 +1,234 @@
+"""Overturning maps: edges, islands, differences, checks, and the command."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import MODELS, Outcome, peak_ratios, simulate
+from analytic.criteria import overturning_amplitude
+from analytic.maps import Modes
+from studies.__main__ import run
+from studies.overturning.edges import WIDTH, find_edges, intervals
+from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
+from studies.overturning.study import mapped
+from studies.overturning.checks import checks
+from studies.overturning.report import model_differences, modes_at, read
+from studies.sources.registry import resolve
+from studies.cases.window import AXES, Window
+
+WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
+
+
+def known(islands):
+    """Return a solver whose blocks overturn on given intervals (low, high, mode)."""
+
+    def solve(column, amplitude):
+        mode = np.full(len(amplitude), -1, dtype=np.int16)
+        margin = np.full(len(amplitude), -np.inf)
+        for low, high, impacts in islands:
+            half, middle = 0.5 * (high - low), 0.5 * (high + low)
+            margin = np.maximum(margin, half - np.abs(amplitude - middle))
+            mode[(amplitude > low) & (amplitude < high)] = impacts
+        return Modes(mode, margin, np.ones(len(amplitude), dtype=np.int32))
+
+    return solve
+
+
+@pytest.mark.parametrize(
+    "islands",
+    [
+        [(2.2, 9.0, 0)],
+        # narrower than the grid: overturning in survival, survival in overturning, between modes
+        [(2.51234, 2.51235, 3)],
+        [(2.0, 4.4444, 1), (4.44441, 9.0, 1)],
+        [(2.0, 4.4444, 1), (4.44444, 9.0, 0)],
+        [(2.0, 4.44, 5), (4.4401, 4.47, 3), (4.4701, 4.49, 1), (4.4901, 9.0, 0)],
+    ],
+)
+def test_islands_narrower_than_the_grid_are_found(islands):
+    edges = find_edges(known(islands), 1, np.linspace(1.0, 8.0, 50))
+    inside = sorted(end for island in islands for end in island[:2] if end < 8.0)
+    middle = 0.5 * (edges["low"] + edges["high"])
+    assert list(middle) == pytest.approx(inside, abs=WIDTH)
+    assert (edges["high"] - edges["low"] <= WIDTH).all()
+
+
+def test_modes_without_an_island_between_them_are_an_edge():
+    edges = find_edges(known([(2.0, 4.4, 2), (4.4 - 1e-13, 9.0, 0)]), 1, np.linspace(1.0, 8.0, 50))
+    assert list(zip(edges["below"], edges["above"], strict=True)) == [(-1, 2), (2, 0)]
+    assert edges["low"].iloc[1] == pytest.approx(4.4, abs=WIDTH)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("over", AXES)
+def test_edges_are_those_of_peak_ratios(model, over):
+    window = Window(over=over, columns=8, rows=80)
+    edges, _ = mapped(window, model)
+    assert len(edges) > 8
+    alpha, ratio = edges["alpha"].to_numpy(), edges["omega_over_p"].to_numpy()
+    for side, mode in (("low", "below"), ("high", "above")):
+        shift = 1.0 - 2e-10 if side == "low" else 1.0 + 2e-10
+        amplitude = edges[side].to_numpy() * shift * np.tan(alpha)
+        peaks, _ = peak_ratios(alpha, amplitude, ratio, 2, model)
+        wide = island_width(edges) > 1e-8
+        np.testing.assert_array_equal(np.isinf(peaks)[wide], (edges[mode] >= 0).to_numpy()[wide])
+
+
+def island_width(edges):
+    """Return the distance of each edge to the next one in its column, on either side."""
+    widths = []
+    for _, group in edges.groupby("x", sort=False):
+        gaps = np.diff(group["low"])
+        widths += list(np.minimum(np.append(np.inf, gaps), np.append(gaps, np.inf)))
+    return np.array(widths)
+
+
+def test_a_finer_grid_finds_no_other_edges():
+    coarse, _ = mapped(Window(columns=12, rows=100, low=0.5), "exact")
+    fine, _ = mapped(Window(columns=12, rows=1500, low=0.5), "exact")
+    np.testing.assert_allclose(coarse["low"], fine["low"], atol=2 * WIDTH)
+    assert list(coarse["above"]) == list(fine["above"])
+
+
+def test_strips_change_nothing(monkeypatch):
+    whole = mapped(WINDOW, "housner")
+    monkeypatch.setattr("studies.overturning.study.STRIP", 3 * WINDOW.rows)
+    for part, other in zip(whole, mapped(WINDOW, "housner"), strict=True):
+        pd.testing.assert_frame_equal(part.reset_index(drop=True), other.reset_index(drop=True))
+
+
+def test_intervals_cover_each_column_and_repeat_the_grid():
+    _, spans = mapped(WINDOW, "exact")
+    x, onsets = WINDOW.centres(12), WINDOW.amplitudes(200)
+    lengths = (spans["high"] - spans["low"]).groupby(spans["x"]).sum()
+    np.testing.assert_allclose(lengths, 9.0, rtol=1e-12)
+    direct = WINDOW.modes(x[:, None], onsets).mode
+    np.testing.assert_array_equal(
+        np.maximum(modes_at(spans, x, onsets), -1), np.maximum(direct, -1)
+    )
+
+
+def test_areas_of_difference_are_those_of_a_fine_grid():
+    areas = pd.concat([mapped(WINDOW, name)[1] for name in ("exact", "housner")])
+    (row,) = model_differences(areas, WINDOW)
+    x, onsets = WINDOW.centres(12), WINDOW.amplitudes(8_000)
+    exact, housner = (WINDOW.modes(x[:, None], onsets, m).mode for m in ("exact", "housner"))
+    # a cell on either side of each of some 100 edges of 12 columns
+    assert row["false"] == pytest.approx(((exact < 0) & (housner >= 0)).mean(), abs=1e-3)
+    assert row["missed"] == pytest.approx(((exact >= 0) & (housner < 0)).mean(), abs=1e-3)
+    assert row["false"] > 0.005
+    assert row["missed"] > 0.005
+
+
+def test_the_least_amplitude_without_impact_of_a_half_sine_is_the_criterion():
+    window = Window(pulse="half-sine", columns=10, rows=50)
+    edges, _ = mapped(window, "housner")
+    found = (0.5 * (edges["low"] + edges["high"])).to_numpy()
+    law = MODELS["housner"].law(math.atan(0.25), 0.9)
+    expected = [overturning_amplitude(ratio) * law.onset / 0.25 for ratio in edges["omega_over_p"]]
+    np.testing.assert_allclose(found, expected, atol=WIDTH)
+
+
+def test_checks_hold():
+    table = checks(WINDOW)
+    apart = (table["found"] / table["expected"] - 1.0).abs()
+    criterion = table["against"].str.startswith("the criterion")
+    assert criterion.sum() == 24
+    assert (apart[criterion] < 1e-13).all()
+    # Housner's own formula lies above the threshold: it is not on the safe side
+    housner = table["against"].str.startswith("Housner")
+    assert (table["found"] < table["expected"])[housner].all()
+    # a pulse of ω/p = 1e5 acts in a time of order 1e-5/p
+    assert (apart[~criterion & ~housner] < 3e-5).all()
+
+
+@pytest.mark.parametrize("over", AXES)
+def test_a_point_of_the_plane_is_the_case_that_sources_get(over):
+    window = Window(over=over)
+    x, onsets = 0.5 * (window.low + window.high), 2.4
+    block, motion = window.case(x, onsets)
+    assert block.alpha == pytest.approx(float(window.alpha(np.array(x))), rel=1e-14)
+    assert motion.omega / block.p == pytest.approx(float(window.ratio(np.array(x))), rel=1e-14)
+    if over == "size":
+        assert block.p / (2.0 * math.pi) == pytest.approx(x, rel=1e-14)
+        assert motion.omega == pytest.approx(2.0 * math.pi * window.pulse_hz, rel=1e-14)
+    overturned = simulate(block, motion).outcome is Outcome.OVERTURNED
+    assert overturned == bool(window.modes(np.array(x), np.array(onsets)).mode >= 0)
+
+
+def test_a_threshold_is_found_where_it_is():
+    edges, _ = mapped(WINDOW, "exact")
+    chosen, narrow = chosen_edges(edges, [4.0])
+    assert len(chosen) >= 1
+    assert len(chosen) + narrow == (edges["x"] == chosen["x"].iloc[0]).sum()
+    jobs = [j for j in edge_jobs(WINDOW, ["exact"], chosen) if j.labels["table"] == "thresholds"]
+    for job in jobs:
+        found = threshold(job, resolve("exact"))
+        assert isinstance(found, Bisected)
+        assert abs(found.shift) < 1e-6
+
+
+def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
+    arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "40"]
+    arguments += ["--quick", "--sources", "exact", "housner"]
+    assert run(arguments) == 0
+    first = capsys.readouterr().out
+    assert "housner" in first
+    assert run(arguments) == 0
+    assert capsys.readouterr().out == first
+    table = read(tmp_path, "boundaries")
+    assert set(table["model"]) == {"exact", "housner"}
+    assert run(["redraw", str(tmp_path)]) == 0
+    for name in capsys.readouterr().out.splitlines():
+        assert Path(name).stat().st_size > 10_000
+    assert run([*arguments[:3], "--quick", "--sources", "exact", "housner"]) == 2
+    assert "settings" in capsys.readouterr().err
+
+
+def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
+    arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "20"]
+    assert run([*arguments, "--pulse", "half-sine", "--sources", "exact"]) == 0
+    assert "no other source" in capsys.readouterr().out
+    assert (tmp_path / "map.png").exists()
+    assert not (tmp_path / "differences.png").exists()
+
+
+@pytest.mark.slow
+def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
+    arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "100"]
+    assert run([*arguments, "--quick"]) == 0
+    capsys.readouterr()
+    edges = read(tmp_path, "edges")
+    expected = (edges["offset"] > 0.0) == (edges["overturns"] == "above")
+    assert ((edges["outcome"] == "overturned") == expected)[edges["offset"].abs() >= 1e-3].all()
+    assert read(tmp_path, "thresholds")["shift"].abs().max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("extra", "named", "allowed"),
+    [
+        (["--sources", "housner"], "--sources", "exact"),
+        (["--sources", "exact", "rk4"], "'rk4'", "engines"),
+        (["--onsets", "0.5"], "--onsets", "more than 1"),
+        (["--low", "3", "--high", "2"], "--low", "smaller"),
+        (["--over", "slenderness", "--high", "2"], "--high", "π/2"),
+        (["--over", "colour"], "--over", "frequency"),
+        (["--rows", "0"], "--rows", "positive"),
+    ],
+)
+def test_bad_input_is_one_line(extra, named, allowed, tmp_path, capsys):
+    assert run(["overturning", "--out", str(tmp_path / "new"), *extra]) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1
+    assert named in error
+    assert allowed in error
+    assert not (tmp_path / "new").exists()
+
+
+def test_intervals_of_a_column_without_edges():
+    none = pd.DataFrame({"column": [], "low": [], "high": [], "above": []})
+    spans = intervals(none.astype({"column": int}), np.array([-1, 0], dtype=np.int16), 1.0, 10.0)
+    assert spans.to_numpy().tolist() == [[0, 1, 10, -1], [1, 1, 10, 0]]

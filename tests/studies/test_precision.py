@@ -1,0 +1,135 @@
+"""Error against run time: the methods, the measures, the diagram's table."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Outcome, RigidBlock, SinePulse, simulate
+from studies.measures.energy import energy_drift
+from studies.kit.jobs import Job, ask
+from studies.precision.methods import METHODS
+from studies.sources.scipy_peers import solve_ivp_response
+from studies.precision.study import measure, precision_jobs, quick_values, reduce
+from studies.precision.figure import STYLES, pareto
+from studies.precision.report import cheapest, observed_order, with_errors, work_precision
+from studies.cases.selection import chosen_cases
+from studies.sources.registry import resolve
+
+
+def tabulate(names, kind="typical"):
+    jobs = [
+        job
+        for job in precision_jobs(quick=True)
+        if job.labels["method"] in names and job.labels["set"] == kind
+    ]
+    rows = [
+        {**job.labels, **reduce(job, measure(job, resolve(job.source), budget_s=0.0))}
+        for job in jobs
+    ]
+    return with_errors(pd.DataFrame(rows))
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_answers_at_its_coarsest_setting(name):
+    method = METHODS[name]
+    block = RigidBlock(width=0.5, height=1.5)
+    motion = SinePulse(amplitude=0.4 * 9.81, omega=6.0, half_cycles=1)
+    options = method.options_at(method.values[len(method.values) // 2])
+    response = resolve(method.source).call(block, motion, duration=None, times=None, **options)
+    assert response.outcome is Outcome.ROCKED
+    assert name in STYLES
+    assert quick_values(method)
+
+
+def test_sets_of_cases_survive_and_one_is_near_overturning():
+    sets = chosen_cases(quick=False)
+    peaks = {
+        kind: [simulate(case.block, case.motion).peak_ratio for case in cases]
+        for kind, cases in sets.items()
+    }
+    assert {len(cases) for cases in sets.values()} == {12}
+    assert max(peaks["typical"]) < 0.5
+    assert max(peaks["near overturning"]) > 0.9
+    assert all(
+        near > typical
+        for near, typical in zip(peaks["near overturning"], peaks["typical"], strict=True)
+    )
+
+
+@pytest.mark.parametrize("method", ["RK45", "DOP853", "Radau", "LSODA"])
+def test_general_purpose_integrators_converge_to_the_reference(method):
+    block = RigidBlock(width=0.5, height=1.0)
+    motion = SinePulse(amplitude=0.6 * 9.81, omega=2 * math.pi, half_cycles=2)
+    duration = motion.duration + 2.0
+    times = np.linspace(0, duration, 50)
+    exact = simulate(block, motion, duration=duration, times=times)
+    errors = []
+    for rtol in (1e-4, 1e-9):
+        found = solve_ivp_response(
+            block, motion, method=method, rtol=rtol, duration=duration, times=times
+        )
+        assert abs(len(found.impacts) - len(exact.impacts)) <= 3
+        errors.append(abs(found.peak_ratio / exact.peak_ratio - 1))
+    assert errors[1] < 1e-7 < 1e-6 < errors[0]
+    shared = found.history.time
+    np.testing.assert_allclose(
+        found.history.theta, np.interp(shared, times, exact.history.theta), atol=1e-7
+    )
+
+
+def test_energy_drifts_with_the_method_that_loses_it():
+    jobs = {
+        job.labels["value"]: job
+        for job in precision_jobs(quick=False)
+        if job.labels["method"] == "average acceleration" and job.labels["figure"] == 8
+    }
+    coarse, fine = (
+        energy_drift(job, ask(job, resolve(job.source)))
+        for value, job in jobs.items()
+        if value in (0.1, 1e-3)
+    )
+    assert coarse > 10 * fine > 0
+
+
+def test_observed_order_of_the_trapezoidal_rule():
+    table = work_precision(tabulate(["average acceleration"]))
+    order, spread = observed_order(table, METHODS["average acceleration"])
+    assert order == pytest.approx(2.0, abs=0.1)
+    assert spread < 0.1
+
+
+def test_cheapest_setting_has_every_case_below_the_target_and_none_failed():
+    table = work_precision(tabulate(["Taylor series", "average acceleration"]))
+    # as if each setting cost what its steps do, whatever the machine is busy with
+    table["wall_s"] = table["steps"]
+    line = table[table["method"] == "average acceleration"]
+    taylor = table[table["method"] == "Taylor series"].set_index("value")["steps"]
+    failing = line.assign(method="RK4", failed=1)
+    costs = cheapest(pd.concat([table, failing])).set_index("method")
+    ratio = taylor.loc[1e-8] / taylor.iloc[-1]
+    assert costs.loc["Taylor series", "1e-06"] == f"{ratio:.3g} x at 1e-08"
+    assert costs.loc["average acceleration", "1e-06"] == "-"
+    # a setting with a failed case is no candidate, however cheap
+    assert (costs.loc["RK4"] == "-").all()
+
+
+def test_a_wrong_outcome_is_an_infinite_error():
+    compared = tabulate(["housner, closed form"], kind="near overturning")
+    assert np.isinf(compared["error"]).any()
+    assert work_precision(compared)["max_error"].iloc[0] == math.inf
+
+
+def test_pareto_front_is_what_nothing_beats():
+    table = pd.DataFrame({"wall_s": [1.0, 2.0, 3.0, 4.0], "median_error": [1e-1, 1e-3, 1e-2, 1e-4]})
+    assert list(pareto(table)["wall_s"]) == [1.0, 2.0, 4.0]
+
+
+def test_timed_answer_is_the_recorded_one():
+    job = next(job for job in precision_jobs(quick=True) if job.labels["method"] == "RK4")
+    assert isinstance(job, Job)
+    response = measure(job, resolve(job.source), budget_s=0.01)
+    assert response.history is not None
+    assert response.setup_s > 0
+    assert response.peak_ratio == ask(job, resolve(job.source)).peak_ratio

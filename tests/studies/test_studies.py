@@ -1,0 +1,134 @@
+"""The sources, the paper's cases and its time histories."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import RigidBlock, SinePulse
+from analytic.response import Impact, Outcome, Response
+from engines import ENGINES, PRESETS
+from studies.histories import study as histories
+from studies.page import redraw
+from studies import respond
+from studies.cases.paper import HISTORIES, sweep_cases
+from studies.kit.journal import FolderError
+from studies.sources.registry import SOURCES, Source, UnknownSourceError
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
+
+
+def raises(block, motion, *, duration, times):
+    raise RuntimeError("the engine\nsaid no")
+
+
+EVERY_NAME = [*SOURCES, *(f"{engine}:{preset}" for engine in ENGINES for preset in PRESETS)]
+
+
+@pytest.mark.parametrize("name", EVERY_NAME)
+def test_every_source_answers_figure_5b(name):
+    times = np.linspace(0.0, 1.5, 16)
+    response = respond(name, BLOCK, PULSE, duration=3.0, times=times)
+    assert isinstance(response, Response)
+    # the paper: 5-b overturns by Housner's linearization alone. With the onset matched the block
+    # survives, so it is the onset that overturns it.
+    if name == "housner":
+        assert response.outcome is Outcome.OVERTURNED
+        assert response.peak_ratio == math.inf
+        assert all(response.history.time <= 3.0)
+    else:
+        assert response.outcome is Outcome.ROCKED
+        # out of the box an engine is wrong by a quarter; everything else is within the 7 % by
+        # which the modified linearization misses
+        allowed = 0.3 if name.endswith(":naive") else 0.07
+        assert response.peak_ratio == pytest.approx(0.3852, rel=allowed)
+        np.testing.assert_allclose(response.history.time, times)
+    assert all(isinstance(impact, Impact) for impact in response.impacts)
+    assert response.impacts
+    assert response.steps > 0
+
+
+def test_an_unknown_source_is_refused_with_the_list():
+    for name in ("nonsense", "exact:fixed", "mujoco:", "mujoco:best", ":fixed"):
+        with pytest.raises(UnknownSourceError, match="mujoco") as error:
+            respond(name, BLOCK, PULSE)
+        assert repr(name) in str(error.value)
+
+
+def test_options_reach_the_source():
+    coarse = respond("rk4", BLOCK, PULSE, step=1e-2)
+    assert coarse.steps < respond("rk4", BLOCK, PULSE, step=1e-3).steps / 5
+
+
+@pytest.mark.parametrize("module", ["studies", "studies.__main__"])
+def test_importing_loads_nothing_heavy(module):
+    program = (
+        f"import sys, {module}\n"
+        "print(*[n for n in ('engines', 'pandas', 'matplotlib', 'numba') if n in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.stdout.strip(), done.stderr) == ("", "")
+
+
+def test_the_paper_has_960_cases():
+    cases = list(sweep_cases((6, 7, 8, 9)))
+    assert len(cases) == len(set(cases)) == 960
+    last = cases[-1]
+    assert (last.figure, last.pulse, last.aspect, last.width_m) == (9, "full-sine", 4, 1.0)
+    assert last.block.height == 4.0
+    assert last.motion.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
+    assert last.motion.omega == pytest.approx(4.0 * last.block.p)
+    assert last.motion.half_cycles == 2
+
+
+# exact, Housner, modified; by Housner's linearization 5-b and 5-c overturn, as the paper says
+HISTORY_PEAKS = {
+    (4, "a"): (0.0197, 0.0219, 0.0197),
+    (4, "b"): (0.0391, 0.0578, 0.0388),
+    (4, "c"): (0.2249, 0.3824, 0.2138),
+    (5, "a"): (0.1750, 0.2119, 0.1737),
+    (5, "b"): (0.3852, math.inf, 0.3605),
+    (5, "c"): (0.5558, math.inf, 0.4446),
+}
+
+
+def test_the_histories_have_their_known_peaks():
+    for case in HISTORIES[4] + HISTORIES[5]:
+        names = ("exact", "housner", "modified")
+        found = [respond(name, case.block, case.motion).peak_ratio for name in names]
+        # to the four decimals that are given
+        assert found == pytest.approx(HISTORY_PEAKS[case.figure, case.panel], abs=5.1e-5)
+
+
+def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
+    assert histories.command(out=tmp_path) == 0
+    text = capsys.readouterr().out
+    assert text.count("holds: ") == 3
+    assert "does not hold" not in text
+    for figure, panels in HISTORIES.items():
+        samples = pd.read_csv(tmp_path / f"figure-{figure}.csv")
+        assert set(samples["panel"]) == {case.panel for case in panels}
+        before = (tmp_path / f"figure-{figure}.png").read_bytes()
+        assert len(before) > 30_000
+        (tmp_path / f"figure-{figure}.png").unlink()
+        assert redraw.command(tmp_path) == 0
+        assert (tmp_path / f"figure-{figure}.png").read_bytes() == before
+
+
+def test_histories_of_named_sources_can_be_run_again(tmp_path, capsys, monkeypatch):
+    for _ in range(2):
+        assert histories.command(out=tmp_path, figure=(5,), sources=("exact",)) == 0
+        assert "not tested: In 5-b and 5-c" in capsys.readouterr().out
+    with pytest.raises(FolderError, match="sources"):
+        histories.command(out=tmp_path, figure=(5,), sources=("housner",))
+
+
+def test_a_history_that_failed_leaves_the_others(tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(SOURCES, "raises", Source("model", raises))
+    assert histories.command(out=tmp_path, figure=(4,), sources=("raises", "exact")) == 1
+    assert "failed" in capsys.readouterr().out
+    assert set(pd.read_csv(tmp_path / "figure-4.csv")["source"]) == {"exact"}

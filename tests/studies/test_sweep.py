@@ -1,0 +1,153 @@
+"""The paper's sweep: its table, summary, findings, figures and provenance."""
+
+import json
+import math
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import RigidBlock, SinePulse, simulate
+from studies.page import redraw
+from studies.sweep import study as sweep
+from studies.measures.differences import summarize, with_reference, worst_cases
+from studies.kit.executors import Local
+from studies.measures.findings import findings
+from studies.kit.jobs import summary
+from studies.kit.runner import run_jobs
+from studies.sources.registry import DEFAULT_EFFORT, SOURCES
+
+HERE = Path(__file__).parent
+MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sweep")
+    rows = sweep.sweep([6, 7, 8, 9], MODELS_AND_SOLVERS, folder, executor=Local(1, 1.0))
+    return folder, rows, sweep.report(folder)
+
+
+def test_the_models_sweep_has_its_columns_and_rows(swept):
+    folder, rows, _ = swept
+    table = pd.read_csv(folder / "sweep.csv")
+    assert list(table.columns) == [
+        *("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p", "source"),
+        *("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
+    ]
+    assert len(table) == len(rows) == 960 * len(MODELS_AND_SOLVERS)
+    assert (table["peak_ratio"].eq(math.inf) == table["outcome"].eq("overturned")).all()
+    assert not table["outcome"].eq("failed").any()
+
+
+def test_the_conclusions_of_the_paper_fall_as_they_fall(swept):
+    folder, _, text = swept
+    table = sweep.read(folder)
+    compared = with_reference(table)
+    summary_table = summarize(compared).set_index(["figure", "source"])
+    assert summary_table.loc[("all", "exact"), "agree"] == 960
+    assert summary_table.loc[("all", "exact"), "max_error"] < 1e-10
+    assert summary_table.loc[("all", "housner"), "false_overturnings"] > 0
+    assert summary_table.loc[("all", "modified"), "missed_overturnings"] > 0
+    holds = {item.statement.split(" (")[0]: item.holds for item in findings(compared)}
+    verdicts = list(holds.values())
+    assert verdicts[:6] == [True, False, True, False, True, True]
+    assert all(verdicts[6:])
+    # two solvers against the exact solution, and the two widths of every source
+    assert len(verdicts) == 6 + 2 + len(MODELS_AND_SOLVERS)
+    assert (folder / "findings.txt").read_text().strip() in text
+    assert max(len(line) for line in text.splitlines()) <= 100
+
+
+def test_findings_report_what_breaks_them(swept):
+    compared = with_reference(sweep.read(swept[0]))
+    calm = compared[compared["aspect"] == 4].assign(false_overturning=False)
+    assert findings(calm)[0].holds is False
+    wide = compared["width_m"].eq(1.0) & compared["source"].eq("exact")
+    scaled = compared.assign(peak_ratio=compared["peak_ratio"].where(~wide, 2.0))
+    coincide = {item.statement: item.holds for item in findings(scaled)}
+    assert coincide["the left and right panels coincide for exact (within 1e-6)"] is False
+    assert coincide["the left and right panels coincide for rk4 (within 1e-6)"] is True
+    lost = compared.assign(agrees=compared["agrees"] & ~compared["source"].eq("rk4"))
+    disagreeing = [item for item in findings(lost) if "every outcome of rk4" in item.statement]
+    assert [item.holds for item in disagreeing] == [False]
+    assert "960 of 960 cases differ; figure 6 H/B 2: ω/p 0.1–4;" in disagreeing[0].numbers
+    alone = findings(compared[compared["source"] == "exact"])
+    assert [item.holds for item in alone] == [None] * 6 + [True]
+
+
+def test_errors_are_counted_against_the_exact_solution():
+    rows = pd.DataFrame(run_sweep_row(omega) for omega in (0.1, 1.0, 4.0))
+    rows["outcome"] = ["rocked", "overturned", "rocked"]
+    rows["peak_ratio"] = [0.5, math.inf, 2.0 * rows["peak_ratio"][2]]
+    line = summarize(with_reference(rows)).iloc[0]
+    assert (line["agree"], line["missed_overturnings"], line["false_overturnings"]) == (1, 1, 1)
+    assert line["max_error"] == pytest.approx(1.0)
+
+
+def test_the_worst_case_comes_with_its_conditioning(swept):
+    worst = worst_cases(with_reference(sweep.read(swept[0]))).set_index("source")
+    assert list(worst.index) == MODELS_AND_SOLVERS
+    case = worst.loc["housner"]
+    block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
+    excess, half_cycles = {6: (0.05, 1), 7: (0.1, 1), 8: (0.1, 2), 9: (0.125, 2)}[case["figure"]]
+
+    def peak(scale):
+        amplitude = scale * (1.0 / case["aspect"] + excess) * 9.81
+        omega = case["omega_over_p"] * block.p
+        motion = SinePulse(amplitude=amplitude, omega=omega, half_cycles=half_cycles)
+        return simulate(block, motion).peak_ratio
+
+    # two difference quotients of different width agree to their second order
+    slope = (peak(1.0001) / peak(0.9999) - 1.0) / 2e-4
+    assert case["kappa"] == pytest.approx(slope, rel=1e-2)
+    assert case["exact_peak"] == pytest.approx(peak(1.0), rel=1e-10)
+
+
+def run_sweep_row(omega_over_p):
+    jobs = sweep.sweep_jobs([6], ["exact"], DEFAULT_EFFORT)
+    chosen = next(item for item in jobs if item.labels["omega_over_p"] == omega_over_p)
+    return run_jobs([chosen], executor=Local(1, 1.0), reduce=summary)[0]
+
+
+def test_figures_are_drawn_from_the_csv_alone(swept, tmp_path):
+    folder = swept[0]
+    (tmp_path / "sweep.csv").write_bytes((folder / "sweep.csv").read_bytes())
+    assert redraw.command(tmp_path) == 0
+    drawn = sorted(tmp_path.glob("*.png"))
+    assert [path.name for path in drawn] == [f"figure-{n}.png" for n in (6, 7, 8, 9)]
+    for path in drawn:
+        assert path.read_bytes() == (folder / path.name).read_bytes()
+        assert path.stat().st_size > 50_000
+
+
+def test_a_rerun_computes_nothing(swept):
+    folder = swept[0]
+    journal = folder / "journal.jsonl"
+    before = journal.read_bytes()
+    sweep.sweep([6, 7, 8, 9], MODELS_AND_SOLVERS, folder, executor=refuse_any)
+    assert journal.read_bytes() == before
+
+
+def refuse_any(jobs):
+    assert not jobs
+    yield from ()
+
+
+def test_provenance_says_what_ran(swept):
+    record = json.loads((swept[0] / "provenance.json").read_text())
+    project = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]
+    assert record["version"] == project["version"]
+    for name, version in record["engines"].items():
+        assert f"{name}=={version}" in project["dependencies"]
+    assert record["settings"] == {"step": None, "accuracy": None}
+    assert set(record["machine"]) == {"cpu", "cores", "os"}
+    assert record["packages"]["numpy"] == np.__version__
+    assert record["python"] == ".".join(map(str, sys.version_info[:3]))
+    first = record["runs"][0]
+    assert first["rows"] == 960 * len(MODELS_AND_SOLVERS)
+    assert first["duration_s"] > 0.0
+    assert str(Path.home()) not in json.dumps(record)

@@ -1,0 +1,37 @@
+"""The benchmark counts what it says: the same cases, the same outcomes."""
+
+import pandas as pd
+import pytest
+
+from studies.throughput import study as throughput
+from studies.__main__ import run
+from studies.throughput.study import measured, peer_solvers, points
+from studies.cases.window import Window
+
+
+def test_every_solver_answers_the_same_cases(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(throughput, "QUICK_CASES", 400)
+    monkeypatch.setattr(throughput, "QUICK_PEER_CASES", 64)
+    assert run(["throughput", "--quick", "--threads", "2", "--out", str(tmp_path)]) == 0
+    assert "Peak memory" in capsys.readouterr().out
+    table = pd.read_csv(tmp_path / "throughput.csv")
+    assert set(table["pulse"]) == {"half-sine", "full-sine"}
+    assert (table["wrong"] == 0).all()
+    alone = table[(table["source"] == "exact") & (table["threads"] == 1)]
+    assert alone["times_exact"].to_numpy() == pytest.approx([1.0, 1.0])
+    rates = table["cases"] / table["seconds"]
+    assert table["cases_a_second"].to_numpy() == pytest.approx(rates.to_numpy())
+
+
+def test_points_fill_the_window():
+    window = Window()
+    x, onsets = points(window, 1000)
+    assert len(x) == len(onsets) == 31**2
+    assert window.low < x.min() < x.max() < window.high
+    assert 1.0 < onsets.min() < onsets.max() < window.onsets
+
+
+def test_steps_are_counted():
+    rows = pd.DataFrame(measured(Window(), 400, 1, 1)).set_index("source")
+    assert rows.loc["exact", "steps"] > 2.0
+    assert "dop853 (SciPy)" in peer_solvers()

@@ -1,0 +1,73 @@
+"""Random cases: the draw, the condition number, the report."""
+
+import math
+from itertools import islice
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import peak_ratios, simulate
+from studies.measures.differences import with_conditioning
+from studies.kit.executors import Local
+from studies.kit.journal import FolderError
+from studies.validate.study import LEAST_NORMAL, draw, report, validate
+
+LOCAL = Local(workers=1, time_limit_s=60.0)
+
+
+def test_the_same_seed_draws_the_same_cases_and_another_seed_others():
+    first, again, other = (list(islice(draw(seed), 5)) for seed in (7, 7, 8))
+    assert first == again
+    assert first != other
+
+
+def test_cases_keep_their_ranges_and_their_reference_valid():
+    for case in islice(draw(3), 40):
+        assert 1.2 <= case.aspect <= 12
+        assert 0.02 <= case.width_m <= 10
+        assert 1.02 <= case.amplitude_g * case.aspect <= 4
+        assert 0.3 <= case.omega_over_p <= 12
+        assert simulate(case.block, case.motion).min_normal > LEAST_NORMAL
+
+
+def test_condition_number_is_the_derivative():
+    cases = pd.DataFrame(
+        {"aspect": [2.0, 4.0], "amplitude_g": [0.6, 0.3], "omega_over_p": [3.0, 3.5]}
+    ).assign(half_cycles=1)
+    # the same derivative from a polynomial through many amplitudes
+    scales = 1 + 1e-2 * np.polynomial.chebyshev.chebpts1(12)
+    for row, kappa in zip(cases.itertuples(), with_conditioning(cases)["kappa"], strict=True):
+        peaks, _ = peak_ratios(
+            math.atan(1 / row.aspect), row.amplitude_g * scales, row.omega_over_p, 1
+        )
+        fit = np.polynomial.Chebyshev.fit(np.log(scales), np.log(peaks), 11)
+        assert kappa == pytest.approx(fit.deriv()(0.0), rel=1e-6)
+
+
+def test_condition_number_of_a_block_that_overturns_is_no_number():
+    case = pd.DataFrame(
+        {"aspect": [4.0], "amplitude_g": [2.0], "omega_over_p": [0.5], "half_cycles": [1]}
+    )
+    assert with_conditioning(case)[["kappa", "kappa_eta"]].isna().all(axis=None)
+
+
+def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
+    validate(4, 5, ["exact"], tmp_path, executor=LOCAL)
+    kept = (tmp_path / "journal.jsonl").read_text().splitlines()
+    rows = validate(9, 5, ["exact", "housner"], tmp_path, executor=LOCAL)
+    assert len(rows) == 18
+    assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
+    text = report(tmp_path)
+    errors = pd.read_csv(tmp_path / "errors.csv").set_index("source")
+    assert errors.loc["exact", "agrees"].all()
+    assert (errors.loc["exact", "error"].dropna().abs() < 1e-9).all()
+    assert "9/9" in text
+    assert errors.loc["housner", "error"].abs().max() > 1e-3
+
+
+def test_another_seed_is_refused(tmp_path):
+
+    validate(2, 1, ["exact"], tmp_path, executor=LOCAL)
+    with pytest.raises(FolderError, match="settings"):
+        validate(2, 2, ["exact"], tmp_path, executor=LOCAL)

@@ -1,0 +1,138 @@
+"""Where the reference is valid, and what engines do beyond."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Outcome, RigidBlock, SinePulse, simulate
+from analytic.response import Response
+from studies import respond
+from studies.__main__ import run
+from studies.kit.jobs import Job
+from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
+from studies.validity.cases import ValidityCase, grid, reference_map
+
+G = 9.81
+
+
+def case(aspect, onsets, omega_over_p):
+    return ValidityCase(aspect=aspect, onsets=onsets, omega_over_p=omega_over_p)
+
+
+@pytest.mark.parametrize(("aspect", "onsets", "omega"), [(1, 1.4, 4), (1.5, 2.4, 4), (3, 1.5, 6)])
+def test_the_least_normal_force_is_newtons(aspect, onsets, omega):
+    """The mass times the vertical acceleration of its centre, by differences of the history; the
+    reference looks at 17 points in a step, the history at every thousandth of the pulse."""
+    here = case(aspect, onsets, omega)
+    block, motion = here.block, here.motion
+    exact = simulate(block, motion)
+    times = np.linspace(0.0, motion.duration, 20_001)
+    theta = simulate(block, motion, times=times).history.theta
+    height = block.R * np.cos(block.alpha - np.abs(theta))
+    h = times[1] - times[0]
+    normal = 1.0 + np.diff(height, 2) / h**2 / G
+    sway = np.sign(theta) * block.R * (np.sin(block.alpha) - np.sin(block.alpha - np.abs(theta)))
+    push = np.diff(sway, 2) / h**2 / G + motion.acceleration(times[1:-1]) / G
+    # across an impact or an uplift the differences hold a jump, and at rest they are no swing
+    kinks = [*(i.time for i in exact.impacts), *exact.uplifts]
+    clear = [all(abs(t - kink) > 2 * h for kink in kinks) for t in times[1:-1]]
+    swinging = np.array(clear) & (np.abs(theta[1:-1]) > 0)
+    least = normal[swinging].min()
+    assert exact.min_normal == pytest.approx(least, abs=2e-3)
+    if least > 0:
+        friction = np.abs(push[swinging] / normal[swinging]).max()
+        assert exact.friction_needed == pytest.approx(friction, rel=5e-3)
+    else:
+        assert exact.friction_needed == math.inf
+
+
+def test_the_friction_needed_is_never_less_than_b_over_h():
+    """The uplift itself needs |u_g''|/g = B/H; the impact, 1.5 t/(2 + t^2/2) with t = B/H, less."""
+    table = reference_map(list(grid((1.05, 1.5, 3.0), (1.0, 4.0, 9.0))))
+    steepness = 1.0 / table["aspect"]
+    assert (table["friction_needed"] > steepness * (1 - 1e-12)).all()
+    assert (1.5 * steepness / (2 + 0.5 * steepness**2) < steepness).all()
+
+
+def test_the_map_is_similar_and_grows_worse_with_squatness():
+    small = RigidBlock(width=0.05, height=0.05)
+    here = case(1.0, 2.0, 3.0)
+    omega = 3.0 * small.p
+    same = simulate(small, SinePulse(amplitude=2.0 * G, omega=omega, half_cycles=2))
+    assert simulate(here.block, here.motion).min_normal == pytest.approx(same.min_normal, rel=1e-9)
+    table = reference_map([case(aspect, 2.0, 3.0) for aspect in (1.0, 1.5, 2.0, 3.0)])
+    assert (np.diff(table["min_normal"]) > 0).all()
+    assert table["min_normal"].iloc[0] < 0 < table["min_normal"].iloc[1]
+
+
+@pytest.mark.parametrize("source", ["pybullet:fixed", "mujoco:fixed"])
+def test_engines_lift_off_where_the_reference_would_have_to_pull(source):
+    for valid, (aspect, onsets, omega) in (
+        (True, (1.0, 1.2, 4.0)),
+        (True, (3.0, 2.4, 8.0)),
+        (False, (1.0, 2.0, 3.0)),
+        (False, (1.5, 2.4, 1.0)),
+    ):
+        here = case(aspect, onsets, omega)
+        assert (simulate(here.block, here.motion).min_normal > 0) is valid
+        response = respond(source, here.block, here.motion)
+        assert response.outcome is not Outcome.FAILED
+        assert (response.hop_m < LIFTED_WIDTHS * here.block.width) is valid
+
+
+@pytest.mark.parametrize("source", ["pybullet:fixed", "mujoco:fixed"])
+def test_engines_slide_where_the_reference_needs_more_friction(source):
+    here = case(2.0, 1.2, 4.0)
+    needed = simulate(here.block, here.motion).friction_needed
+    enough = respond(source, here.block, here.motion, friction=1.2 * needed)
+    short = respond(source, here.block, here.motion, friction=0.8 * needed)
+    assert enough.slip_m < SLID_WIDTHS * here.block.width < short.slip_m
+
+
+def rocked(slip_m, hop_m):
+    return Response(outcome=Outcome.ROCKED, peak_ratio=0.5, slip_m=slip_m, hop_m=hop_m)
+
+
+@pytest.mark.parametrize(
+    ("response", "verdict", "outcome"),
+    [
+        (rocked(0, 0), "held", "rocked"),
+        (rocked(0, 1), "lifted off", "rocked"),
+        (rocked(1, 0), "slid", "rocked"),
+        (rocked(1, 1), "slid and lifted off", "rocked"),
+        (Response.failure("the pivot slid 0.1 m along the base"), "slid away", "left"),
+        (Response.failure("the block was thrown 2 m off the base"), "flew off", "left"),
+        (Response.failure("the engine's state is not finite"), "failed", "failed"),
+    ],
+)
+def test_verdicts(response, verdict, outcome):
+    here = case(1.0, 2.0, 3.0)
+    job = Job(labels=here.labels, block=here.block, motion=here.motion, source="mujoco:fixed")
+    row = _reduce(job, response)
+    assert (row["verdict"], row["outcome"]) == (verdict, outcome)
+
+
+def test_the_command_refuses_what_cannot_slide(tmp_path, capsys):
+    assert run(["validity", "--out", str(tmp_path / "x"), "--sources", "exact"]) == 2
+    assert "--sources names 'exact'; it must name engines" in capsys.readouterr().err
+
+
+def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("studies.validity.study.ONSETS", (1.2,))
+    monkeypatch.setattr("studies.validity.study.OMEGAS", (8.0,))
+    monkeypatch.setattr("studies.validity.study.MAP_ONSETS", (1.1, 2.0, 4.0))
+    monkeypatch.setattr("studies.validity.study.MAP_OMEGAS", (1.0, 3.0, 9.0))
+    arguments = ["validity", "--out", str(tmp_path), "--quick", "--jobs", "1"]
+    assert run([*arguments, "--sources", "pybullet:fixed"]) == 0
+    text = capsys.readouterr().out
+    assert "by the reference's normal force" in text
+    rows = pd.read_csv(tmp_path / "validity.csv")
+    assert len(rows) == 4 * 3
+    assert set(rows.loc[~(rows["friction_factor"] < 1), "verdict"]) == {"held"}
+    beside = pd.read_csv(tmp_path / "compared.csv")
+    assert math.isfinite(beside["error"].iloc[0])
+    (tmp_path / "validity.png").unlink()
+    assert run(["redraw", str(tmp_path)]) == 0
+    assert (tmp_path / "validity.png").stat().st_size > 20_000
