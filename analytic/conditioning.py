@@ -24,12 +24,12 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
-from analytic.models import Law, Model, find_model
-from analytic.motion import FloatArray, Motion
 from analytic.kernels.polynomial import ORDER, slope, value
 from analytic.kernels.rest import acceleration, ground
-from analytic.simulate import pulse_law, scaled_segments, stack_cases
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
+from analytic.models import Law, Model, find_model
+from analytic.motion import FloatArray, Motion
+from analytic.simulate import pulse_law, scaled_segments, stack_cases
 
 AMPLITUDE, RESTITUTION = 0, 1
 """Rows of the derivatives: by ln(a_p), by ln(eta)."""

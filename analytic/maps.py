@@ -12,10 +12,7 @@ from analytic.block import housner_restitution
 from analytic.kernels.closed_form import work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import MAX_STEPS
-from analytic.models import Law, find_model
-from analytic.motion import FloatArray
 from analytic.kernels.rest import ANGLE_TOLERANCE, comes_to_rest, time_to_rest
-from analytic.simulate import check_cases
 from analytic.kernels.swings import (
     LANDED,
     LEFT_OVER,
@@ -25,6 +22,9 @@ from analytic.kernels.swings import (
     swing_exact,
     swing_linear,
 )
+from analytic.models import Law, find_model
+from analytic.motion import FloatArray
+from analytic.simulate import check_cases
 
 AT_REST, SURVIVES, FAILED = -2, -1, -3
 """Modes that are no number of impacts."""

@@ -25,10 +25,10 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
+from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 
 OUTCOMES = (*list(Outcome), Outcome.FAILED)
 """In the order of the codes in `analytic.kernels.excursions`."""

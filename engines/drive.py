@@ -7,10 +7,10 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from analytic.response import Response
-from engines.stepping.landing import LandingSteps
-from engines.watching.observe import Observer
 from engines.scene import Scene, World
+from engines.stepping.landing import LandingSteps
 from engines.stepping.steps import FixedSteps, Policy, Stepper
+from engines.watching.observe import Observer
 
 ENGINES = {"pybullet": "engines.adapters.bullet", "mujoco": "engines.adapters.mujoco"}
 """Name of an engine -> module of its adapter, imported when the engine is first asked for."""

@@ -25,13 +25,13 @@ def forget_what_changed(folder: Path) -> None:
 
     numba sees a change of a kernel's own module, not of a kernel that it calls in another one.
     """
-    text = b"\0".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
+    text = b"\0".join(path.read_bytes() for path in sorted(folder.rglob("*.py")))
     stamp, cache = hashlib.sha256(text).hexdigest(), folder / "__pycache__"
     mark = cache / "kernels.txt"
     try:
         if mark.is_file() and mark.read_text() == stamp:
             return
-        for kept in cache.glob("*.nb[ci]"):
+        for kept in folder.rglob("*.nb[ci]"):
             kept.unlink(missing_ok=True)
         cache.mkdir(exist_ok=True)
         mark.write_text(stamp)
@@ -40,4 +40,4 @@ def forget_what_changed(folder: Path) -> None:
         return
 
 
-forget_what_changed(Path(__file__).parent)
+forget_what_changed(Path(__file__).parents[1])

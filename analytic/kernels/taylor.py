@@ -7,9 +7,9 @@ import math
 from typing import NamedTuple
 
 from analytic.kernels.compiled import kernel
+from analytic.kernels.polynomial import ORDER
 from analytic.models import Law
 from analytic.motion import FloatArray
-from analytic.kernels.polynomial import ORDER
 
 LEAST_ORDER = 6
 LONGEST_STEP = 4.0

@@ -6,8 +6,8 @@ strikes its base and comes to rest by the engine's own contact, whatever the pol
 
 from typing import NamedTuple, Protocol
 
-from engines.stepping.ground import mean_velocity_of
 from engines.scene import Grip, Pose, Scene, Step
+from engines.stepping.ground import mean_velocity_of
 
 
 class Choice(NamedTuple):

@@ -7,8 +7,8 @@ of the steps; what lies between two steps is interpolated.
 import math
 
 from analytic.response import Impact, Outcome, Response
-from engines.watching.history import sample
 from engines.scene import Pose, Scene
+from engines.watching.history import sample
 from engines.watching.swing import START, Row, Swing, extrapolated
 
 LIFT_WIDTHS = 1e-8

@@ -11,6 +11,7 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.motion import Motion
 from analytic.response import Outcome
+from studies.cases.paper import Case, free_rocking_window
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
@@ -20,7 +21,6 @@ from studies.kit.arguments import (
     refuse_given,
     several,
 )
-from studies.cases.paper import Case, free_rocking_window
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row

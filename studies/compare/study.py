@@ -12,6 +12,8 @@ from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from studies.cases.accelerograms import Units
+from studies.cases.paper import free_rocking_window
+from studies.drawing.comparison import draw, json_lines, table_text
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -21,8 +23,6 @@ from studies.kit.arguments import (
     refuse_given,
     several,
 )
-from studies.cases.paper import free_rocking_window
-from studies.drawing.comparison import draw, json_lines, table_text
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row

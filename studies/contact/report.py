@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from studies.contact.factors import FACTORS
+from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
 from studies.kit import provenance
 from studies.measures.differences import scientific, with_reference
-from studies.contact.factors import FACTORS
 from studies.stability.report import left_aligned
-from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from analytic.response import Outcome, Response
-from studies.kit.arguments import Count, Positive
 from studies.cases.paper import Case, free_rocking_window
-from studies.contact.report import headline, pictures, report
-from studies.measures.energy import SAMPLES, energy_drift, growth
-from studies.kit.executors import Executor, choose
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.contact.factors import FACTORS
+from studies.contact.report import headline, pictures, report
+from studies.contact.variants import OWN_STEP, Variant, variants
+from studies.kit.arguments import Count, Positive
+from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
-from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.contact.variants import OWN_STEP, Variant, variants
+from studies.measures.energy import SAMPLES, energy_drift, growth
 
 __all__ = ["command", "headline", "pictures", "report"]
 

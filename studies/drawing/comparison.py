@@ -14,8 +14,8 @@ from analytic.motion import Motion, SinePulse
 from analytic.response import Outcome, Response
 from analytic.simulate import strongest
 from studies.cases.paper import PULSES
-from studies.measures.differences import scientific
 from studies.kit.journal import Row
+from studies.measures.differences import scientific
 
 
 def json_lines(rows: list[Row]) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.measures.differences import conditioning_of
 from studies.drawing.figures import LOWEST, style_of
+from studies.measures.differences import conditioning_of
 
 
 def draw_conditioning(compared: pd.DataFrame) -> Figure:

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 
 from studies.ensemble.agreement import CLOSE
-from studies.measures.differences import scientific
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
+from studies.measures.differences import scientific
 
 DISORDER = 1.0
 """beta from which on the intensity hardly orders the overturnings."""

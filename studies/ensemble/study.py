@@ -11,9 +11,12 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.record import Record
-from studies.kit import provenance
 from studies.cases.accelerograms import Units, read_record
+from studies.cases.motions import FAMILIES
 from studies.ensemble.agreement import CLOSE, agreement, confusion
+from studies.ensemble.fragility import fragilities
+from studies.ensemble.report import curves, findings, stripes
+from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -23,12 +26,9 @@ from studies.kit.arguments import (
     refuse_repeats,
     several,
 )
-from studies.ensemble.report import curves, findings, stripes
 from studies.kit.executors import Executor, choose
-from studies.ensemble.fragility import fragilities
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
-from studies.cases.motions import FAMILIES
 from studies.kit.runner import exit_code, fill_folder
 
 if TYPE_CHECKING:

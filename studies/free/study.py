@@ -16,11 +16,11 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
-from studies.measures.differences import scientific
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
+from studies.measures.differences import scientific
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import pandas as pd
 
-from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
+from studies.kit import provenance
+from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.kit.executors import Executor, choose
-from studies.measures.findings import Finding, findings_text
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, own_folder, run_jobs
+from studies.measures.findings import Finding, findings_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -184,7 +184,7 @@ def fitness() -> dict[str, str]:
     """Return what must be the same on a worker for its results to be the same."""
     digest = hashlib.sha256()
     for part in ("analytic", "engines", "studies"):
-        for path in sorted((provenance.ROOT / part).glob("*.py")):
+        for path in sorted((provenance.ROOT / part).rglob("*.py")):
             digest.update(path.name.encode() + b"\0" + Path(path).read_bytes() + b"\0")
     packages = (*provenance.ENGINE_PACKAGES, "numpy", "scipy", "numba")
     return {

@@ -6,8 +6,8 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.record import Record
 from studies.cases.accelerograms import read_record
-from studies.kit.arguments import BadInputError
 from studies.cases.paper import PULSES
+from studies.kit.arguments import BadInputError
 
 
 def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:

@@ -17,7 +17,7 @@ from studies.kit.journal import FolderError
 
 ENGINE_PACKAGES = ("pybullet", "mujoco")
 PACKAGES = ("numpy", "scipy", "numba", "pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def version_of(package: str) -> str:
@@ -43,9 +43,9 @@ def project_version() -> str:
 def code_fingerprint() -> str:
     """Return a hash of everything that decides a number: the reference, engines and cases."""
     files = [
-        *sorted((ROOT / "analytic").glob("*.py")),
-        *sorted((ROOT / "engines").glob("*.py")),
-        *(ROOT / "studies" / name for name in ("cases.py", "sources.py", "jobs.py")),
+        path
+        for part in ("analytic", "engines", "studies")
+        for path in sorted((ROOT / part).rglob("*.py"))
     ]
     digest = hashlib.sha256()
     for path in files:

@@ -10,11 +10,11 @@ import pandas as pd
 from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
-from studies.kit import provenance
 from studies.cases.paper import PULSES, sweep_cases
+from studies.kit import provenance
+from studies.kit.runner import own_folder
 from studies.measures.differences import posed_cases, scientific
 from studies.measures.findings import Finding, findings_text
-from studies.kit.runner import own_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,8 +8,8 @@ from importlib import import_module
 from analytic import simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES
-from studies.measures.energy import growth
 from studies.cases.extreme import Extreme
+from studies.measures.energy import growth
 from studies.sources.registry import resolve
 
 BAND, WIDE_BAND = 0.01, 0.1

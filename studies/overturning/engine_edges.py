@@ -12,10 +12,10 @@ import pandas as pd
 
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
+from studies.cases.window import Window
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.sources.registry import Source
-from studies.cases.window import Window
 
 OFFSETS = (-1e-2, -1e-3, -1e-4, 1e-4, 1e-3, 1e-2)
 """Relative distances from an edge at which an engine is asked for the outcome."""

@@ -11,10 +11,10 @@ import pandas as pd
 from analytic.criteria import overturning_amplitude
 from analytic.models import MODELS
 from analytic.motion import FloatArray
+from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.overturning.checks import checks
-from studies.cases.window import LEAST_ONSETS, Window
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,15 +10,15 @@ import pandas as pd
 
 from analytic.models import MODELS
 from analytic.motion import FloatArray
+from studies.cases.window import LEAST_ONSETS, Axis, Window
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
-from studies.overturning.edges import find_edges, intervals
-from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
 from studies.kit.executors import Executor, choose
 from studies.kit.journal import Row
-from studies.overturning.report import headline, pictures, report
 from studies.kit.runner import exit_code, fill_folder
-from studies.cases.window import LEAST_ONSETS, Axis, Window
+from studies.overturning.edges import find_edges, intervals
+from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
+from studies.overturning.report import headline, pictures, report
 
 __all__ = ["command", "headline", "pictures", "report"]
 

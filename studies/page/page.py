@@ -12,8 +12,9 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
+from studies.catalogue import CHAPTERS
 from studies.kit import provenance
-from studies.catalogue import CHAPTERS, Chapter
+from studies.kit.study import Chapter, Study
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,28 +27,27 @@ class Cell:
 
 def write_page(path: Path, folder: Path, full: bool) -> None:
     """Write the page about the results in `folder`, one folder inside for each chapter."""
-    environment = Environment(loader=PackageLoader("studies", "."), autoescape=True)
+    environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
     text = environment.get_template("page.html").render(
-        chapters=[_section(chapter, folder / chapter.folder, full) for chapter in CHAPTERS],
-        made=_provenance(folder / CHAPTERS[0].folder),
+        chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
+        made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
     )
     provenance.write_text(path, text)
 
 
-def _section(chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
-    from studies.__main__ import COMMANDS
-
+def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
+    module = study.load()
     return {
         "folder": chapter.folder,
         "question": chapter.question,
-        "headline": chapter.headline(folder),
-        "how": COMMANDS[chapter.study],
-        "command": "rocking " + " ".join(chapter.command_line(Path("DIR"), full)),
-        "pictures": [(name, embedded(drawn)) for name, drawn in chapter.pictures(folder).items()],
+        "headline": module.headline(folder),
+        "how": study.help,
+        "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
+        "pictures": [(name, embedded(drawn)) for name, drawn in module.pictures(folder).items()],
         "texts": [(path.stem, path.read_text()) for path in sorted(folder.glob("*.txt"))],
         "tables": [(name, *table(folder / name)) for name in chapter.tables],
-        "failures": failures(folder, chapter.source),
+        "failures": failures(folder, study.table),
     }
 
 

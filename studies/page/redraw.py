@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Literal
 
+from studies.catalogue import STUDIES
 from studies.kit.arguments import BadInputError
-from studies.catalogue import CHAPTERS
 
 
 def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
@@ -19,16 +19,17 @@ def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") ->
     """
     from studies.drawing.figures import save_all
 
-    studies = {chapter.study: chapter for chapter in CHAPTERS if any(folder.glob(chapter.source))}
-    if not studies:
-        tables = ", ".join(dict.fromkeys(chapter.source for chapter in CHAPTERS))
+    kept = [study for study in STUDIES if study.table]
+    found = [study for study in kept if any(folder.glob(study.table))]
+    if not found:
+        tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
     drawn = []
-    for chapter in studies.values():
+    for study in found:
         try:
-            drawn += save_all(chapter.pictures(folder), folder, f".{suffix}")
+            drawn += save_all(study.load().pictures(folder), folder, f".{suffix}")
         except (KeyError, ValueError, FileNotFoundError) as error:
-            problem = f"its results of `rocking {chapter.study}` cannot be drawn ({error})"
+            problem = f"its results of `rocking {study.name}` cannot be drawn ({error})"
             raise BadInputError(f"FOLDER is {str(folder)!r}; {problem}") from error
     print("\n".join(map(str, drawn)))
     return 0

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from studies.kit import provenance
-from studies.catalogue import CHAPTERS, Chapter
+from studies.catalogue import CHAPTERS, STUDIES
+from studies.kit import app, provenance
 from studies.kit.journal import FolderError
+from studies.kit.study import Chapter, Study
 from studies.page.page import write_page
 
 PAGE = "report.html"
@@ -28,18 +29,19 @@ def command(*, out: Path, full: bool = False) -> int:
     """
     _prepare(out, full)
     codes = []
-    minutes = sum(chapter.minutes[full] for chapter in CHAPTERS)
+    minutes = sum(chapter.minutes[full] for _, chapter in CHAPTERS)
     form = "{desc} {percentage:3.0f}% [{elapsed}<{remaining}]"
     with tqdm(total=minutes, disable=None, bar_format=form) as bar:
-        for chapter in CHAPTERS:
+        for study, chapter in CHAPTERS:
             bar.set_description(chapter.folder)
-            code = fill(chapter, out, full)
+            code = fill(study, chapter, out, full)
             if code > 1:
                 return code
             codes.append(code)
             bar.update(chapter.minutes[full])
     write_page(out / PAGE, out, full)
-    print(*(f"{c.folder}: {c.headline(out / c.folder)}\n" for c in CHAPTERS), sep="\n")
+    for study, chapter in CHAPTERS:
+        print(f"{chapter.folder}: {study.load().headline(out / chapter.folder)}\n")
     print(out / PAGE)
     return max(codes)
 
@@ -60,12 +62,10 @@ def _prepare(out: Path, full: bool) -> None:
         raise FolderError(out, problem) from error
 
 
-def fill(chapter: Chapter, out: Path, full: bool) -> int:
+def fill(study: Study, chapter: Chapter, out: Path, full: bool) -> int:
     """Run a chapter's study, without its words; return its exit code."""
-    from studies.__main__ import run
-
     with contextlib.redirect_stdout(io.StringIO()):
-        code = run(chapter.command_line(out / chapter.folder, full))
+        code = app.run(STUDIES, study.command_line(chapter, out / chapter.folder, full))
     if code == 1:
         print(f"{chapter.folder}: some rows failed; the page names them", file=sys.stderr)
     return code

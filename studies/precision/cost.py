@@ -20,10 +20,10 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Response
 from engines import ENGINES, Scene, run
-from studies.kit import provenance
 from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
-from studies.precision.cost_report import headline, pictures, report
+from studies.kit import provenance
 from studies.kit.runner import own_folder
+from studies.precision.cost_report import headline, pictures, report
 
 __all__ = ["command", "headline", "pictures", "report"]
 
@@ -207,8 +207,8 @@ def tick() -> float:
 @contextlib.contextmanager
 def clocks(engine: str) -> Iterator[dict[str, float]]:
     """Put clocks around the parts of a step while the context lasts; yield the sums [s]."""
-    from engines.watching.observe import Observer
     from engines.stepping.steps import Stepper
+    from engines.watching.observe import Observer
 
     adapter = importlib.import_module(ENGINES[engine])
     library, function = ENGINE_STEP[engine]

@@ -11,12 +11,12 @@ import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Response
-from studies.precision import cost_report
-from studies.kit import provenance
 from studies.cases.paper import Case, free_rocking_window
-from studies.measures.differences import scientific
-from studies.precision.methods import METHODS, Method
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.kit import provenance
+from studies.measures.differences import scientific
+from studies.precision import cost_report
+from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

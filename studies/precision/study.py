@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic.response import Outcome, Response
-from studies.precision import cost, cost_report
-from studies.kit.arguments import Positive
 from studies.cases.paper import free_rocking_window
-from studies.measures.energy import SAMPLES, energy_drift
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.kit.arguments import Positive
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
+from studies.measures.energy import SAMPLES, energy_drift
+from studies.precision import cost, cost_report
 from studies.precision.methods import METHODS, Method
 from studies.precision.report import headline, pictures, report
-from studies.kit.runner import exit_code, fill_folder
-from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.sources.registry import Source
 
 __all__ = ["command", "headline", "pictures", "report"]

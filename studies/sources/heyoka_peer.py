@@ -10,9 +10,9 @@ from typing import Any
 import heyoka
 import numpy as np
 
+from analytic.kernels.rest import comes_to_rest, time_to_rest
 from analytic.maps import decide, next_lift
 from analytic.models import MODELS
-from analytic.kernels.rest import comes_to_rest, time_to_rest
 from studies.cases.window import Window
 
 MOST_IMPACTS = 10_000

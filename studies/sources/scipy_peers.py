@@ -13,9 +13,9 @@ import numpy as np
 
 from analytic import MODELS
 from analytic.block import RigidBlock
+from analytic.kernels.rest import comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.kernels.rest import comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.simulate import scaled_segments
 
 MOST_EXCURSIONS = 2000

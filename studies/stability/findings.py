@@ -4,10 +4,10 @@ import math
 
 import pandas as pd
 
+from studies.measures.verdicts import ACCEPTED
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
 from studies.stability.sensitivity import FRICTION
-from studies.measures.verdicts import ACCEPTED
 
 ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
 

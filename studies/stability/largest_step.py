@@ -14,12 +14,12 @@ import numpy as np
 
 from analytic import simulate
 from analytic.response import Response
-from studies.measures.energy import growth
 from studies.cases.extreme import Extreme, contact_settings
 from studies.kit.jobs import Job, ask
 from studies.kit.journal import Row
-from studies.sources.registry import Source, resolve
+from studies.measures.energy import growth
 from studies.measures.verdicts import ENERGY_BAND, Verdict, invalidity, judge
+from studies.sources.registry import Source, resolve
 
 START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
 """p dt from which a search sets out, and between which it searches."""

@@ -6,8 +6,8 @@ from typing import Any
 from analytic.response import Response
 from studies.cases.extreme import Extreme
 from studies.kit.jobs import Job, ask
-from studies.sources.registry import Source, resolve
 from studies.measures.verdicts import ACCEPTED, judge
+from studies.sources.registry import Source, resolve
 
 FINER = {"landing": 5e-4, "fixed": 1e-4, "naive": 1e-4}
 """p dt of the remedy for each preset of an engine."""

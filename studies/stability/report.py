@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from studies.kit import provenance
+from studies.measures.verdicts import Verdict
+from studies.stability.findings import failures, findings, verdicts_sentence
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
-from studies.stability.findings import failures, findings, verdicts_sentence
-from studies.measures.verdicts import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,19 +9,19 @@ import numpy as np
 
 from analytic import simulate
 from analytic.response import Response
+from studies.cases.extreme import Extreme, extremes
 from studies.kit.arguments import Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
-from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
+from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
+from studies.sources.registry import Source
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
-from studies.kit.runner import exit_code, fill_folder
-from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
-from studies.sources.registry import Source
 from studies.stability.report import headline, pictures, report
-from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
+from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 
 __all__ = ["command", "headline", "pictures", "report"]
 

@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
+from studies.cases.paper import sweep_cases
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
-from studies.cases.paper import sweep_cases
+from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import (
     scientific,
     summarize,
@@ -18,11 +22,7 @@ from studies.measures.differences import (
     worst_cases,
     worst_text,
 )
-from studies.kit.executors import Executor, choose
 from studies.measures.findings import findings, findings_text
-from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.runner import exit_code, fill_folder
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 
 if TYPE_CHECKING:

@@ -15,11 +15,11 @@ from analytic.maps import FAILED, Modes
 from analytic.models import MODELS
 from analytic.motion import FloatArray
 from analytic.response import Outcome
+from studies.cases.paper import PULSES
+from studies.cases.window import Window
 from studies.kit import provenance
 from studies.kit.arguments import Count
-from studies.cases.paper import PULSES
 from studies.kit.runner import own_folder
-from studies.cases.window import Window
 
 PRODUCTS = ("throughput.csv", "findings.txt")
 CASES, QUICK_CASES = 1_000_000, 40_000

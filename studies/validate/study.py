@@ -15,15 +15,15 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
+from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job
+from studies.kit.journal import Row
+from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import (
     conditioning_of,
     scientific,
     with_reference,
 )
-from studies.kit.executors import Executor, choose
-from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.runner import exit_code, fill_folder
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 
 if TYPE_CHECKING:

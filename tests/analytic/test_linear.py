@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from analytic import MODELS, Outcome, RigidBlock, peak_ratios
-from analytic.kernels.closed_form import linear_state
 from analytic.criteria import overturning_amplitude, quarter_period
+from analytic.kernels.closed_form import linear_state
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]
 

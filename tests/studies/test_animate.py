@@ -10,9 +10,9 @@ from PIL import Image
 from analytic import RigidBlock, SinePulse
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
+from studies.drawing.film import outline
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
-from studies.drawing.film import outline
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]

@@ -10,10 +10,10 @@ import pytest
 
 from analytic.response import Response
 from studies.__main__ import COMMANDS, run
-from studies.catalogue import CHAPTERS
+from studies.catalogue import STUDIES
 from studies.sources.registry import SOURCES, Effort, Source
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
 FIELDS = ["source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"]
 
@@ -192,7 +192,7 @@ def test_a_sweep_through_the_command_line(tmp_path):
 
 def test_help_explains_units():
     done = rocking("--help")
-    assert all(name in done.stdout for name in COMMANDS)
+    assert all(study.name in done.stdout for study in COMMANDS)
     text = " ".join(rocking("compare", "--help").stdout.split())
     for unit in ("[m]", "[g]", "[rad/s]", "[s]"):
         assert unit in text
@@ -218,12 +218,16 @@ def test_accuracy_and_step_reach_only_the_sources_they_are_for():
     assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}
 
 
-@pytest.mark.parametrize("study", [chapter.study for chapter in CHAPTERS if chapter.quick])
+@pytest.mark.parametrize(
+    "study",
+    [study for study in STUDIES if any(chapter.quick for chapter in study.chapters)],
+    ids=lambda study: study.name,
+)
 def test_a_table_of_unknown_origin_is_left_alone(study, tmp_path, capsys):
-    chapter = next(chapter for chapter in CHAPTERS if chapter.study == study)
-    table = tmp_path / chapter.source
+    chapter = study.chapters[0]
+    table = tmp_path / study.table
     table.write_text("mine")
-    assert run(chapter.command_line(tmp_path, full=False)) == 2
+    assert run(study.command_line(chapter, tmp_path, full=False)) == 2
     assert "unknown origin" in capsys.readouterr().err
     assert table.read_text() == "mine"
     assert run(["redraw", str(tmp_path)]) == 2

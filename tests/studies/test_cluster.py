@@ -14,15 +14,15 @@ import pandas as pd
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from studies.kit import cluster
-from studies.validate import study as validate
 from studies.__main__ import run
+from studies.kit import cluster
 from studies.kit.cluster import Cluster, ClusterError
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Journal
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source
+from studies.validate import study as validate
 
 HERE = Path(__file__).parent
 DASK = [sys.executable, "-m", "dask"]
@@ -46,7 +46,7 @@ def slow(block, motion, *, duration, times):
 
 @contextmanager
 def process(*arguments, **environment):
-    path = os.pathsep.join([str(HERE), str(HERE.parent)])
+    path = os.pathsep.join([str(HERE), str(HERE.parents[1])])
     variables = {**os.environ, "PYTHONPATH": path, "PYTHONUNBUFFERED": "1", **environment}
     with subprocess.Popen(
         [*DASK, *map(str, arguments)],

@@ -15,12 +15,12 @@ from engines import Scene, run
 from engines.adapters.bullet import BulletSettings, BulletWorld
 from engines.adapters.mujoco import MujocoSettings, MujocoWorld
 from engines.scene import Grip, Step
-from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
-from studies.contact.report import recommendation, report, variant_table
 from studies.contact.factors import FACTORS
+from studies.contact.report import recommendation, report, variant_table
+from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
+from studies.contact.variants import BEST, DEFAULT, OWN_STEP
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
-from studies.contact.variants import BEST, DEFAULT, OWN_STEP
 
 CASE = next(case for _, case in cases(True) if case.pulse == "full-sine")
 VARIANTS = all_variants()

@@ -10,9 +10,8 @@ from scipy.stats import CensoredData, binomtest, lognorm, norm
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies import respond
 from studies.__main__ import run
+from studies.cases.motions import FAMILIES
 from studies.ensemble.agreement import agreement, confusion
-from studies.ensemble.study import drawn, ensemble_cases
-from studies.ensemble.report import curves, stripes
 from studies.ensemble.fragility import (
     Fit,
     bounds,
@@ -22,7 +21,8 @@ from studies.ensemble.fragility import (
     resampled_fits,
     share_bounds,
 )
-from studies.cases.motions import FAMILIES
+from studies.ensemble.report import curves, stripes
+from studies.ensemble.study import drawn, ensemble_cases
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
 

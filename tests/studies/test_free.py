@@ -9,7 +9,6 @@ import pytest
 from analytic import RigidBlock, SinePulse, peak_ratios, simulate
 from analytic.response import Outcome
 from studies.free import study as free
-from studies.kit.executors import Local
 from studies.free.study import (
     OMEGA_OVER_P,
     crest,
@@ -19,6 +18,7 @@ from studies.free.study import (
     tilting_amplitude,
     turning_points,
 )
+from studies.kit.executors import Local
 from studies.kit.jobs import ask
 from studies.sources.registry import SOURCES, resolve
 

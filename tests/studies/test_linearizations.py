@@ -8,8 +8,8 @@ import pytest
 
 from analytic import MODELS, peak_ratios
 from studies.linearizations import study as linearizations
-from studies.page import redraw
 from studies.linearizations.study import NAMED, VARIANTS, grid, held
+from studies.page import redraw
 
 
 @pytest.mark.parametrize(("changed", "name"), NAMED.items())

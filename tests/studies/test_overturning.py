@@ -11,13 +11,13 @@ from analytic import MODELS, Outcome, peak_ratios, simulate
 from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
+from studies.cases.window import AXES, Window
+from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
-from studies.overturning.study import mapped
-from studies.overturning.checks import checks
 from studies.overturning.report import model_differences, modes_at, read
+from studies.overturning.study import mapped
 from studies.sources.registry import resolve
-from studies.cases.window import AXES, Window
 
 WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
 

@@ -7,15 +7,15 @@ import pandas as pd
 import pytest
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
-from studies.measures.energy import energy_drift
-from studies.kit.jobs import Job, ask
-from studies.precision.methods import METHODS
-from studies.sources.scipy_peers import solve_ivp_response
-from studies.precision.study import measure, precision_jobs, quick_values, reduce
-from studies.precision.figure import STYLES, pareto
-from studies.precision.report import cheapest, observed_order, with_errors, work_precision
 from studies.cases.selection import chosen_cases
+from studies.kit.jobs import Job, ask
+from studies.measures.energy import energy_drift
+from studies.precision.figure import STYLES, pareto
+from studies.precision.methods import METHODS
+from studies.precision.report import cheapest, observed_order, with_errors, work_precision
+from studies.precision.study import measure, precision_jobs, quick_values, reduce
 from studies.sources.registry import resolve
+from studies.sources.scipy_peers import solve_ivp_response
 
 
 def tabulate(names, kind="typical"):

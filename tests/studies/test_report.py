@@ -1,19 +1,18 @@
 """The chapters, and the page that shows them, in a browser where there is one."""
 
-import importlib
 import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
+from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
-from studies.__main__ import COMMANDS
-from studies.catalogue import CHAPTERS
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
@@ -23,30 +22,27 @@ SMALL = {
 """Chapters that are quickly made, and their arguments here."""
 
 
-@pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda chapter: chapter.folder)
-def test_a_chapter_is_a_study_with_pictures_and_a_headline(chapter):
-    assert chapter.study in COMMANDS
-    module = importlib.import_module(f"studies.{chapter.study}")
-    for name in ("command", "pictures", "headline"):
-        assert callable(getattr(module, name))
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
+def test_a_study_has_a_command_and_one_with_a_table_can_be_drawn_and_told(study):
+    module = study.load()
+    needed = ("command", "pictures", "headline") if study.table else ("command",)
+    assert all(callable(getattr(module, name)) for name in needed)
+    assert not study.chapters or study.table
 
 
-def test_every_study_is_a_chapter():
-    beside = {"compare", "cost", "report", "redraw", "animate", "throughput"}
-    assert {chapter.study for chapter in CHAPTERS} | beside == set(COMMANDS)
+def test_every_study_is_a_chapter_but_those_shown_elsewhere():
+    shown = {study.name for study, _ in CHAPTERS}
+    assert {study.name for study in STUDIES} - shown == {"compare", "animate", "cost", "throughput"}
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
-        chapters = {chapter.folder: chapter for chapter in CHAPTERS if chapter.folder in SMALL}
         few = tuple(
-            type(chapter)(
-                **{name: getattr(chapter, name) for name in chapter.__slots__}
-                | {"quick": SMALL[name]}
-            )
-            for name, chapter in chapters.items()
+            (study, replace(chapter, quick=SMALL[chapter.folder]))
+            for study, chapter in CHAPTERS
+            if chapter.folder in SMALL
         )
         patch.setattr(report, "CHAPTERS", few)
         patch.setattr(page, "CHAPTERS", few)

@@ -16,7 +16,6 @@ import pandas as pd
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from studies.sweep import study as sweep
 from studies.__main__ import run
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
@@ -24,6 +23,7 @@ from studies.kit.journal import FolderError, open_journal
 from studies.kit.provenance import identity
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Effort, Source, resolve
+from studies.sweep import study as sweep
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
@@ -141,7 +141,7 @@ def lines_of(folder):
 
 def start_slow_sweep(folder, call="slow_sweep({!r})"):
     program = f"import test_runner; test_runner.{call.format(str(folder))}"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parent)])}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[1])])}
     return subprocess.Popen(
         [sys.executable, "-c", program],
         env=environment,

@@ -10,10 +10,13 @@ import pytest
 from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
 from studies.__main__ import run
+from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
+from studies.kit.executors import Local
 from studies.measures.differences import with_conditioning
 from studies.measures.energy import energy, growth
-from studies.kit.executors import Local
-from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
+from studies.measures.verdicts import Verdict, invalidity, judge
+from studies.sources.registry import resolve
+from studies.stability.figure import MARKS
 from studies.stability.largest_step import (
     FACTOR,
     LARGEST_STEP,
@@ -24,12 +27,15 @@ from studies.stability.largest_step import (
     search_job,
 )
 from studies.stability.remedies import NOTHING, answer, remedies
-from studies.stability.sensitivity import CASES, condition_number, exact_change, perturbed, with_growth
-from studies.sources.registry import resolve
-from studies.stability.study import METHODS, matrix_jobs, put, reduce, speechless, stability
-from studies.stability.figure import MARKS
 from studies.stability.report import report
-from studies.measures.verdicts import Verdict, invalidity, judge
+from studies.stability.sensitivity import (
+    CASES,
+    condition_number,
+    exact_change,
+    perturbed,
+    with_growth,
+)
+from studies.stability.study import METHODS, matrix_jobs, put, reduce, speechless, stability
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)

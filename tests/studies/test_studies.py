@@ -11,11 +11,11 @@ import pytest
 from analytic import RigidBlock, SinePulse
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, PRESETS
-from studies.histories import study as histories
-from studies.page import redraw
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
+from studies.histories import study as histories
 from studies.kit.journal import FolderError
+from studies.page import redraw
 from studies.sources.registry import SOURCES, Source, UnknownSourceError
 
 BLOCK = RigidBlock(width=0.5, height=1.5)

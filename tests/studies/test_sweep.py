@@ -11,14 +11,14 @@ import pandas as pd
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from studies.page import redraw
-from studies.sweep import study as sweep
-from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.kit.executors import Local
-from studies.measures.findings import findings
 from studies.kit.jobs import summary
 from studies.kit.runner import run_jobs
+from studies.measures.differences import summarize, with_reference, worst_cases
+from studies.measures.findings import findings
+from studies.page import redraw
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES
+from studies.sweep import study as sweep
 
 HERE = Path(__file__).parent
 MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
@@ -139,7 +139,7 @@ def refuse_any(jobs):
 
 def test_provenance_says_what_ran(swept):
     record = json.loads((swept[0] / "provenance.json").read_text())
-    project = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]
+    project = tomllib.loads((HERE.parents[1] / "pyproject.toml").read_text())["project"]
     assert record["version"] == project["version"]
     for name, version in record["engines"].items():
         assert f"{name}=={version}" in project["dependencies"]

@@ -3,10 +3,10 @@
 import pandas as pd
 import pytest
 
-from studies.throughput import study as throughput
 from studies.__main__ import run
-from studies.throughput.study import measured, peer_solvers, points
 from studies.cases.window import Window
+from studies.throughput import study as throughput
+from studies.throughput.study import measured, peer_solvers, points
 
 
 def test_every_solver_answers_the_same_cases(tmp_path, monkeypatch, capsys):

@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from analytic import peak_ratios, simulate
-from studies.measures.differences import with_conditioning
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
+from studies.measures.differences import with_conditioning
 from studies.validate.study import LEAST_NORMAL, draw, report, validate
 
 LOCAL = Local(workers=1, time_limit_s=60.0)

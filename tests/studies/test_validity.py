@@ -11,8 +11,8 @@ from analytic.response import Response
 from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
-from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
 from studies.validity.cases import ValidityCase, grid, reference_map
+from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
 
 G = 9.81
 

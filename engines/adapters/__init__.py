@@ -1,0 +1,1 @@
+"""One file an engine: how a scene is built, set, stepped and read back."""

@@ -1,0 +1,1 @@
+"""From poses to rotation, impacts, outcome and history: the same eyes for every engine."""

@@ -1,0 +1,13 @@
+"""One block, one motion, every source side by side."""
+
+from studies.kit.study import Study
+
+STUDY = Study(
+    name="compare",
+    module="studies.compare.study",
+    help="""One block and one pulse or record through every source, side by side.
+
+For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), its
+relative difference from the exact solution, the impacts and their velocity ratio beside Housner's
+η, the steps and the run time. All sources observe the same window of time.""",
+)

@@ -1,0 +1,1 @@
+"""How it is shown: style, panels, diagrams, films."""

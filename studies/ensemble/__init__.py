@@ -1,0 +1,32 @@
+"""Many motions: single responses and their statistics."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="ensemble",
+    module="studies.ensemble.study",
+    help="""Many motions, blocks and intensities: single responses and their statistics.
+
+Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
+the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
+agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about a
+quarter of an hour on one core, --quick half a minute.""",
+    table="ensemble.csv",
+    products=(
+        "ensemble.csv",
+        "stripes.csv",
+        "curves.csv",
+        "agreement.csv",
+        "confusion.csv",
+        "ensemble.png",
+        "findings.txt",
+    ),
+    chapters=(
+        Chapter(
+            folder="ensemble",
+            question="Are statistics predicted where single responses are not?",
+            tables=("agreement.csv", "confusion.csv"),
+            minutes=(0.5, 15.0),
+        ),
+    ),
+)

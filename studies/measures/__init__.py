@@ -1,0 +1,1 @@
+"""What an answer is worth: differences from the exact solution, energy, verdicts, findings."""

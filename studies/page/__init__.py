@@ -1,0 +1,17 @@
+"""Every study on one page."""
+
+from studies.kit.study import Study
+
+REPORT = Study(
+    name="report",
+    module="studies.page.report",
+    help="""Every study, and one self-contained page (report.html) about them.
+
+The quick studies take about four minutes on two cores, the full ones about fifty. A report that
+was interrupted goes on where it stopped when the same command is given again.""",
+)
+REDRAW = Study(
+    name="redraw",
+    module="studies.page.redraw",
+    help="Draw a results folder again, from its CSVs alone.",
+)

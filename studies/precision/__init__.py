@@ -1,0 +1,43 @@
+"""Error against run time, and what a scene costs."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="precision",
+    module="studies.precision.study",
+    help="""Error against run time: every method along its own setting, on the same cases.
+
+Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
+resumable. The full study takes about twenty minutes on one core, --quick one.""",
+    table="precision.csv",
+    products=(
+        "precision.csv",
+        "work-precision.csv",
+        "precision.png",
+        "findings.txt",
+        "shares.csv",
+        "scenes.csv",
+        "reference.csv",
+        "cost.png",
+        "cost.txt",
+    ),
+    chapters=(
+        Chapter(
+            folder="precision",
+            question="Which error does which run time buy, and what does a scene not need?",
+            tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
+            minutes=(1.1, 20.0),
+        ),
+    ),
+)
+
+COST = Study(
+    name="cost",
+    module="studies.precision.cost",
+    help="""What a scene costs, and what each thing left out of it would cost and change.
+
+Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
+history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv.""",
+    table="shares.csv",
+    products=("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt"),
+)

@@ -1,0 +1,1 @@
+"""Who answers: models, solvers, general-purpose integrators and engines, each by its name."""

@@ -1,0 +1,24 @@
+"""Stiff and extreme cases: what stays finite, right and accurate."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="stability",
+    module="studies.stability.study",
+    help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
+
+Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),
+sensitivity.csv and findings.txt; resumable. A failure is an answer: the exit code is 1 only where
+a source gives no result at all. The full study takes about six minutes on two cores, --quick half
+a minute.""",
+    table="stability.csv",
+    products=("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="stability",
+            question="What stays finite, right and accurate in stiff and extreme cases?",
+            tables=("steps.csv",),
+            minutes=(0.6, 6.0),
+        ),
+    ),
+)

@@ -1,0 +1,23 @@
+"""Where the reference is valid, and what engines do beyond."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="validity",
+    module="studies.validity.study",
+    help="""Where the reference is valid, and what engines do beyond: slide, lift off.
+
+The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
+on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
+findings.txt; resumable. The full study takes about a minute on one core, --quick a quarter of
+one.""",
+    table="validity.csv",
+    products=("validity.csv", "map.csv", "compared.csv", "validity.png", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="validity",
+            question="Where is the reference itself valid, and what do engines do beyond?",
+            minutes=(0.5, 3.0),
+        ),
+    ),
+)
