@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
+from analytic.block import RigidBlock
 from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
 
 LIBRARY_STEP_S = 1.0 / 240.0
@@ -19,9 +20,9 @@ LIBRARY_BREAKING_THRESHOLD = 0.02
 """The library's own gap, over a body's size, up to which it keeps a contact."""
 
 KEPT_GAP = 4.0
-"""Gap up to which landing keeps a contact, in units of (p dt)^2 half diagonals. A pivot rises by
-some (theta' dt)^2 H/4 in a step; an anchor that is kept much longer pulls the corner back to where
-it stood an impact ago."""
+"""Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot
+rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
+must be let go: an anchor that is still kept at the next impact pulls it back to where it stood."""
 
 SOLVERS = {
     "sequential impulse": "CONSTRAINT_SOLVER_LCP_SI",
@@ -74,8 +75,8 @@ class BulletSettings:
         Gap, over the half diagonal, up to which a contact is kept. The library holds this once
         for the whole process, so every scene sets it.
     landing : bool
-        Keep contacts only up to a gap of 4 (p dt)^2 half diagonals, and correct no positions in
-        the short steps around an impact.
+        Keep contacts only up to a gap of 4 (p dt sin(alpha))^2 half diagonals, and correct no
+        positions in the short steps around an impact.
     base_geometry : str
         "plane" or "box".
     base_velocity : bool
@@ -182,7 +183,7 @@ class BulletWorld:
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
         self._velocity = self._moved = self._dt = 0.0
-        self._set_engine(scene.block.p)
+        self._set_engine(scene.block)
         self._ground = (0.0, 0.0, 0.0)
         if self.settings.base_geometry == "box":
             self._ground = (0.0, 0.0, -scene.block.height)
@@ -251,9 +252,11 @@ class BulletWorld:
         )
         self._p.disconnect(self._client)
 
-    def _set_engine(self, p: float) -> None:
+    def _set_engine(self, block: RigidBlock) -> None:
         s = self.settings
-        threshold = KEPT_GAP * (p * self.dt_s) ** 2 if s.landing else s.breaking_threshold
+        threshold = s.breaking_threshold
+        if s.landing:
+            threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * self.dt_s) ** 2
         wanted = {
             "numSolverIterations": s.iterations,
             "solverResidualThreshold": s.residual,
