@@ -23,6 +23,7 @@ from analytic.response import Outcome, Response
 from engines import ENGINES, FRAMES, Scene, run
 from engines.scene import ACCURACIES
 from engines.stepping.timetable import loads_of
+from engines.world import Step
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 
@@ -327,13 +328,13 @@ def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.Mon
     if engine == "mujoco":
         still = mujoco.MujocoWorld._move_base
 
-        def no_surface_velocity(self: mujoco.MujocoWorld, dt_s: float, base_kick: float) -> None:
-            still(self, dt_s, base_kick)
+        def no_surface_velocity(self: mujoco.MujocoWorld, step: Step) -> None:
+            still(self, step)
             self._model.geom_surfacevel[:] = 0.0
 
         monkeypatch.setattr(mujoco.MujocoWorld, "_move_base", no_surface_velocity)
     else:
-        monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, base_kick: None)
+        monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, step: None)
     response = run(engine, Scene(block=BLOCK, motion=pulse(1.5, 1.0), frame="world"))
     assert response.outcome is not Outcome.ROCKED
     assert response.outcome is not Outcome.OVERTURNED
