@@ -49,6 +49,10 @@ MOST_STRIKES = 12
 SETTLED = 1e-6
 """An impact is over when a step changes the angular velocity by less than this part of it."""
 
+FIRST_PART = 0.25
+"""The first step after an impact is this part of the next ones: a contact that has just taken all
+velocity out of its point lets it rise by the square of that step."""
+
 TOUCHING = 1e-9
 """A corner lower above the base than this part of the width touches it."""
 
@@ -147,7 +151,7 @@ class LandingSteps:
         if self._swing_s(pose) < self._shortest:
             return self._settle()
         self._side = math.copysign(1.0, pose.rate)
-        return Choice(self._times.even(self._longest(pose)), Grip.SWING, self._side)
+        return Choice(self._times.even(FIRST_PART * self._longest(pose)), Grip.SWING, self._side)
 
     def _settle(self) -> Choice:
         """Leave the block to its contacts."""
