@@ -164,7 +164,8 @@ class MujocoWorld:
         self._released = self._released and self._aloft
         if not (was_aloft and self._aloft and self._rate):
             return 0.0
-        growth = (1.0 + self._gained * step.kick_s / self._rate) ** 2
+        faster = 1.0 + self._gained * step.kick_s / self._rate
+        growth = faster * faster
         if self._released and growth > self._growth:
             # a released block gains speed steadily: what is returned too soon would stay in it
             return 0.0
