@@ -13,8 +13,9 @@ from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
 """Integrators of the library that share the layout of its step."""
 
-MOST_REFLECTION = 2.0
-"""Landing returns no more than this part of the velocity with which a contact comes into a step."""
+MOST_REFLECTION = 25.0
+"""Landing returns no more than this part of the velocity with which a contact comes into a step:
+after a far shorter step that is noise."""
 
 MOST_GROWTH = 20.0
 """Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
