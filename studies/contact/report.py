@@ -10,8 +10,8 @@ import pandas as pd
 from studies.contact.factors import FACTORS
 from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
 from studies.kit import provenance
+from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
-from studies.stability.report import left_aligned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
