@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from studies.contact.factors import FACTORS
-from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
+from engines import ENGINES
+from engines.factors import BEST, BOTH, DEFAULT
+from studies.contact.variants import AS_BEST, BY_DEFAULT, preset_values
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
@@ -141,7 +142,7 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
     table = []
     for engine in lines["engine"].unique():
         naive = _find(lines, engine, DEFAULT, "")
-        for factor in FACTORS[engine]:
+        for factor in ENGINES[engine].factors:
             left = _find(lines, engine, BEST, factor.name, BY_DEFAULT)
             alone = _find(lines, engine, DEFAULT, factor.name, AS_BEST)
             if naive is None or alone is None:
@@ -218,14 +219,24 @@ def findings(lines: pd.DataFrame) -> str:
     )
 
 
+WAYS = {
+    BEST: "at a fixed step",
+    "landing": "where steps land on impacts",
+    DEFAULT: "with the library's defaults at the same step",
+}
+"""Preset -> how it is used in the study, in words."""
+
+
 def _overview(lines: pd.DataFrame, engine: str) -> str:
     base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
-    of = {line["preset"]: line for _, line in base.iterrows()}
-    return (
-        f"{engine}: largest error {_errors(of[BEST])} at a fixed step, "
-        f"{_errors(of['landing'])} where steps land on impacts, "
-        f"{_errors(of[DEFAULT])} with the library's defaults at the same step."
-    )
+    lines_of = {line["preset"]: line for _, line in base.iterrows()}
+    order = [BEST, *(name for name in lines_of if name not in BOTH), DEFAULT]
+    parts = [
+        f"{_errors(lines_of[name])} {WAYS.get(name, f'with the preset {name}')}"
+        for name in order
+        if name in lines_of
+    ]
+    return f"{engine}: largest error {', '.join(parts)}."
 
 
 def _findings(lines: pd.DataFrame, engine: str) -> list[str]:

@@ -68,6 +68,17 @@ def check_sources(names: Sequence[str]) -> None:
     refuse_repeats("--sources", names)
 
 
+def check_engines(names: Sequence[str]) -> None:
+    """Raise BadInputError if there is no engine, an unknown one, or one named twice."""
+    from engines import ENGINES
+
+    for name in names:
+        if name not in ENGINES:
+            allowed = ", ".join(ENGINES)
+            raise BadInputError(f"--engines is {name!r}; it must be among {allowed}")
+    refuse_repeats("--engines", names)
+
+
 def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
     """Raise BadInputError if a value is given twice, or none."""
     values = list(values)

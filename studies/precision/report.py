@@ -17,6 +17,7 @@ from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.precision import cost_report
 from studies.precision.methods import METHODS, Method
+from studies.sources.registry import resolve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -195,7 +196,8 @@ def floor_text(table: pd.DataFrame) -> str:
 
 def findings(table: pd.DataFrame) -> str:
     """Return the findings in a few sentences, from the numbers."""
-    engines = table[table["method"].str.contains("pybullet|mujoco")]
+    of_engine = [resolve(METHODS[name].source).kind == "engine" for name in table["method"]]
+    engines = table[of_engine]
     sentences = []
     for target in TARGETS[:3]:
         good = engines[(engines["failed"] == 0) & (engines["max_error"] <= target)]

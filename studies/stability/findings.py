@@ -69,7 +69,7 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
         return []
     sentences = []
     for source, group in steps.groupby("source", sort=False):
-        usual = group[group["contact_s"].isna() | (source == "mujoco:naive")]
+        usual = group[~with_own_contact(group)]
         usual = usual[usual["invalid"] == ""]
         accurate = usual["largest_accurate"]
         if accurate.notna().any():
@@ -82,9 +82,17 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
     return [words, *_on_contacts(steps)]
 
 
+def with_own_contact(steps: pd.DataFrame) -> "pd.Series[bool]":
+    """Return which rows are of a contact that was given a time of its own.
+
+    With its defaults a library may have one by itself.
+    """
+    return steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()
+
+
 def _on_contacts(steps: pd.DataFrame) -> list[str]:
     """Say for which steps a contact with a time of its own is stable."""
-    own = steps[steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()]
+    own = steps[with_own_contact(steps)]
     return [
         f"A contact of {OWN_CONTACT:g}/p in {source} is stable up to steps of "
         f"{span(group['stable_over_contact'])} of that time and accurate up to "
