@@ -15,7 +15,6 @@ from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import (
-    scientific,
     summarize,
     summary_text,
     with_reference,
@@ -24,6 +23,7 @@ from studies.measures.differences import (
 )
 from studies.measures.findings import findings, findings_text
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sweep.claims import claims, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -166,17 +166,8 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and its largest error."""
-    summary = pd.read_csv(folder / "summary.csv")
-    last = summary[summary["figure"] == summary["figure"].iloc[-1]]
-    words = [
-        f"{line['source']} {line['agree']} of {line['cases']} ({scientific(line['max_error'])})"
-        for _, line in last[last["source"] != "exact"].iterrows()
-    ]
-    return (
-        "Outcomes that agree with the exact solution, and the largest relative error of a peak "
-        f"that survives in both: {', '.join(words)}."
-    )
+    """Say how many outcomes each source gets right, and how far its peaks are off."""
+    return claims(whole(folder))
 
 
 def read(folder: Path) -> pd.DataFrame:

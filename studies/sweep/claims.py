@@ -1,0 +1,79 @@
+"""What the paper's cases say about each source: the engines by preset, and the linearizations."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from engines import PRESETS
+from studies.measures.words import PRESET_WORDS, alike, capital, listed, out_of, part, preset_of
+from studies.sources.registry import resolve
+
+
+def whole(folder: Path) -> pd.DataFrame:
+    """Return the lines of a folder's summary.csv that are about all its figures."""
+    summary = pd.read_csv(folder / "summary.csv")
+    return summary[summary["figure"] == summary["figure"].iloc[-1]].reset_index(drop=True)
+
+
+def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """Return the engines' lines of a summary, by preset, in the order in which these get better."""
+    engine = [resolve(source).kind == "engine" for source in lines["source"]]
+    rows = lines[engine].assign(preset=lines["source"].map(preset_of))
+    return {name: rows[rows["preset"] == name] for name in PRESETS if name in set(rows["preset"])}
+
+
+def preset_claim(preset: str, lines: pd.DataFrame) -> str:
+    """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
+    names = listed([source.partition(":")[0] for source in lines["source"]])
+    right = [out_of(row.agree, row.cases) for row in lines.itertuples()]
+    medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
+    return capital(
+        f"{PRESET_WORDS[preset]}, {names} get {alike(right)} outcomes right, and peaks wrong by "
+        f"{alike(medians)} in the median and {alike(largest)} at most."
+    )
+
+
+def model_claim(line: "pd.Series[float]") -> str:
+    """Say how many outcomes a linearization gets right, on which side it errs, and how far."""
+    wrong = [
+        f"{line[column]:.0f} {words}"
+        for column, words in (
+            ("false_overturnings", "falsely overturned"),
+            ("missed_overturnings", "overturnings missed"),
+        )
+        if line[column]
+    ]
+    return (
+        f"{line['source']} {out_of(line['agree'], line['cases'])}"
+        + (f" ({listed(wrong)})" if wrong else "")
+        + f", {part(line['median_error'])} in the median and {part(line['max_error'])} at most"
+    )
+
+
+def claims(lines: pd.DataFrame) -> str:
+    """Return a sentence for each preset of the engines, and one for the linearizations."""
+    sentences = [preset_claim(*item) for item in engines_by_preset(lines).items()]
+    kinds = lines["source"].map(lambda source: resolve(source).kind)
+    models = lines[(kinds == "model") & (lines["source"] != "exact")]
+    if len(models):
+        words = "; ".join(model_claim(row) for _, row in models.iterrows())
+        sentences.append(f"Of the linearizations: {words}.")
+    return " ".join(sentences)
+
+
+def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each preset and engine: outcomes, errors of the peak, time of a case."""
+    found = pd.concat(engines_by_preset(lines).values(), ignore_index=True)
+    return pd.DataFrame(
+        {
+            "preset": found["preset"],
+            "engine": found["source"].str.partition(":")[0],
+            "source": found["source"],
+            "right": found["agree"],
+            "cases": found["cases"],
+            "median": found["median_error"],
+            "p90": found["p90_error"],
+            "max": found["max_error"],
+            "ms": 1e3 * found["wall_s"] / found["cases"],
+        }
+    )
