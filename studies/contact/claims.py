@@ -46,18 +46,41 @@ def errors_of(line: "pd.Series[Any]") -> str:
     return f"{error} ({words})" if words else error
 
 
+def first_claim(lines: pd.DataFrame) -> str:
+    """Say which setting, left at its default, leaves the largest error in each engine."""
+    words = []
+    for engine in lines["engine"].unique():
+        left = left_at_defaults(lines, engine)
+        worst = left.sort_values("max_error", ascending=False).head(1)
+        words += [
+            f"{line['factor']} in {engine} ({part(line['max_error'])})"
+            for _, line in worst.iterrows()
+        ]
+    return (
+        "Of a tuned contact, the setting whose default alone leaves the largest error is "
+        f"{listed(words)}."
+    )
+
+
+def left_at_defaults(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
+    """Return the tuned preset with one setting left at the library's default each."""
+    varied = changed(lines, engine, BEST)
+    return varied[varied["level"] == BY_DEFAULT]
+
+
 def overview(lines: pd.DataFrame, engine: str) -> str:
     """Return the largest errors of an engine's presets, and which settings matter most."""
     base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
     of = {line["preset"]: line for _, line in base.iterrows()}
-    varied = changed(lines, engine, BEST)
-    left = varied[varied["level"] == BY_DEFAULT]
+    left = left_at_defaults(lines, engine)
+    moving = left[left["moved"] >= NOTABLE]
+    erring = left[left["max_error"] > (1.0 + NOTABLE) * of[BEST]["max_error"]]
     return (
         f"{engine}: largest error {errors_of(of['landing'])} where steps land on impacts, "
         f"{errors_of(of[BEST])} with a tuned contact at a fixed step, {errors_of(of[DEFAULT])} "
         "with the library's defaults at the same step. Of what is tuned, left at its default, "
-        f"peaks are moved most by {ranked(left, 'moved', 3)}; the largest error is left by "
-        f"{ranked(left, 'max_error', 3)}."
+        f"peaks are moved by more than {part(NOTABLE)} by {ranked(moving, 'moved')}; a larger "
+        f"error than the preset's own is left by {ranked(erring, 'max_error')}."
     )
 
 

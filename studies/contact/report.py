@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from studies.contact.claims import errors_of, findings, name_of, overview
+from studies.contact.claims import errors_of, findings, first_claim, name_of, overview
 from studies.contact.factors import FACTORS
 from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
 from studies.kit import provenance
@@ -47,6 +47,11 @@ def report(folder: Path) -> str:
 
 
 def headline(folder: Path) -> str:
+    """Return, for each engine, the tuned setting that matters most."""
+    return first_claim(_read(folder / "variants.csv"))
+
+
+def paragraph(folder: Path) -> str:
     """Return, for each engine, the errors of its presets and the settings that matter most."""
     lines = _read(folder / "variants.csv")
     return " ".join(overview(lines, engine) for engine in lines["engine"].unique())

@@ -1,5 +1,7 @@
 """Are statistics predicted where single responses are not? What the tests say, as they say it."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -23,6 +25,17 @@ def claims(agreed: pd.DataFrame) -> list[str]:
     """
     groups = agreed.groupby("source", sort=False)
     return [*(_line(str(source), rows) for source, rows in groups), verdict(agreed)]
+
+
+def first_claim(agreed: pd.DataFrame) -> str:
+    """Say whose statistics tests tell from the exact ones, and whose they do not."""
+    words: dict[bool, list[str]] = {True: [], False: []}
+    for source, rows in agreed.groupby("source", sort=False):
+        words[bool(rejections(rows))].append(f"{source} ({part(share_predicted(rows))})")
+    return (
+        f"Tests tell the statistics from the exact ones for {listed(words[True])}, and for "
+        f"{listed(words[False])} they do not (in brackets the single responses predicted)."
+    )
 
 
 def verdict(agreed: pd.DataFrame) -> str:
@@ -59,12 +72,12 @@ def share_predicted(rows: pd.DataFrame) -> float:
 def rejections(rows: pd.DataFrame) -> list[str]:
     """Return what tells a source's statistics from the exact ones, each test with its number."""
     words = []
-    for row in rows.itertuples():
-        block = f"at {row.width_m:g} m x {row.height_m:g} m"
-        if is_off(row.ratio_low, row.ratio_high):
+    for _, row in rows.iterrows():
+        block = f"at {row['width_m']:g} m x {row['height_m']:g} m"
+        if is_off(row["ratio_low"], row["ratio_high"]):
             words.append(f"capacity ratio {_interval(row)} {block}")
-        if row.mcnemar_p < LEVEL:
-            words.append(f"McNemar p = {row.mcnemar_p:.2g} {block}")
+        if row["mcnemar_p"] < LEVEL:
+            words.append(f"McNemar p = {row['mcnemar_p']:.2g} {block}")
     if rows["ks_rejected"].sum():
         words.append(_distributions(rows))
     return words
@@ -75,8 +88,8 @@ def is_off(low: float, high: float) -> bool:
     return low > 1.0 or high < 1.0
 
 
-def _interval(row: "pd.Series[float]") -> str:
-    return f"{row.capacity_ratio:.3f} [{row.ratio_low:.3f}, {row.ratio_high:.3f}]"
+def _interval(row: "pd.Series[Any]") -> str:
+    return f"{row['capacity_ratio']:.3f} [{row['ratio_low']:.3f}, {row['ratio_high']:.3f}]"
 
 
 def _distributions(rows: pd.DataFrame) -> str:
@@ -88,8 +101,8 @@ def _distributions(rows: pd.DataFrame) -> str:
 
 
 def _line(source: str, rows: pd.DataFrame) -> str:
-    ratios = listed([_interval(row) for row in rows.itertuples()])
-    off = sum(is_off(row.ratio_low, row.ratio_high) for row in rows.itertuples())
+    ratios = listed([_interval(row) for _, row in rows.iterrows()])
+    off = sum(is_off(row["ratio_low"], row["ratio_high"]) for _, row in rows.iterrows())
     few = int((rows["mcnemar_p"] < LEVEL).sum())
     return (
         f"{source}: {part(share_predicted(rows))} of single responses predicted within "

@@ -6,7 +6,6 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 import pandas as pd
 
 from analytic.block import RigidBlock
@@ -14,7 +13,7 @@ from analytic.record import Record
 from studies.cases.accelerograms import Units, read_record
 from studies.cases.motions import FAMILIES
 from studies.ensemble.agreement import agreement, confusion
-from studies.ensemble.claims import verdict
+from studies.ensemble.claims import first_claim, verdict
 from studies.ensemble.fragility import fragilities
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
@@ -245,6 +244,12 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
+    """Say whose statistics tests tell from the exact ones, and whose they do not."""
+    agreed = pd.read_csv(folder / "agreement.csv")
+    return first_claim(agreed[agreed["source"] != "exact"])
+
+
+def paragraph(folder: Path) -> str:
     """Say what became of the claim that statistics are predicted where responses are not."""
     agreed = pd.read_csv(folder / "agreement.csv")
     return verdict(agreed[agreed["source"] != "exact"])

@@ -17,7 +17,7 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.precision import cost_report
-from studies.precision.claims import claims, first_claims
+from studies.precision.claims import claims, first_claim
 from studies.precision.methods import METHODS
 from studies.precision.orders import observed_order
 
@@ -55,7 +55,12 @@ def report(folder: Path) -> str:
 
 def headline(folder: Path) -> str:
     """Return what a folder's work-precision.csv says first."""
-    return first_claims(pd.read_csv(folder / "work-precision.csv"))
+    return first_claim(pd.read_csv(folder / "work-precision.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Return what a folder's work-precision.csv says."""
+    return claims(pd.read_csv(folder / "work-precision.csv"))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

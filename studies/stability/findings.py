@@ -4,9 +4,10 @@ import math
 
 import pandas as pd
 
+from engines import PRESETS
 from studies.measures.differences import scientific
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import listed, out_of
+from studies.measures.words import PRESET_WORDS, listed, out_of, preset_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -23,6 +24,18 @@ def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> 
     return " ".join(
         [*_on_verdicts(matrix), *_on_limits(matrix), *_on_steps(steps), *_on_sensitivity(moved)]
     )
+
+
+def first_claim(matrix: pd.DataFrame) -> str:
+    """Say how many of the extreme cases each preset of the engines gets right."""
+    engine = matrix["source"].map(lambda source: resolve(source).kind == "engine")
+    asked = matrix[engine & (matrix["verdict"] != Verdict.INVALID.value)]
+    right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
+    words: dict[str, list[str]] = {}
+    for source, good in right:
+        words.setdefault(preset_of(str(source)), []).append(out_of(int(good.sum()), len(good)))
+    parts = [f"{PRESET_WORDS[name]} {listed(words[name])}" for name in PRESETS if name in words]
+    return f"Of extreme cases the engines get right: {', '.join(parts)}."
 
 
 def verdicts_sentence(matrix: pd.DataFrame) -> str:
@@ -62,7 +75,7 @@ def reference_sentence(matrix: pd.DataFrame) -> str:
 
     It is what all others are held against, so that its own verdicts say nothing.
     """
-    peers = matrix[[resolve(source).kind == "peer" for source in matrix["source"]]]
+    peers = matrix[matrix["source"].map(lambda source: resolve(source).kind == "peer")]
     if peers.empty:
         return ""
     same = int((peers["outcome"] == peers["exact_outcome"]).sum())

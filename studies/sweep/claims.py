@@ -1,6 +1,7 @@
 """What the paper's cases say about each source: the engines by preset, and the linearizations."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -12,7 +13,8 @@ from studies.sources.registry import resolve
 def whole(folder: Path) -> pd.DataFrame:
     """Return the lines of a folder's summary.csv that are about all its figures."""
     summary = pd.read_csv(folder / "summary.csv")
-    return summary[summary["figure"] == summary["figure"].iloc[-1]].reset_index(drop=True)
+    lines: pd.DataFrame = summary[summary["figure"] == summary["figure"].iloc[-1]]
+    return lines.reset_index(drop=True)
 
 
 def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
@@ -25,7 +27,7 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
     names = listed([source.partition(":")[0] for source in lines["source"]])
-    right = [out_of(row.agree, row.cases) for row in lines.itertuples()]
+    right = [out_of(row["agree"], row["cases"]) for _, row in lines.iterrows()]
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
     return capital(
         f"{PRESET_WORDS[preset]}, {names} get {alike(right)} outcomes right, and peaks wrong by "
@@ -33,7 +35,7 @@ def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     )
 
 
-def model_claim(line: "pd.Series[float]") -> str:
+def model_claim(line: "pd.Series[Any]") -> str:
     """Say how many outcomes a linearization gets right, on which side it errs, and how far."""
     wrong = [
         f"{line[column]:.0f} {words}"
@@ -50,11 +52,32 @@ def model_claim(line: "pd.Series[float]") -> str:
     )
 
 
+def first_claim(lines: pd.DataFrame) -> str:
+    """Say in a sentence what each preset, and each linearization, is off by."""
+    parts = [_short(*item) for item in engines_by_preset(lines).items()]
+    models = [
+        f"{row['source']} {row['cases'] - row['agree']}" for _, row in linearized(lines).iterrows()
+    ]
+    parts += [f"outcomes wrong by linearization: {listed(models)}"] if models else []
+    return capital("; ".join(parts)) + "."
+
+
+def _short(preset: str, lines: pd.DataFrame) -> str:
+    wrong = [out_of(row["cases"] - row["agree"], row["cases"]) for _, row in lines.iterrows()]
+    largest = alike([part(error) for error in lines["max_error"]])
+    return f"{PRESET_WORDS[preset]} {alike(wrong)} outcomes are wrong, and peaks by up to {largest}"
+
+
+def linearized(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the linearizations."""
+    kinds = lines["source"].map(lambda source: resolve(source).kind)
+    return lines[(kinds == "model") & (lines["source"] != "exact")]
+
+
 def claims(lines: pd.DataFrame) -> str:
     """Return a sentence for each preset of the engines, and one for the linearizations."""
     sentences = [preset_claim(*item) for item in engines_by_preset(lines).items()]
-    kinds = lines["source"].map(lambda source: resolve(source).kind)
-    models = lines[(kinds == "model") & (lines["source"] != "exact")]
+    models = linearized(lines)
     if len(models):
         words = "; ".join(model_claim(row) for _, row in models.iterrows())
         sentences.append(f"Of the linearizations: {words}.")

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from studies.measures.differences import conditioning_of, scientific
-from studies.measures.words import out_of, part
+from studies.measures.words import listed, out_of, part
 from studies.validate.cases import LEAST_NORMAL, everything
 
 WELL_CONDITIONED = 10.0
@@ -35,6 +35,17 @@ def census(seed: int, kept: int) -> Census:
         found += normal > LEAST_NORMAL
     near = sum(0.0 < normal <= LEAST_NORMAL for normal in forces)
     return Census(len(forces), found, near, len(forces) - found - near)
+
+
+def first_claim(compared: pd.DataFrame) -> str:
+    """Say what each source gets right, and its largest error over κ."""
+    scaled = compared["error"].abs() / conditioning_of(compared)
+    words = [
+        f"{source} gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right, and peaks "
+        f"to {scientific(float(scaled[rows.index].max()))} κ"
+        for source, rows in compared.groupby("source", sort=False)
+    ]
+    return f"On random cases that nothing was tuned on {listed(words)}."
 
 
 def claims(compared: pd.DataFrame, counted: Census) -> str:

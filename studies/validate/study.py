@@ -24,7 +24,7 @@ from studies.measures.differences import (
 )
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 from studies.validate.cases import draw
-from studies.validate.claims import WELL_CONDITIONED, census, claims
+from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,7 +138,7 @@ def report(folder: Path) -> str:
             "\nThe largest errors:",
             worst_text(compared),
             "",
-            fill(headline(folder), 99),
+            fill(paragraph(folder), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -153,6 +153,11 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
+    """Say how many outcomes each source gets right, and its largest error over κ."""
+    return first_claim(pd.read_csv(folder / "errors.csv"))
+
+
+def paragraph(folder: Path) -> str:
     """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
     record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     compared = pd.read_csv(folder / "errors.csv")

@@ -17,7 +17,10 @@ import mpmath as mp
 
 from studies.cases.extreme import extremes
 
-COLUMNS = "case width height amplitude omega half_cycles restitution peak_ratio".split()
+COLUMNS = [
+    *("case", "width", "height", "amplitude", "omega", "half_cycles", "restitution"),
+    "peak_ratio",
+]
 
 
 def posed(case):
