@@ -1,0 +1,157 @@
+"""What README.md and the page of the published results say, from the published tables alone."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from studies.catalogue import CHAPTERS
+from studies.kit.study import Chapter, Study
+from studies.measures.columns import GROUPS
+from studies.measures.claims import TABLE, Finding, read_findings
+from studies.measures.differences import scientific
+from studies.measures.words import PRESET_WORDS, duration, listed, part, times
+from studies.page import hero
+from studies.page.markdown import table
+from studies.precision.choices import Choice, choices
+from studies.sweep.claims import preset_claim, engines_by_preset, preset_table, whole
+
+PRESETS_FROM = ("presets", "sweep")
+"""Folders whose summaries hold the presets of the engines."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A chapter in words: where it stands, its question, claim, paragraph and command."""
+
+    folder: str
+    question: str
+    claim: str
+    paragraph: str
+    command: str
+    pictures: tuple[str, ...]
+    texts: tuple[str, ...]
+    statements: tuple[Finding, ...]
+
+
+def told(published: Path, study: Study, chapter: Chapter) -> Told:
+    """Return a chapter in words, and the names of what it left in its folder."""
+    folder, module = published / chapter.folder, study.load()
+    return Told(
+        folder=chapter.folder,
+        question=chapter.question,
+        claim=module.headline(folder),
+        paragraph=module.paragraph(folder),
+        command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
+        pictures=tuple(sorted(path.name for path in folder.glob("*.png"))),
+        texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
+        statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
+    )
+
+
+def chapters(published: Path) -> list[Told]:
+    """Return every chapter in words."""
+    return [told(published, study, chapter) for study, chapter in CHAPTERS]
+
+
+def presets(published: Path) -> pd.DataFrame:
+    """Return a line for each preset and engine over the paper's cases."""
+    lines = [preset_table(whole(published / name)) for name in PRESETS_FROM]
+    return pd.concat(lines, ignore_index=True)
+
+
+def presets_text(lines: pd.DataFrame) -> str:
+    """Return the presets as a table of Markdown."""
+    heads = ("engine", "how it is used", "outcomes right", "median", "p90", "max", "a case")
+    rows = [
+        (
+            f"`{row['source']}`",
+            PRESET_WORDS[row["preset"]],
+            f"{row['right']} of {row['cases']}",
+            *(part(row[name]) for name in ("median", "p90", "max")),
+            duration(1e-3 * row["ms"]),
+        )
+        for _, row in lines.iterrows()
+    ]
+    return table(heads, rows)
+
+
+def choices_text(lines: pd.DataFrame) -> str:
+    """Return which setting for which accuracy as a table of Markdown.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of work-precision.csv.
+    """
+    heads = (
+        *("largest error", "cheapest on typical cases", "a case", "its largest error"),
+        *("near overturning", "cheapest on all cases", "a case"),
+    )
+    rows = [
+        (
+            f"{chosen.target:g}",
+            *_typical(chosen.typical),
+            *(
+                (chosen.everywhere.setting, duration(chosen.everywhere.wall_s))
+                if chosen.everywhere
+                else ("none tried", "-")
+            ),
+        )
+        for chosen in choices(lines)
+    ]
+    return table(heads, rows)
+
+
+def _typical(chosen: Choice | None) -> tuple[str, str, str, str]:
+    if chosen is None:
+        return "none tried", "-", "-", "-"
+    near = chosen.near_error
+    return (
+        chosen.setting,
+        duration(chosen.wall_s),
+        part(chosen.typical_error),
+        "an outcome wrong" if near == float("inf") else part(near),
+    )
+
+
+def hero_lines(published: Path) -> dict[str, str]:
+    """Return what each source of the first picture does: its outcome, or the error of its peak."""
+    lines = hero.summary(pd.read_csv(published / "hero" / "hero.csv"))
+    return {
+        str(row["source"]): (
+            f"{row['error']:+.0%}".replace("%", " %")
+            if abs(row["error"]) >= 1e-3
+            else scientific(abs(float(row["error"])))
+        )
+        if row["outcome"] == "rocked"
+        else str(row["outcome"])
+        for _, row in lines.iterrows()
+    }
+
+
+def made(published: Path) -> dict[str, str]:
+    """Return on what machine, with what versions and when the paper's cases were run."""
+    record = json.loads((published / "sweep" / "provenance.json").read_text(encoding="utf-8"))
+    machine = record["machine"]
+    return {
+        "engines": listed([f"{name} {version}" for name, version in record["engines"].items()]),
+        "machine": f"{machine['cpu']}, {machine['cores']} cores",
+        "date": record["runs"][-1]["start"][:10],
+        "sweep": duration(record["runs"][-1]["duration_s"]),
+    }
+
+
+def glossary() -> list[tuple[str, str]]:
+    """Return every column's name, unit and meaning: a heading and a table for each group."""
+    heads = ("column", "unit", "meaning")
+    return [
+        (name, table(heads, [(f"`{key}`", *column) for key, column in columns.items()]))
+        for name, columns in GROUPS.items()
+    ]
+
+
+def minutes(full: bool) -> int:
+    """Return about how many minutes a report takes on two cores."""
+    return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))
