@@ -1,12 +1,16 @@
 """A ground motion known by equally spaced samples, and straight between them."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.checks import finite, positive
 from analytic.motion import FloatArray
+
+ROUNDING = 1e-12
+"""Part of a record that taking away its trend may leave of one that is nothing else."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,6 +69,11 @@ class Record:
         return (self.samples.size - 1) * self.dt
 
     @property
+    def final_velocity(self) -> float:
+        """Velocity [m/s] that the base keeps after the record."""
+        return float(self._velocities()[-1])
+
+    @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times of the samples [s]."""
         return tuple(self._times().tolist())
@@ -84,6 +93,24 @@ class Record:
         if self.peak == 0.0:
             raise ValueError("the record is zero throughout; it cannot be scaled to a peak")
         return self.scaled(positive("peak", peak) / self.peak)
+
+    def detrended(self, kind: Literal["constant", "linear"]) -> "Record":
+        """Return the record without its mean, or without the straight line that fits it best.
+
+        A least-squares fit to the samples, by `scipy.signal.detrend`. The first and the last sample
+        become jumps of the acceleration, and the velocity need not end at zero exactly.
+
+        Raises
+        ------
+        ValueError
+            If nothing but rounding is left.
+        """
+        from scipy.signal import detrend
+
+        left = Record(dt=self.dt, samples=detrend(self.samples, type=kind))
+        if left.peak <= ROUNDING * self.peak:
+            raise ValueError(f"the record is its own {kind} trend; nothing is left without it")
+        return left
 
     def acceleration(self, t: ArrayLike) -> FloatArray:
         """Ground acceleration [m/s2] at the times `t` [s]; zero before and after the record."""

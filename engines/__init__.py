@@ -1,10 +1,37 @@
 """Physics engines on the rocking block: one scene, any engine, one way of looking at it.
 
-An adapter builds the scene, chooses the engine's settings and decides when it steps. It never
-decides what the state becomes: no rotation or velocity is written, and the impact is the engine's.
+An adapter builds the scene, chooses the engine's settings, decides when it steps and how its
+contact holds. It never decides what the state becomes: the pose and the velocities are set once,
+before the first step, and the impact is the engine's. What a preset does besides setting the
+engine is declared (`engines.declaration.Help`).
+
+To add an engine, write one file in ``engines/adapters`` and one line in ``engines.registry.OWN``,
+or declare it in a package of your own under the entry point group ``rocking.engines``::
+
+    [project.entry-points."rocking.engines"]
+    mine = "my_package.rocking:ENGINE"
+
+The file holds
+
+- a frozen settings class, whose defaults are the library's own (`engines.parts.settings`); one
+  setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),
+  ``planar`` (False frees a body in space) and ``base_velocity`` (False moves the base by position
+  alone) are called so, because studies put them back;
+- a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``pose``, ``fault``, ``close``. It
+  starts from `Scene.beginning`. A `Step` carries all that it needs: the gravity that gives the
+  velocity its kick, along the base too where the frame is "base", and the base's velocity and
+  place where it is "world";
+- ``build(scene, settings, dt_s)``, the only place that may import the library, so that
+  declarations are read without it: a library that is missing is a row "not available";
+- ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
+  as its own tutorial uses it) to the best there is, and what the studies try of its contact.
+
+The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
+declaration; every study reads it, and none names an engine.
 """
 
-from engines.drive import ENGINES, run
-from engines.scene import ACCURACIES, FRAMES, PRESETS, Scene
+from engines.drive import run
+from engines.registry import ENGINES, core_engines
+from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene
 
-__all__ = ["ACCURACIES", "ENGINES", "FRAMES", "PRESETS", "Scene", "run"]
+__all__ = ["ACCURACIES", "ENGINES", "FRAMES", "GEOMETRIES", "Scene", "core_engines", "run"]

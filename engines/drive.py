@@ -2,28 +2,33 @@
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
-from typing import Protocol, cast
+from typing import cast
 
 from analytic.response import Response
-from engines.scene import Scene, World
+from engines.declaration import Engine, Stepping
+from engines.registry import find
+from engines.scene import Scene
 from engines.stepping.landing import LandingSteps
-from engines.stepping.steps import FixedSteps, Policy, Stepper
+from engines.stepping.steps import FixedSteps, Looks, Policy, Stepper
 from engines.watching.observe import Observer
+from engines.world import (
+    UNLIMITED,
+    Moment,
+    Resolution,
+    SelfSteppingWorld,
+    Step,
+    SteppedWorld,
+    World,
+)
 
-ENGINES = {"pybullet": "engines.adapters.bullet", "mujoco": "engines.adapters.mujoco"}
-"""Name of an engine -> module of its adapter, imported when the engine is first asked for."""
-
-LOOK_AT_CLOCK = 256
-"""Steps between two looks at the clock."""
+LOOK_AROUND = 256
+"""Steps between two looks at the clock, and at what the engine knows to have gone wrong."""
 
 
-class Adapter(Protocol):
-    """What the module of an engine provides."""
-
-    def build(self, scene: Scene) -> World:
-        """Build a scene, the block at rest on its base."""
+class NotAvailableError(Exception):
+    """An engine that is not installed, or cannot do what is asked of it; one line says why."""
 
 
 def run(engine: str, scene: Scene) -> Response:
@@ -40,51 +45,107 @@ def run(engine: str, scene: Scene) -> Response:
     -------
     Response
         A run that diverges, leaves the problem or takes too long is a failed response with its
-        reason.
+        reason, as is one that the engine cannot do or whose library is not installed.
 
     Raises
     ------
     ValueError
-        If the engine is unknown, or a setting is not one of the engine's.
+        If the engine is unknown, or a preset or setting is not one of the engine's.
     """
-    if engine not in ENGINES:
-        raise ValueError(f"engine is {engine!r}; it must be one of {', '.join(ENGINES)}")
-    adapter = cast(Adapter, import_module(ENGINES[engine]))
     began = time.perf_counter()
-    world = adapter.build(scene)
+    asked = find(engine)
+    preset = asked.preset(scene.preset)
     try:
-        built = time.perf_counter()
-        return replace(_simulate(world, scene), setup_s=built - began)
+        world = build(asked, scene)
+    except NotAvailableError as error:
+        return Response.failure(str(error))
+    built = time.perf_counter()
+    try:
+        response = simulate_world(
+            world,
+            scene,
+            preset.ordinary_step_s(scene),
+            preset.stepping,
+            asked.resolution(scene.block),
+        )
     finally:
         world.close()
+    return replace(response, setup_s=built - began)
 
 
-def policy_of(scene: Scene, dt_s: float) -> Policy:
-    """Return the stepping policy of a scene whose ordinary step is `dt_s` [s]."""
-    return LandingSteps(scene, dt_s) if scene.preset == "landing" else FixedSteps(dt_s)
+def build(engine: Engine, scene: Scene) -> World:
+    """Build a scene with an engine, in the preset and the settings that the scene names.
+
+    Raises
+    ------
+    NotAvailableError
+        If the engine cannot do what the scene asks for, or its library is not installed.
+    ValueError
+        If a preset or setting is not one of the engine's.
+    """
+    preset = engine.preset(scene.preset)
+    settings = scene.choose(preset.settings)
+    lacking = engine.lacks(scene, settings)
+    if lacking:
+        raise NotAvailableError(lacking)
+    try:
+        return engine.build(scene, settings, preset.ordinary_step_s(scene))
+    except ImportError as error:
+        words = f"not available: {error}; pip install '{engine.install}'"
+        raise NotAvailableError(words) from error
 
 
-def _simulate(world: World, scene: Scene) -> Response:
-    """Step a world until its response is decided."""
-    observer = Observer(scene, world.dt_s)
+def simulate_world(
+    world: World,
+    scene: Scene,
+    dt_s: float,
+    stepping: Stepping = Stepping.LANDING,
+    resolution: Resolution = UNLIMITED,
+) -> Response:
+    """Step a built world until its response is decided; dt_s [s] is the ordinary step."""
+    observer = Observer(scene, dt_s, world.moment, resolution)
+    stepper = Stepper(_policy(scene, dt_s, stepping, world.moment, resolution), scene, world.moment)
+    take = _taker(world, stepping)
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
-    stepper = Stepper(policy_of(scene, world.dt_s), scene)
-    steps, problem = 0, ""
+    steps, looks, problem = 0, 0, ""
     pose = world.pose()
     started = time.perf_counter()
     while not observer.done and not problem:
         step = stepper.next(pose, observer.lifted)
-        world.step(step)
-        steps += 1
+        steps += take(step)
+        looks += 1
         pose = world.pose()
-        observer.see(stepper.time, step.dt_s, pose)
+        observer.see(step.end_s, step.dt_s, pose)
         problem = observer.broken
-        if steps % LOOK_AT_CLOCK == 0 and time.perf_counter() - started > limit:
-            problem = f"not decided within {limit:g} s"
-        elif steps >= scene.max_steps and not observer.done:
-            problem = f"not decided within {steps} steps"
+        if looks % LOOK_AROUND == 0 and not problem:
+            late = time.perf_counter() - started > limit
+            problem = world.fault() or (f"not decided within {limit:g} s" if late else "")
+        if steps >= scene.max_steps and not observer.done:
+            problem = problem or f"not decided within {steps} steps"
     wall_s = time.perf_counter() - started
     problem = world.fault() or problem
     if problem:
         return Response.failure(problem, steps=steps, wall_s=wall_s)
     return observer.response(steps=steps, wall_s=wall_s)
+
+
+def _policy(
+    scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
+) -> Policy:
+    if stepping is Stepping.LANDING:
+        return LandingSteps(scene, dt_s, moment, resolution)
+    return Looks(scene, dt_s) if stepping is Stepping.OWN else FixedSteps(dt_s)
+
+
+def _taker(world: World, stepping: Stepping) -> Callable[[Step], int]:
+    """Return how a world takes a step; the answer is how many it took."""
+    if stepping is Stepping.OWN:
+        own = cast(SelfSteppingWorld, world)
+        return lambda step: own.advance(step.end_s)
+    stepped = cast(SteppedWorld, world)
+
+    def take(step: Step) -> int:
+        stepped.step(step)
+        return 1
+
+    return take

@@ -1,32 +1,46 @@
-"""What is simulated, and the few calls a physics engine must answer."""
+"""What is simulated: one block, one shaken base, and how."""
 
-import enum
 import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from analytic.block import RigidBlock
 from analytic.checks import finite, positive
 from analytic.motion import Motion
 
-PRESETS = ("naive", "fixed", "landing")
-"""How an engine is used: as it comes out of the box, tuned with a fixed step, or tuned with steps
-that land on impacts, the best there is."""
-
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
 
 ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
-"""Name of an accuracy -> steps of the preset "landing" in a time 1/p."""
+"""Name of an accuracy -> ordinary steps in a time 1/p, where steps are not all equal."""
 
 GEOMETRIES = ("box", "corners", "hull")
 """What touches the base: the whole block, small spheres at its corners, or the whole block as the
 convex hull of its corners."""
 
 SettingsT = TypeVar("SettingsT")
+
+
+class Beginning(NamedTuple):
+    """Place [m, rad] and velocities [m/s, rad/s] of a block's centre at t = 0.
+
+    They are relative to the base, which is at rest then.
+    """
+
+    x: float
+    z: float
+    theta: float
+    velocity_x: float
+    velocity_z: float
+    rate: float
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the block stands upright and still."""
+        return self.theta == 0.0 == self.rate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,10 +53,14 @@ class Scene:
         Its restitution is not used: the impact is the engine's own.
     motion : Motion
         Horizontal motion of the base.
-    preset : str, optional
-        One of `PRESETS`.
+    start : pair of float, optional
+        theta [rad] and theta' [rad/s] at t = 0; by default the block is at rest. A block that
+        leans stands on its corner on the side of its lean; upright, it turns about the corner
+        towards which it moves.
+    preset : str or None, optional
+        Name of one of the engine's presets; its best by default.
     accuracy : str, optional
-        One of `ACCURACIES`, for the preset "landing".
+        One of `ACCURACIES`, for presets whose steps land on impacts or are the engine's own.
     frame : str, optional
         "base": the base is at rest and the block carries the body force -m u_g''; "world": the
         base moves.
@@ -74,7 +92,8 @@ class Scene:
 
     block: RigidBlock
     motion: Motion
-    preset: str = "landing"
+    start: tuple[float, float] = (0.0, 0.0)
+    preset: str | None = None
     accuracy: str = "standard"
     frame: str = "base"
     density: float = 1000.0
@@ -88,7 +107,7 @@ class Scene:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        one_of("preset", self.preset, PRESETS)
+        object.__setattr__(self, "start", self._checked_start(*self.start))
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
         one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "friction", "step", "time_limit_s", "max_steps"):
@@ -100,6 +119,16 @@ class Scene:
         if self.times is not None:
             object.__setattr__(self, "times", _increasing("times", self.times))
         object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
+
+    def _checked_start(self, theta: float, rate: float) -> tuple[float, float]:
+        tilt, speed = finite("tilt of the start", theta), finite("rate of the start", rate)
+        if abs(tilt) >= 0.5 * math.pi:
+            raise ValueError(f"tilt of the start is {theta!r}; it must be less than pi/2")
+        if abs(tilt) == self.block.alpha and speed == 0.0:
+            raise ValueError(
+                f"start is {(theta, rate)!r}; a block balanced on its corner must have a rate"
+            )
+        return tilt, speed
 
     def _checked_duration(self, value: float) -> float:
         duration = finite("duration", value)
@@ -126,112 +155,48 @@ class Scene:
         twelfth = self.mass / 12.0
         return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
 
-    def ordinary_step(self, preset_step: float | None, library_s: float) -> float:
-        """Return the ordinary step [s].
+    @property
+    def side(self) -> float:
+        """Corner about which the block turns at first: -1 or 1, or 0 if it is at rest."""
+        theta, rate = self.start
+        return math.copysign(1.0, theta or rate) if theta or rate else 0.0
 
-        preset_step is the p dt of a preset, or None to leave the library's own step `library_s`.
-        """
-        step = preset_step if self.step is None else self.step
-        if step is not None:
-            return step / self.block.p
-        if self.preset == "landing":
-            return 1.0 / (ACCURACIES[self.accuracy] * self.block.p)
-        return library_s
+    @property
+    def beginning(self) -> Beginning:
+        """Place and velocities at t = 0, from which every engine sets out."""
+        (theta, rate), side = self.start, self.side
+        half_width, half_height = 0.5 * side * self.block.width, 0.5 * self.block.height
+        sine, cosine = math.sin(theta), math.cos(theta)
+        return Beginning(
+            x=half_width * (1.0 - cosine) + half_height * sine,
+            z=half_width * sine + half_height * cosine,
+            theta=theta,
+            velocity_x=rate * (half_width * sine + half_height * cosine),
+            velocity_z=rate * (half_width * cosine - half_height * sine),
+            rate=rate,
+        )
 
-    def choose(self, preset: SettingsT) -> SettingsT:
-        """Return the settings of a preset with this scene's own in their place.
+    def choose(self, settings: SettingsT) -> SettingsT:
+        """Return an engine's settings with this scene's own in their place.
 
         Raises
         ------
         ValueError
             If a setting is not one of the engine's.
         """
-        names = [item.name for item in fields(preset)]  # type: ignore[arg-type]
+        names = [item.name for item in fields(settings)]  # type: ignore[arg-type]
         for name in self.settings:
             one_of("setting", name, names)
         chosen = dict(self.settings)
         if self.friction is not None:
             chosen["friction"] = self.friction
-        return replace(preset, **chosen)  # type: ignore[type-var]
-
-
-class Grip(enum.Enum):
-    """What a step is for, by which an adapter may choose how firmly a contact holds."""
-
-    REST = "the block is at rest"
-    SWING = "the block turns about a corner"
-    APPROACH = "one of the shorter steps before an impact"
-    STRIKE = "one of the shortest steps through an impact"
-
-
-class Step(NamedTuple):
-    """A step of a policy.
-
-    dt_s [s] is how far it goes; kick_s [s] is for how long forces act on the velocity before, and
-    base_kick [m/s] is the change of the base's velocity meanwhile; grip says what the step is for,
-    and side about which corner the block turns: -1 or 1, or 0 where it is held by both.
-    """
-
-    dt_s: float
-    kick_s: float
-    base_kick: float
-    grip: Grip
-    side: float
-
-
-class Pose(NamedTuple):
-    """Where the block is, relative to its base, as the engine reports it.
-
-    x, z [m] are the horizontal and vertical position of the centre of mass, zero under the
-    centre of the block at rest and at the level of the base; theta [rad] is positive when the
-    block leans towards +x; rate [rad/s] is the angular velocity of the step that led here.
-    """
-
-    x: float
-    z: float
-    theta: float
-    rate: float
-
-
-class World(Protocol):
-    """A built scene: what a stepping policy asks of an engine.
-
-    The engines integrate by semi-implicit Euler steps, so that a velocity belongs to the middle
-    of the step through which it has carried the block. A step is therefore told two durations:
-    from the middle of the last step to the middle of this one, and from its start to its end.
-    """
-
-    dt_s: float
-    """Ordinary step [s]."""
-
-    def step(self, step: Step) -> None:
-        """Advance by a step."""
-
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
-
-    def fault(self) -> str:
-        """Say what the engine knows to have gone wrong, or an empty string."""
-
-    def close(self) -> None:
-        """Release the engine's memory."""
+        return replace(settings, **chosen)  # type: ignore[type-var]
 
 
 def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
     """Raise ValueError unless `value` is one of those allowed."""
     if value not in allowed:
         raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
-
-
-def disagreement(pairs: Mapping[str, tuple[Any, Any]]) -> str:
-    """Name the first setting that reads back as something else, or return an empty string.
-
-    Each pair is what was set and what was read; numbers may differ by rounding.
-    """
-    for name, (wanted, found) in pairs.items():
-        if not math.isclose(wanted, found, rel_tol=1e-9):
-            return f"{name} was set to {wanted!r} but reads {found!r}"
-    return ""
 
 
 def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:

@@ -1,17 +1,26 @@
 """MuJoCo: how a scene is built, set, read back and stepped."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
-import mujoco as mj
+from engines.adapters.mujoco_settings import (
+    DEFAULT_CONTACT_S,
+    FACTORS,
+    LANDING,
+    TUNED,
+    MujocoSettings,
+    spring,
+)
+from engines.declaration import Engine, Help, Preset, Stepping
+from engines.parts.readback import disagreement
+from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
+from engines.scene import GEOMETRIES, Scene
+from engines.world import Grip, Moment, Pose, Step
 
-from engines.adapters.mujoco_model import OPTIONS, model_xml
-from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
-
-INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
-"""Integrators of the library that share the layout of its step."""
+LIBRARY_STEP_S = 0.002
+"""The library's own time step [s]."""
 
 MOST_REFLECTION = 2.0
 """Landing returns a contact's velocity in proportion to the steps before and after: the two then
@@ -29,122 +38,25 @@ NARROWEST_CONE = 0.1
 """Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
 one."""
 
-CARRY = 1e-4
-"""Gap, over the width, up to which landing keeps the corner about which the block turns."""
+OPTIONS = (
+    "cone",
+    "solver",
+    "jacobian",
+    "tolerance",
+    "iterations",
+    "impratio",
+    "integrator",
+    "noslip_iterations",
+)
+"""Settings that are options of the model under their own names, ..."""
 
+KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
+"""... and those that the library numbers, by the names that it gives their values."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MujocoSettings:
-    """Settings of MuJoCo; None leaves the library's default.
-
-    A contact holds its points to the acceleration -b v - k r, v being their velocity and r the
-    gap. Here b and k are given without units, as b dt and k dt^2: b dt = 1 takes all velocity out
-    of a contact within one step.
-
-    Attributes
-    ----------
-    geometry : str
-        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
-        mesh of the block's eight corners.
-    planar : bool
-        Give the block two slides and a hinge, and two corners in the middle plane, instead of a
-        free joint and four corners at the edges.
-    friction : float
-        Coefficient between block and base.
-    step : float or None
-        p dt.
-    corner_radius : float
-        Radius of the corner spheres over the width.
-    cone, solver, jacobian, tolerance, iterations, impratio, noslip_iterations : optional
-        Options of the contact solver.
-    integrator : str or None
-        "Euler", "RK4", "implicit" or "implicitfast".
-    damping, sliding_damping : float or None
-        b dt along the contact's normal and along the base; both or neither.
-    stiffness : float or None
-        k dt^2, wherever damping is set.
-    impedance : tuple of float or None
-        The five numbers of solimp; needed wherever damping is set.
-    solref : tuple of float or None
-        The contact in the library's other form, in place of damping and stiffness: its time
-        constant over dt and its damping ratio. Both should be positive: the library takes a pair
-        with one zero for its own default, and goes on.
-    margin : float or None
-        Gap, over the width, from which on a contact acts.
-    base_velocity : bool
-        Give a moving base the velocity that friction feels; else it is moved by position alone.
-    landing : bool
-        Hold each contact as the step needs it: `stiffness` at rest alone, velocities reflected
-        while the block turns about a corner, and taken out in the short steps of an impact.
-    """
-
-    geometry: str = "corners"
-    planar: bool = True
-    friction: float = 10.0
-    step: float | None = 2.5e-4
-    corner_radius: float = 1e-7
-    cone: str | None = "elliptic"
-    solver: str | None = "Newton"
-    jacobian: str | None = "dense"
-    tolerance: float | None = 1e-15
-    iterations: int | None = 100
-    impratio: float | None = 1e4
-    damping: float | None = 1.0
-    sliding_damping: float | None = 1.0
-    stiffness: float | None = 0.01
-    impedance: tuple[float, ...] | None = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-    landing: bool = False
-    integrator: str | None = None
-    noslip_iterations: int | None = None
-    solref: tuple[float, float] | None = None
-    margin: float | None = None
-    base_velocity: bool = True
-
-    def __post_init__(self) -> None:
-        one_of("geometry", self.geometry, GEOMETRIES)
-        contact = (self.damping, self.sliding_damping, self.stiffness, self.impedance)
-        if len({value is None for value in contact[:3]}) != 1:
-            raise ValueError(
-                f"damping, sliding_damping, stiffness are {contact[:3]!r}; "
-                "they must be given together or not at all"
-            )
-        if self.damping is not None and self.impedance is None:
-            raise ValueError("impedance is None; it must be given wherever damping is")
-        if self.solref is not None and self.damping is not None:
-            raise ValueError(
-                f"solref is {self.solref!r}; it must be None wherever damping is given"
-            )
-        if self.integrator is not None:
-            one_of("integrator", self.integrator, INTEGRATORS)
-        for name in ("noslip_iterations", "margin"):
-            if getattr(self, name) is not None and not 0 <= getattr(self, name) < math.inf:
-                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be 0 or more")
-        for name in ("damping", "sliding_damping", "stiffness"):
-            if getattr(self, name) is not None and getattr(self, name) <= 0.0:
-                # a reference with one zero would be replaced by the library's default
-                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be positive")
-
-
-PRESETS: Mapping[str, MujocoSettings] = {
-    "naive": MujocoSettings(
-        geometry="box",
-        planar=False,
-        friction=1.0,
-        step=None,
-        cone=None,
-        solver=None,
-        jacobian=None,
-        tolerance=None,
-        iterations=None,
-        impratio=None,
-        damping=None,
-        sliding_damping=None,
-        stiffness=None,
-        impedance=None,
-    ),
-    "fixed": MujocoSettings(),
-    "landing": MujocoSettings(step=None, friction=1e3, stiffness=1.0, impratio=3e3, landing=True),
-}
+PLANAR_JOINTS = (
+    '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+    '<joint type="hinge" axis="0 1 0"/>'
+)
 
 
 class MujocoWorld:
@@ -154,40 +66,42 @@ class MujocoWorld:
     velocity that its motion has.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.settings = s = settings_of(scene)
+    def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
+        self._s = s = settings
+        self._mj = import_module("mujoco")
+        self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
         self._moving = scene.frame == "world"
-        self._gravity = scene.block.gravity
-        self._height = 0.5 * scene.block.height
-        self._model = mj.MjModel.from_xml_string(model_xml(scene, s))
-        self._data = mj.MjData(self._model)
+        self._ordinary, self._height = dt_s, 0.5 * scene.block.height
+        self._model = self._mj.MjModel.from_xml_string(model_xml(scene, s))
+        self._data = self._mj.MjData(self._model)
         self._pull, self._option = self._model.opt.gravity, self._model.opt
-        self.dt_s = scene.ordinary_step(s.step, self._option.timestep)
         self._velocity = self._moved = self._dt = self._time = 0.0
-        self._elastic = max(1.0 - LOST_REFLECTION * scene.block.p * self.dt_s, 0.0)
+        self._elastic = max(1.0 - LOST_REFLECTION * scene.block.p * dt_s, 0.0)
         self._sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
+        self._by_step = s.by_phase or s.reflection or s.carry is not None
         self._set_reach(scene)
         self._fault = self._read_back(scene)
+        if not scene.beginning.at_rest:
+            self._put(scene)
         # the library would write its warnings to a file; they are counted and read from `fault`
-        mj.set_mju_user_warning(_ignore)
+        self._mj.set_mju_user_warning(_ignore)
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.scene.World`."""
+        """Advance by a step; see `engines.world.SteppedWorld`."""
         self._hold(step)
-        self._pull[2] = -self._gravity * step.kick_s / step.dt_s
+        self._pull[0], self._pull[2] = step.pull_x, step.pull_z
         if self._moving:
-            self._move_base(step.dt_s, step.base_kick)
-        else:
-            self._pull[0] = -step.base_kick / step.dt_s
-        mj.mj_step(self._model, self._data)
+            self._move_base(step)
+        self._mj.mj_step(self._model, self._data)
+        self._moved = step.base_x if self._moving else 0.0
         self._time += step.dt_s
-        if self.settings.landing:
+        if self._s.preload:
             self._look_at_yield(step)
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
         q, v = self._data.qpos.tolist(), self._data.qvel.tolist()
-        if self.settings.planar:
+        if self._s.planar:
             return Pose(q[0] - self._moved, q[1] + self._height, q[2], v[2])
         return Pose(q[0] - self._moved, q[2], 2.0 * math.atan2(q[5], q[3]), v[4])
 
@@ -195,19 +109,30 @@ class MujocoWorld:
         """Say which setting was not taken, or what the engine warned of."""
         if self._fault:
             return self._fault
-        for kind, warning in zip(mj.mjtWarning.__members__, self._data.warning, strict=False):
+        for kind, warning in zip(self._mj.mjtWarning.__members__, self._data.warning, strict=False):
             if warning.number:
                 return f"MuJoCo warned: {kind.removeprefix('mjWARN_')}"
         return disagreement({"time": (self._time, self._data.time)})
 
     def close(self) -> None:
         """Give warnings back to the library."""
-        mj.set_mju_user_warning(None)
+        self._mj.set_mju_user_warning(None)
+
+    def _put(self, scene: Scene) -> None:
+        """Let the block set out from where the scene begins."""
+        at, data = scene.beginning, self._data
+        if self._s.planar:
+            data.qpos[:] = (at.x, at.z - self._height, at.theta)
+            data.qvel[:] = (at.velocity_x, at.velocity_z, at.rate)
+            return
+        half = 0.5 * at.theta
+        data.qpos[:] = (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
+        data.qvel[:] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
 
     def _hold(self, step: Step) -> None:
         """Set the step, and the contact in units of it."""
-        s, model, dt = self.settings, self._model, step.dt_s
-        if dt == self._dt and not s.landing:
+        s, model, dt = self._s, self._model, step.dt_s
+        if dt == self._dt and not self._by_step:
             return
         before, self._dt = self._dt, dt
         self._option.timestep = dt
@@ -216,37 +141,38 @@ class MujocoWorld:
         if s.damping is None or s.sliding_damping is None or s.stiffness is None:
             return
         back = 0.0
-        if s.landing and before and step.grip in (Grip.SWING, Grip.APPROACH):
+        if s.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
             back = self._elastic * min(dt / before, MOST_REFLECTION)
-        firm = FEEBLE if s.landing and (step.side or step.grip is not Grip.REST) else s.stiffness
+        firm = FEEBLE if s.by_phase and (step.side or step.grip is not Grip.REST) else s.stiffness
         self._sliding = s.sliding_damping + back
         # the library divides both numbers by the impedance, the first one twice
         k, unit = -firm * (self._impedance / dt) ** 2, -self._impedance / dt
         model.pair_solref[:] = (k, unit * (s.damping + back))
         model.pair_solreffriction[:] = (k, unit * self._sliding)
-        if s.landing:
-            self._reach(step)
+        if s.carry is not None:
+            self._reach(step, s.carry * self._width)
 
-    def _reach(self, step: Step) -> None:
+    def _reach(self, step: Step, carry: float) -> None:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
         model = self._model
         # at rest, half of the weight presses a corner just so far below its margin; about to
         # lift, the free corner is still in reach where no weight does
         sag = 0.5 * self._yield * step.kick_s * step.dt_s
         if step.side:
-            sag = self._yield * self.dt_s**2
+            sag = self._yield * self._ordinary**2
         model.pair_margin[:] = sag if step.grip is Grip.REST else 0.0
         if not step.side:
             return
         if model.npair == 1:
             # all corners of a box share one pair, and the free one must not touch early
             lean = 0.5 * self._width * abs(self.pose().theta)
-            model.pair_margin[:] = max(sag, min(self._carry, lean))
+            model.pair_margin[:] = max(sag, min(carry, lean))
             return
         pivot = self._left if step.side < 0.0 else self._right
-        model.pair_margin[pivot] = self._carry
-        preload = self._yield * step.kick_s / step.dt_s
-        model.pair_solref[pivot, 0] = -preload * self._impedance**2 / self._carry
+        model.pair_margin[pivot] = carry
+        if self._s.preload:
+            preload = self._yield * step.kick_s / step.dt_s
+            model.pair_solref[pivot, 0] = -preload * self._impedance**2 / carry
 
     def _look_at_yield(self, step: Step) -> None:
         """Note by how much [m/s2] the pivot yields to its force, for the next step's preload."""
@@ -257,60 +183,162 @@ class MujocoWorld:
             self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
 
     def _set_reach(self, scene: Scene) -> None:
-        s, pairs = self.settings, self._model.npair
+        pairs = self._model.npair
         self._left, self._right = slice(0, pairs // 2), slice(pairs // 2, pairs)
         self._width = scene.block.width
-        self._carry = CARRY * scene.block.width
         self._corners = max(pairs // 2, 1)
         self._weight = scene.mass * scene.block.gravity / self._corners
-        self._impedance = 1.0 if s.impedance is None else s.impedance[1]
+        self._impedance = 1.0 if self._s.impedance is None else self._s.impedance[1]
         self._yield = (1.0 - self._impedance) * scene.block.gravity
 
-    def _move_base(self, dt_s: float, base_kick: float) -> None:
-        before, self._velocity = self._velocity, self._velocity + base_kick
+    def _move_base(self, step: Step) -> None:
+        """Set the place from which the base sets out, and its surface velocity."""
+        before, self._velocity = self._velocity, step.base_velocity
         # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
         # moved with the base before moves with the base after
-        if self.settings.base_velocity:
-            self._model.geom_surfacevel[0, 0] = before + base_kick / self._sliding
+        if self._s.base_velocity:
+            self._model.geom_surfacevel[0, 0] = before + step.base_kick / self._sliding
         self._data.mocap_pos[0, 0] = self._moved
-        self._moved += dt_s * self._velocity
 
     def _read_back(self, scene: Scene) -> str:
-        s, model = self.settings, self._model
-        pairs: dict[str, tuple[Any, Any]] = {"mass": (scene.mass, model.body_mass[-1])}
+        s, model = self._s, self._model
+        pairs: dict[str, tuple[Any, Any]] = {
+            "mass": (scene.mass, model.body_mass[-1]),
+            "timestep": (LIBRARY_STEP_S, self._option.timestep),
+            "friction": (s.friction, model.geom_friction[-1, 0]),
+        }
         pairs |= {f"inertia {i}": (scene.inertia[i], model.body_inertia[-1, i]) for i in range(3)}
-        pairs |= {name: _option(self._option, name, getattr(s, name)) for name in OPTIONS}
-        pairs["friction"] = (s.friction, model.geom_friction[-1, 0])
+        pairs |= {name: self._read_option(name) for name in OPTIONS}
         if s.impedance is not None:
             pairs |= {
                 f"impedance {i}": (value, model.pair_solimp[0, i])
                 for i, value in enumerate(s.impedance)
             }
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
-        return disagreement({name: pair for name, pair in pairs.items() if pair[0] is not None})
+        return disagreement(pairs)
+
+    def _read_option(self, name: str) -> tuple[Any, Any]:
+        """Return a wanted option as the library numbers it, and the option as it is."""
+        wanted, found = getattr(self._s, name), getattr(self._option, name)
+        if wanted is None or name not in KINDS:
+            return wanted, found
+        kind = getattr(self._mj, f"mjt{name.capitalize()}")
+        return int(kind.__members__[KINDS[name] + wanted.upper()]), int(found)
 
 
-def settings_of(scene: Scene) -> MujocoSettings:
-    """Return the settings of a scene; a preset's impratio is kept to what its friction allows."""
-    s = scene.choose(PRESETS[scene.preset])
-    if s.impratio is None or "impratio" in scene.settings:
-        return s
-    return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
-
-
-def build(scene: Scene) -> MujocoWorld:
-    """Build a scene, the block at rest on its base."""
-    return MujocoWorld(scene)
-
-
-def _option(option: Any, name: str, wanted: Any) -> tuple[Any, Any]:
-    """Return a wanted option as the library numbers it, and the option as it is."""
-    kinds = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
-    if wanted is None or name not in kinds:
-        return wanted, getattr(option, name)
-    kind = getattr(mj, f"mjt{name.capitalize()}")
-    return int(kind.__members__[kinds[name] + wanted.upper()]), int(getattr(option, name))
+def build(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
+    """Build a scene; a preset's impratio is kept to what the friction allows."""
+    s = settings
+    if s.impratio is not None and "impratio" not in scene.settings:
+        s = replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
+    return MujocoWorld(scene, s, dt_s)
 
 
 def _ignore(message: str) -> None:
     """Take a warning without writing it anywhere."""
+
+
+def model_xml(scene: Scene, s: MujocoSettings) -> str:
+    """Return the model of a scene in MuJoCo's own language."""
+    block, margin = scene.block, (s.margin or 0.0) * scene.block.width
+    named = ((name, getattr(s, name)) for name in OPTIONS)
+    options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
+    geoms = _geoms(scene, s)
+    common = f'{_friction(s)} margin="{margin}"'
+    parts = (f'<geom name="{name}" {shape} {common}/>' for name, shape in geoms.items())
+    pairs = "" if s.impedance is None else "".join(_pair(name, s, margin) for name in geoms)
+    return (
+        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}"
+        f'<body pos="0 0 {0.5 * block.height}">{PLANAR_JOINTS if s.planar else "<freejoint/>"}'
+        f'<inertial pos="0 0 0" mass="{scene.mass}" diaginertia="{_row(scene.inertia)}"/>'
+        f"{''.join(parts)}</body></worldbody><contact>{pairs}</contact></mujoco>"
+    )
+
+
+def _assets(scene: Scene, s: MujocoSettings) -> str:
+    if s.geometry != "hull":
+        return ""
+    vertices = " ".join(map(_row, hull_points(scene)))
+    return f'<asset><mesh name="hull" vertex="{vertices}"/></asset>'
+
+
+def _base(scene: Scene, s: MujocoSettings) -> str:
+    if scene.frame == "base":
+        return f'<geom name="base" type="plane" size="1 1 1" {_friction(s)}/>'
+    # a plane may not move, so a box does; any surface velocity will do to switch it on
+    return (
+        f'<body mocap="true" pos="0 0 {-scene.block.height}"><geom name="base" type="box" '
+        f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.base_velocity)} 0 0" '
+        f"{_friction(s)}/></body>"
+    )
+
+
+def _geoms(scene: Scene, s: MujocoSettings) -> dict[str, str]:
+    """Name and shape of what the block touches its base with."""
+    if s.geometry == "hull":
+        return {"hull": 'type="mesh" mesh="hull"'}
+    if s.geometry == "box":
+        return {"box": f'type="box" size="{_row(half_size(scene))}"'}
+    radius = s.corner_radius * scene.block.width
+    corners = corner_spheres(scene, radius, planar=s.planar)
+    shape = f'type="sphere" size="{radius}"'
+    return {f"corner{i}": f'{shape} pos="{_row(at)}"' for i, at in enumerate(corners)}
+
+
+def _friction(s: MujocoSettings) -> str:
+    return f'friction="{s.friction} 0.005 0.0001"'
+
+
+def _pair(name: str, s: MujocoSettings, margin: float) -> str:
+    friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
+    # any direct form will do for now: it is set with the first step
+    reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
+    return (
+        f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
+        f'solimp="{_row(s.impedance or ())}" {reference}/>'
+    )
+
+
+def _row(numbers: tuple[float, ...]) -> str:
+    return " ".join(map(repr, numbers))
+
+
+ENGINE = Engine(
+    name="mujoco",
+    title="MuJoCo",
+    library="mujoco",
+    packages=("mujoco",),
+    install="rocking",
+    build=build,
+    presets=(
+        Preset(
+            name="naive",
+            title="the library's defaults",
+            settings=MujocoSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source="the library's own timestep, 0.002 s",
+            contact_s=DEFAULT_CONTACT_S,
+        ),
+        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=2.5e-4),
+        Preset(
+            name="landing",
+            title="steps that land on impacts",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.PHASES: {"by_phase": False},
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"carry": None, "preload": False},
+                Help.PRELOAD: {"preload": False},
+            },
+        ),
+    ),
+    core=True,
+    geometries=GEOMETRIES,
+    spatial=True,
+    spring=spring,
+    factors=FACTORS,
+    remedy={"impratio": 100.0},
+    own_step="mujoco:mj_step",
+)

@@ -8,9 +8,10 @@ impact the steps are too short for anything but the contact to act.
 
 import math
 
-from engines.scene import Grip, Pose, Scene
+from engines.scene import Scene
 from engines.stepping.steps import Choice
 from engines.stepping.timetable import NEVER, Timetable
+from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution
 
 SWING_PART = 8.0
 """A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps, ..."""
@@ -31,10 +32,11 @@ REMAINDER = 0.5
 """Part of the way to an event that each step of an approach leaves for the next."""
 
 NEAR = 1e-6
-"""An impact is near when less than this part of the ordinary step is left, ..."""
+"""An impact is near when less than this part of the ordinary step is left, or than the shortest
+time that the engine resolves, or ..."""
 
 MOST_ACCELERATION = 3e9
-"""... or than the time in which this angular acceleration [rad/s2] would stop the block; engines
+"""... the time in which this angular acceleration [rad/s2] would stop the block; engines
 take what is much larger for a failure."""
 
 UPLIFT_NEAR = 2e-3
@@ -62,9 +64,19 @@ class LandingSteps:
         What is being simulated.
     dt_s : float
         Ordinary step [s].
+    moment : Moment, optional
+        At which moment of a step the engine's velocity holds.
+    resolution : Resolution, optional
+        What the engine's numbers tell apart: nothing finer is asked of it.
     """
 
-    def __init__(self, scene: Scene, dt_s: float) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        dt_s: float,
+        moment: Moment = Moment.MIDDLE,
+        resolution: Resolution = UNLIMITED,
+    ) -> None:
         block = scene.block
         self._dt = dt_s
         self._width, self._half_height = block.width, 0.5 * block.height
@@ -72,13 +84,18 @@ class LandingSteps:
         self._fall = block.p**2 * math.sin(block.alpha)
         self._swing_part = min(SWING_PART * block.p * dt_s, COARSEST)
         self._load_part = min(LOAD_PART * block.p * dt_s, COARSEST)
-        self._shortest = SHORTEST_SWING / block.p
-        self._times = Timetable(scene, dt_s)
-        self._side = 0.0
-        self._resting, self._bouncing, self._approaching = True, False, False
+        self._shortest = max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST)
+        self._least = max(NEAR * dt_s, resolution.time_s)
+        self._touching = max(TOUCHING * block.width, resolution.length_m)
+        self._settled = max(SETTLED, resolution.part)
+        self._part = moment.value
+        self._times = Timetable(scene, dt_s, resolution.time_s)
+        self._side = scene.side
+        self._resting, self._bouncing, self._approaching = not scene.side, False, False
         self._strikes, self._strike_s = 0, 0.0
         self._last = Choice(0.0, Grip.REST, 0.0)
-        self._last_rate = self._kick = 0.0
+        # between the moments of the last two velocities
+        self._last_rate = self._between = 0.0
 
     def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
         """Choose the step from `time` [s] on, where the block has the pose `pose`."""
@@ -89,7 +106,7 @@ class LandingSteps:
             choice = self._at_rest()
         else:
             choice = self._aloft(pose, lifted)
-        self._kick = 0.5 * (self._last.dt_s + choice.dt_s)
+        self._between = self._part * choice.dt_s + (1.0 - self._part) * self._last.dt_s
         self._last, self._last_rate = choice, pose.rate
         return choice
 
@@ -129,7 +146,7 @@ class LandingSteps:
         if not self._approaching and ahead > longest:
             return Choice(0.5 * ahead, Grip.SWING, self._side)
         self._approaching = True
-        least = max(NEAR * self._dt, abs(rate) / MOST_ACCELERATION)
+        least = max(self._least, abs(rate) / MOST_ACCELERATION)
         if ahead > least:
             return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, self._side)
         self._approaching = False
@@ -139,8 +156,8 @@ class LandingSteps:
     def _through(self, pose: Pose) -> Choice:
         """Step on in the shortest steps until the impact is over."""
         self._strikes += 1
-        settled = abs(pose.rate - self._last_rate) <= SETTLED * abs(pose.rate)
-        over = self._strikes > STRIKES and settled and self._gap(pose) < TOUCHING * self._width
+        settled = abs(pose.rate - self._last_rate) <= self._settled * abs(pose.rate)
+        over = self._strikes > STRIKES and settled and self._gap(pose) < self._touching
         if not over and self._strikes <= MOST_STRIKES:
             return Choice(self._strike_s, Grip.STRIKE, self._side)
         self._strikes, self._bouncing = 0, True
@@ -156,8 +173,10 @@ class LandingSteps:
 
     def _until_impact(self, pose: Pose) -> float:
         """Time [s] until the free corner meets the base, if the acceleration stays as it is."""
-        bend = (pose.rate - self._last_rate) / self._kick * self._side
-        rate = pose.rate * self._side + 0.5 * bend * self._last.dt_s
+        bend = -self._fall
+        if self._between:
+            bend = (pose.rate - self._last_rate) / self._between * self._side
+        rate = pose.rate * self._side + (1.0 - self._part) * bend * self._last.dt_s
         angle = self._gap(pose) / self._width
         inside = rate * rate - 2.0 * bend * angle
         if rate >= 0.0 or inside < 0.0:

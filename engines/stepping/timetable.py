@@ -35,11 +35,13 @@ class Timetable:
         What is being simulated.
     dt_s : float
         Ordinary step [s].
+    resolved_s : float, optional
+        Times [s] closer than this are the same to the engine.
     """
 
-    def __init__(self, scene: Scene, dt_s: float) -> None:
+    def __init__(self, scene: Scene, dt_s: float, resolved_s: float = 0.0) -> None:
         block = scene.block
-        self._same = ROUNDING * dt_s
+        self._same = max(ROUNDING * dt_s, resolved_s)
         loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
         ends = () if scene.duration is None else (scene.duration,)
         stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}

@@ -12,27 +12,27 @@ from engines.watching.swing import Row
 def sample(rows: Sequence[Row], times: Sequence[float]) -> History:
     """Sample a response at those of `times` [s] that it reached.
 
-    Over a step, the rotation is the parabola through both ends whose slope in the middle is the
-    step's angular velocity. Its curvature comes from the step before or the step after, whichever
-    gives less, so that it does not reach across an impact.
+    Over a step, the rotation is a parabola through both ends. Its curvature comes from the step
+    before or the step after, whichever gives less, so that it does not reach across an impact.
     """
-    time, middle, theta, rate = np.array(rows, dtype=np.float64).T
+    time, rate_s, theta, rate = np.array(rows, dtype=np.float64).T
     wanted = np.asarray(times, dtype=np.float64)
     wanted = wanted[wanted <= time[-1]]
     # rows[0] is the start, so that step i leads from row i - 1 to row i
     step = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
-    bend = _bends(middle[1:], rate[1:])[step - 1]
+    bend = _bends(rate_s[1:], rate[1:])[step - 1]
     since, left = wanted - time[step - 1], time[step] - wanted
+    chord = (theta[step] - theta[step - 1]) / (time[step] - time[step - 1])
     return History(
         time=wanted,
-        theta=theta[step - 1] + rate[step] * since - 0.5 * bend * since * left,
-        velocity=rate[step] + bend * (wanted - middle[step]),
+        theta=theta[step - 1] + chord * since - 0.5 * bend * since * left,
+        velocity=rate[step] + bend * (wanted - rate_s[step]),
     )
 
 
-def _bends(middle: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bends(rate_s: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.float64]:
     """Angular acceleration [rad/s2] of each step, from its calmer neighbour."""
-    between = np.diff(rate) / np.diff(middle)
+    between = np.diff(rate) / np.diff(rate_s)
     before = np.concatenate((between[:1], between))
     after = np.concatenate((between, between[-1:]))
     return np.where(np.abs(before) < np.abs(after), before, after)

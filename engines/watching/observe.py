@@ -7,13 +7,15 @@ of the steps; what lies between two steps is interpolated.
 import math
 
 from analytic.response import Impact, Outcome, Response
-from engines.scene import Pose, Scene
+from engines.scene import Scene
 from engines.watching.history import sample
-from engines.watching.swing import START, Row, Swing, extrapolated
+from engines.watching.swing import Row, Swing, extrapolated
+from engines.world import UNLIMITED, Moment, Pose, Resolution
 
 LIFT_WIDTHS = 1e-8
 """A block has lifted when its free corner is higher above the base than this part of its width,
-above the noise of a tuned contact at rest and below the smallest lift of interest, ..."""
+above the noise of a tuned contact at rest and below the smallest lift of interest, or than the
+length that the engine's numbers tell apart, ..."""
 
 LIFT_FALL = 1e-3
 """... plus this part of g dt^2, twice the way fallen in one step, which no engine resolves,
@@ -45,6 +47,10 @@ class Observer:
         What is being simulated.
     dt_s : float
         Ordinary step [s], which bounds what can be resolved.
+    moment : Moment, optional
+        At which moment of a step the engine's velocity holds.
+    resolution : Resolution, optional
+        What the engine's numbers tell apart.
 
     Attributes
     ----------
@@ -56,28 +62,46 @@ class Observer:
         Why the response is no longer that of a rocking block, or an empty string.
     """
 
-    def __init__(self, scene: Scene, dt_s: float) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        dt_s: float,
+        moment: Moment = Moment.MIDDLE,
+        resolution: Resolution = UNLIMITED,
+    ) -> None:
         block, motion = scene.block, scene.motion
         self._scene = scene
+        self._ahead = 1.0 - moment.value
         self._half_width, self._half_height = 0.5 * block.width, 0.5 * block.height
         self._alpha = block.alpha
-        self._lift = LIFT_WIDTHS * block.width + LIFT_FALL * block.gravity * dt_s**2
+        self._lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
+        self._lift += LIFT_FALL * block.gravity * dt_s**2
         self._rest_time, self._rest_rate = REST_TIME / block.p, REST_RATE * block.p * block.alpha
         self._motion_end = motion.duration
         self._end = math.inf if scene.duration is None else scene.duration
-        self._rows: list[Row] | None = None if scene.times is None else [START]
-        self._before, self._now = START, START
-        self._swing: Swing | None = None
+        start = Row(0.0, 0.0, *scene.start)
+        self._rows: list[Row] | None = None if scene.times is None else [start]
+        self._before, self._now = start, start
         self._landed: tuple[float, float] | None = None
-        self._low_since: float = 0.0
-        self._resting = True
         self._uplifts: list[float] = []
         self._rests: list[float] = []
         self._impacts: list[Impact] = []
-        self._peak = self._slide = self._sink = self._give = self._hop = self._highest = 0.0
-        self._crossed = self._overturned = self._turned = False
-        self.lifted = self.done = False
+        self._slide = self._sink = self._give = self._hop = self._highest = 0.0
+        self._overturned = self._turned = False
+        self._begin(scene)
+        self.done = False
         self.broken = ""
+
+    def _begin(self, scene: Scene) -> None:
+        """Begin at rest, or in a swing that no uplift began."""
+        theta, _ = scene.start
+        self._resting = not scene.side
+        self._rocked = not self._resting
+        self._swing = None if self._resting else Swing(scene.side, from_rest=False)
+        self._low_since: float = 0.0 if self._resting else math.nan
+        self._peak = abs(theta)
+        self._crossed = self._peak > self._alpha
+        self.lifted = 2.0 * self._half_width * math.sin(self._peak) > self._lift
 
     def see(self, time: float, dt_s: float, pose: Pose) -> None:
         """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
@@ -85,7 +109,7 @@ class Observer:
         if not math.isfinite(x + z + theta + rate):
             self.broken = "the engine's state is not finite"
             return
-        row = Row(time, time - 0.5 * dt_s, theta, rate)
+        row = Row(time, time - self._ahead * dt_s, theta, rate)
         sine, cosine = math.sin(theta), math.cos(theta)
         reach = self._half_width * abs(sine)
         level = z - self._half_height * cosine
@@ -101,7 +125,7 @@ class Observer:
         if self._rows is not None:
             self._rows.append(row)
         if self.lifted:
-            self._aloft(row)
+            self._aloft(row, dt_s)
         else:
             self._low(row)
         self._turning(self._before, self._now, row)
@@ -119,7 +143,7 @@ class Observer:
         elif self._slide > SLIDE_WIDTHS * width:
             self.broken = f"the pivot slid {self._slide:.3g} m along the base"
 
-    def _aloft(self, row: Row) -> None:
+    def _aloft(self, row: Row, dt_s: float) -> None:
         side = math.copysign(1.0, row.theta)
         if self._swing is None or self._swing.side != side:
             self._land()
@@ -127,8 +151,8 @@ class Observer:
             self._hop = 0.0
             if self._resting:
                 self._uplifts.append(self._now.time)
-                self._resting = False
-        self._swing.add(row)
+                self._resting, self._rocked = False, True
+        self._swing.add(row, dt_s)
         if self._swing.begun:
             self._launch()
             if self._swing.from_rest:
@@ -168,7 +192,7 @@ class Observer:
         side = math.copysign(1.0, b.theta)
         peak = abs(c.theta)
         if b.rate * side > 0.0 >= c.rate * side:
-            bend = (b.rate - c.rate) / (c.middle - b.middle) * side
+            bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
             rate = extrapolated((b, c), b.time)
             peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
             self._turned = b.time >= self._motion_end and self.lifted
@@ -188,7 +212,7 @@ class Observer:
         self._launch()
         if self._overturned:
             outcome, ratio = Outcome.OVERTURNED, math.inf
-        elif self._uplifts:
+        elif self._rocked:
             outcome, ratio = Outcome.ROCKED, self._peak / self._alpha
         else:
             outcome, ratio = Outcome.AT_REST, 0.0

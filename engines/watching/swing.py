@@ -10,34 +10,36 @@ RESOLVED_ROWS = 3
 EDGE_ROWS = 3
 """Ends of steps from which the velocity at either end of a swing is read."""
 
+SHORTENED = 0.7
+"""A step shorter than this part of the one before is one of an approach, which halves what is left;
+even steps up to the next corner of the motion differ by less."""
+
 
 class Row(NamedTuple):
-    """The end of a step.
+    """The end of a step: time [s], rotation [rad], and the angular velocity [rad/s].
 
-    time and its middle [s], rotation [rad], and the angular velocity [rad/s] of the step, which
-    belongs to its middle.
+    The velocity belongs to the time `rate_s` [s], in the middle of the step or at its end, as the
+    engine integrates.
     """
 
     time: float
-    middle: float
+    rate_s: float
     theta: float
     rate: float
-
-
-START = Row(0.0, 0.0, 0.0, 0.0)
 
 
 class Swing:
     """The rows during which the block is aloft on one side."""
 
-    __slots__ = ("_end", "_first", "_last", "from_rest", "rows", "side")
+    __slots__ = ("_dt", "_end", "_first", "_last", "from_rest", "rows", "side")
 
     def __init__(self, side: float, from_rest: bool) -> None:
         self.side, self.from_rest = side, from_rest
         self.rows = 0
         self._first: list[Row] = []
         self._last: list[Row] = []
-        self._end = START
+        self._end = Row(0.0, 0.0, 0.0, 0.0)
+        self._dt = 0.0
 
     @property
     def begun(self) -> bool:
@@ -49,16 +51,16 @@ class Swing:
         """Whether enough rows were seen to speak of an impact at the end."""
         return self.rows >= RESOLVED_ROWS
 
-    def add(self, row: Row) -> None:
-        """Take the next row in."""
+    def add(self, row: Row, dt_s: float) -> None:
+        """Take in the next row, at the end of a step of `dt_s` [s]."""
         self.rows += 1
         if self.rows <= EDGE_ROWS + 1:
             self._first.append(row)
-        if row.time - row.middle > 0.7 * (self._end.time - self._end.middle):
+        if dt_s > SHORTENED * self._dt:
             self._last.append(row)
             if len(self._last) > EDGE_ROWS + 1:
                 del self._last[0]
-        self._end = row
+        self._end, self._dt = row, dt_s
 
     def landing(self) -> tuple[float, float]:
         """Time [s] at which the swing meets theta = 0, and the velocity [rad/s] with which."""
@@ -81,7 +83,7 @@ class Swing:
         root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate else 0.0
         if root <= 1.0:
             return earliest
-        return max((root * a.middle - b.middle) / (root - 1.0), earliest)
+        return max((root * a.rate_s - b.rate_s) / (root - 1.0), earliest)
 
     def launch(self, time: float) -> float:
         """Velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
@@ -96,6 +98,6 @@ def extrapolated(rows: Sequence[Row], time: float) -> float:
         weight = 1.0
         for other in rows:
             if other is not row:
-                weight *= (time - other.middle) / (row.middle - other.middle)
+                weight *= (time - other.rate_s) / (row.rate_s - other.rate_s)
         total += weight * row.rate
     return total

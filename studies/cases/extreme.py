@@ -1,25 +1,20 @@
 """Extreme cases: each takes one thing far beyond where anybody would tune a method."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import import_module
 from typing import Any
 
 from analytic import simulate
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
-from engines import ENGINES
-from engines.scene import ACCURACIES
 from studies.cases.paper import free_rocking_window
-from studies.sources.registry import resolve
+from studies.sources.registry import Source, resolve
 
 EDGE = 1e-6
 """Relative distance of an amplitude from the onset, or from the overturning boundary."""
-
-BULLET_FRICTION = 10.0
-"""PyBullet clamps the friction of a pair to this."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,8 +85,7 @@ class Extreme:
         asked = resolve(source)
         engine = asked.kind == "engine"
         if self.density != 1000.0 or self.friction is not None or self.contact is not None:
-            # the library's own contact of MuJoCo has a time of its own and no step to follow
-            return engine and (self.contact is None or source != "mujoco:naive")
+            return engine and (self.contact is None or takes_spring(asked))
         if self.step_s is not None:
             return asked.stepping
         return not engine or math.isnan(self.restitution)
@@ -106,31 +100,27 @@ class Extreme:
         if self.density != 1000.0:
             options["density"] = self.density
         if self.friction is not None:
-            most = BULLET_FRICTION if source.startswith("pybullet") else math.inf
-            options["friction"] = min(self.friction, most)
+            options["friction"] = min(self.friction, resolve(source).declared.most_friction)
         if self.contact is not None:
-            options["settings"] = contact_settings(source, self.contact, own_step(source))
+            step = resolve(source).used.ordinary_step()
+            options["settings"] = contact_settings(source, self.contact, step)
         return options
 
 
-def contact_settings(source: str, time: float, step: float) -> dict[str, float]:
-    """Return the engine's settings of a contact with a time of its own.
+def takes_spring(source: Source) -> bool:
+    """Say whether an engine's contact can be given a time of its own; some have one already."""
+    return source.declared.spring is not None and math.isnan(source.used.contact_s)
 
-    time and step are in units of 1/p; MuJoCo takes stiffness and damping in units of the step.
+
+def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]:
+    """Return the engine's settings of a contact with a time of its own; `Engine.spring`.
+
+    time and step are in units of 1/p.
     """
-    if source.startswith("pybullet"):
-        return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}
-    ratio = step / time
-    return {"stiffness": ratio**2, "damping": 2.0 * ratio}
-
-
-def own_step(source: str) -> float:
-    """Return the ordinary p dt of an engine's tuned preset; nan where the library has its own."""
-    presets = import_module(ENGINES[source.partition(":")[0]]).PRESETS
-    preset = resolve(source).preset
-    if preset == "landing":
-        return 1.0 / ACCURACIES["standard"]
-    return float(presets[preset].step or math.nan)
+    spring = resolve(source).declared.spring
+    if spring is None:
+        raise ValueError(f"{source} has no contact with a time of its own")
+    return spring(time, step)
 
 
 def extremes(quick: bool) -> list[Extreme]:

@@ -9,8 +9,10 @@ from typing import Any
 
 import pandas as pd
 
-from studies.contact.variants import BEST, BY_DEFAULT, DEFAULT
+from engines.factors import BEST, DEFAULT
+from studies.contact.variants import BY_DEFAULT
 from studies.measures.differences import scientific
+from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
 
 NOTABLE, NOTABLE_RATIO = 1e-3, 5e-3
@@ -71,16 +73,18 @@ def left_at_defaults(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
 def overview(lines: pd.DataFrame, engine: str) -> str:
     """Return the largest errors of an engine's presets, and which settings matter most."""
     base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
-    of = {line["preset"]: line for _, line in base.iterrows()}
+    of = {str(line["preset"]): line for _, line in base.iterrows()}
+    errors = [f"{errors_of(of[name])} {in_words(name)}" for name in reversed(in_order(of))]
+    sentence = f"{engine}: largest error {', '.join(errors)}, fixed steps alike."
     left = left_at_defaults(lines, engine)
+    if left.empty:
+        return sentence
     moving = left[left["moved"] >= NOTABLE]
     erring = left[left["max_error"] > (1.0 + NOTABLE) * of[BEST]["max_error"]]
     return (
-        f"{engine}: largest error {errors_of(of['landing'])} where steps land on impacts, "
-        f"{errors_of(of[BEST])} with a tuned contact at a fixed step, {errors_of(of[DEFAULT])} "
-        "with the library's defaults at the same step. Of what is tuned, left at its default, "
-        f"peaks are moved by more than {part(NOTABLE)} by {ranked(moving, 'moved')}; a larger "
-        f"error than the preset's own is left by {ranked(erring, 'max_error')}."
+        f"{sentence} Of what is tuned, left at its default, peaks are moved by more than "
+        f"{part(NOTABLE)} by {ranked(moving, 'moved')}; a larger error than the preset's own is "
+        f"left by {ranked(erring, 'max_error')}."
     )
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.contact.variants import BEST, DEFAULT
+from engines.factors import BEST, DEFAULT
 
 COLOURS = {"landing": "#009E73", BEST: "#0072B2", DEFAULT: "#D55E00"}
 TITLES = {BEST: "one change from the best fixed-step setting", DEFAULT: "one from the defaults"}

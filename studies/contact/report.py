@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from engines import ENGINES
+from engines.factors import BEST, DEFAULT
 from studies.contact.claims import errors_of, findings, first_claim, name_of, overview
-from studies.contact.factors import FACTORS
-from studies.contact.variants import AS_BEST, BEST, BY_DEFAULT, DEFAULT, preset_values
+from studies.contact.variants import AS_BEST, BY_DEFAULT, preset_values
 from studies.kit import provenance
+from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
-from studies.stability.report import left_aligned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,7 +139,7 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
     table = []
     for engine in lines["engine"].unique():
         naive = _find(lines, engine, DEFAULT, "")
-        for factor in FACTORS[engine]:
+        for factor in ENGINES[engine].factors:
             left = _find(lines, engine, BEST, factor.name, BY_DEFAULT)
             alone = _find(lines, engine, DEFAULT, factor.name, AS_BEST)
             if naive is None or alone is None:

@@ -2,18 +2,21 @@
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from analytic.response import Outcome, Response
+from engines import ENGINES, core_engines
+from engines.declaration import Stepping
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.contact.factors import FACTORS
 from studies.contact.report import headline, paragraph, pictures, report
 from studies.contact.variants import OWN_STEP, Variant, variants
-from studies.kit.arguments import Count, Positive
+from studies.kit.arguments import Count, Positive, check_engines, several
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -33,6 +36,7 @@ STRONG = 0.1
 def command(
     *,
     out: Path,
+    engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
@@ -40,14 +44,16 @@ def command(
 ) -> int:
     """Compare contact models: each setting alone, from the best setting and from the defaults.
 
-    Solvers, geometry, friction, compliance, damping, integrators, ... of both engines, on cases of
-    the paper with half and full sines and H/B of 2, 3 and 4, all at one p dt. A failure is an
+    Solvers, geometry, friction, compliance, damping, integrators, ... of engines, on cases of the
+    paper with half and full sines and H/B of 2, 3 and 4, all at one p dt. A failure is an
     answer: the exit code is 1 only where a preset as it is fails.
 
     Parameters
     ----------
     out
         Folder for the results; made if there is none.
+    engines
+        Names of engines, without a preset.
     quick
         Fewer cases and twice the step: less than a minute on 2 cores.
     jobs
@@ -57,13 +63,14 @@ def command(
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
+    check_engines(engines)
     executor = choose(jobs, time_limit, cluster)
-    rows = contact(out, quick=quick, executor=executor)
+    rows = contact(out, engines, quick=quick, executor=executor)
     print(report(out))
     return exit_code([row for row in rows if not row["factor"]])
 
 
-def contact(folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
+def contact(folder: Path, engines: Sequence[str], *, quick: bool, executor: Executor) -> list[Row]:
     """Run what the folder does not hold yet, and write its table.
 
     Raises
@@ -74,18 +81,22 @@ def contact(folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
     return fill_folder(
         folder,
         "contact",
-        [job_of(v, kind, case, quick) for v in all_variants() for kind, case in cases(quick)],
+        [
+            job_of(variant, kind, case, quick)
+            for variant in all_variants(engines)
+            for kind, case in cases(quick)
+        ],
         executor=executor,
         reduce=reduce,
         settings={"quick": quick},
-        growing={},
+        growing={"engine": engines},
         products=PRODUCTS,
     )
 
 
-def all_variants() -> list[Variant]:
-    """Return every way to set an engine, engine by engine."""
-    return [variant for engine in FACTORS for variant in variants(engine, FACTORS[engine])]
+def all_variants(engines: Sequence[str]) -> list[Variant]:
+    """Return every way to set some engines, engine by engine."""
+    return [variant for engine in engines for variant in variants(engine)]
 
 
 @functools.cache
@@ -100,7 +111,8 @@ def cases(quick: bool) -> tuple[tuple[str, Case], ...]:
 def job_of(variant: Variant, kind: str, case: Case, quick: bool) -> Job:
     """Return the job of a variant and a case."""
     options = {"settings": dict(variant.settings), **variant.scene}
-    if variant.preset != "landing" and variant.name != OWN_STEP:
+    stepping = ENGINES[variant.engine].preset(variant.preset).stepping
+    if stepping is Stepping.FIXED and variant.name != OWN_STEP:
         options["step"] = QUICK_STEP if quick else STEP
     window = free_rocking_window(case.block, case.motion)
     return Job(

@@ -2,75 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 from engines import ENGINES
-
-BEST, DEFAULT = "fixed", "naive"
-"""The presets from which one factor at a time is varied."""
+from engines.factors import BEST, BOTH, DEFAULT, Factor
 
 AS_BEST, BY_DEFAULT = "as in the best", "default"
 """Names of the values that the presets take from each other."""
 
 OWN_STEP = "step: the library's own"
-
-Settings = Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Level:
-    """A value of a factor.
-
-    Attributes
-    ----------
-    name : str
-    settings : mapping
-        Settings of the engine.
-    presets : tuple of str
-        From which it is tried.
-    trap : str
-        Why it goes wrong without a word, where it does.
-    scene : mapping
-        Options of the scene.
-    """
-
-    name: str
-    settings: Settings
-    presets: tuple[str, ...] = (BEST,)
-    trap: str = ""
-    scene: Settings = field(default_factory=dict)
-
-
-def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:
-    """Return a value of a factor that is a matter of the engine's settings alone."""
-    return Level(name=name, settings=settings, presets=presets, trap=trap)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Factor:
-    """Settings that belong together, and what they could be.
-
-    Each of the two presets is tried with the other's values of them, where these differ, and with
-    the levels.
-
-    Attributes
-    ----------
-    name : str
-    settings : tuple of str
-        Their names.
-    levels : tuple of Level
-    by_default : bool
-        Whether to try the best setting with the library's default of them.
-    traps : mapping
-        Preset -> why it goes wrong with the other's values, where it does.
-    """
-
-    name: str
-    settings: tuple[str, ...]
-    levels: tuple[Level, ...] = ()
-    by_default: bool = True
-    traps: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,8 +21,8 @@ class Variant:
     preset: str
     factor: str
     level: str
-    settings: Settings = field(default_factory=dict)
-    scene: Settings = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    scene: Mapping[str, Any] = field(default_factory=dict)
     trap: str = ""
 
     @property
@@ -91,23 +31,26 @@ class Variant:
         return f"{self.factor}: {self.level}" if self.factor else self.level
 
 
-def variants(engine: str, factors: Sequence[Factor]) -> Iterator[Variant]:
+def variants(engine: str) -> Iterator[Variant]:
     """Yield every way to set an engine, each preset as it is before what differs from it."""
-    names = {BEST: "best at a fixed step", DEFAULT: "the library's defaults"}
-    yield Variant(engine=engine, preset="landing", factor="", level="steps that land on impacts")
-    for preset, name in names.items():
-        yield Variant(engine=engine, preset=preset, factor="", level=name)
-        if preset == DEFAULT:
+    declared = ENGINES[engine]
+    presets = {preset.name: preset.title for preset in declared.presets}
+    for name in [name for name in presets if name not in BOTH]:
+        yield Variant(engine=engine, preset=name, factor="", level=presets[name])
+    for name in [name for name in BOTH if name in presets]:
+        yield Variant(engine=engine, preset=name, factor="", level=presets[name])
+        if name == DEFAULT:
             factor, _, own = OWN_STEP.partition(": ")
-            yield Variant(engine=engine, preset=preset, factor=factor, level=own)
-        for factor_ in factors:
-            yield from _exchanged(engine, preset, factor_)
-            yield from _levels(engine, preset, factor_)
+            yield Variant(engine=engine, preset=name, factor=factor, level=own)
+        for factor_ in declared.factors:
+            if set(BOTH) <= presets.keys():
+                yield from _exchanged(engine, name, factor_)
+            yield from _levels(engine, name, factor_)
 
 
 def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:
     """Return what a preset of an engine sets the named settings to."""
-    chosen = import_module(ENGINES[engine]).PRESETS[preset]
+    chosen = ENGINES[engine].preset(preset).settings
     return {name: getattr(chosen, name) for name in names}
 
 

@@ -7,9 +7,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter, Token
 
-
-class BadInputError(Exception):
-    """One line that names the argument, its value and what is allowed."""
+from studies.cases.refusal import BadInputError as BadInputError
 
 
 def _number(allowed: str, accepts: Callable[[float], bool]) -> Any:
@@ -68,6 +66,17 @@ def check_sources(names: Sequence[str]) -> None:
         except UnknownSourceError as error:
             raise BadInputError(f"--sources: {error}") from error
     refuse_repeats("--sources", names)
+
+
+def check_engines(names: Sequence[str]) -> None:
+    """Raise BadInputError if there is no engine, an unknown one, or one named twice."""
+    from engines import ENGINES
+
+    for name in names:
+        if name not in ENGINES:
+            allowed = ", ".join(ENGINES)
+            raise BadInputError(f"--engines is {name!r}; it must be among {allowed}")
+    refuse_repeats("--engines", names)
 
 
 def refuse_repeats(argument: str, values: Iterable[Any]) -> None:

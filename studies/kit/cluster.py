@@ -186,7 +186,7 @@ def fitness() -> dict[str, str]:
     for part in ("analytic", "engines", "studies"):
         for path in sorted((provenance.ROOT / part).rglob("*.py")):
             digest.update(path.name.encode() + b"\0" + Path(path).read_bytes() + b"\0")
-    packages = (*provenance.ENGINE_PACKAGES, "numpy", "scipy", "numba")
+    packages = (*provenance.engine_packages(), "numpy", "scipy", "numba")
     return {
         "code": digest.hexdigest()[:12],
         "python": platform.python_version(),

@@ -15,7 +15,6 @@ from typing import Any
 
 from studies.kit.journal import FolderError
 
-ENGINE_PACKAGES = ("pybullet", "mujoco")
 PACKAGES = ("numpy", "scipy", "numba", "pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
 ROOT = Path(__file__).parents[2]
 
@@ -53,13 +52,20 @@ def code_fingerprint() -> str:
     return digest.hexdigest()[:12]
 
 
+def engine_packages() -> list[str]:
+    """Return the distributions whose versions decide what the engines answer."""
+    from engines import ENGINES
+
+    return [package for engine in ENGINES.values() for package in engine.packages]
+
+
 def identity(study: str, **settings: Any) -> dict[str, Any]:
     """Return what the rows of a results folder depend on besides their own case and source."""
     parts = {
         "study": study,
         "version": project_version(),
         "code": code_fingerprint(),
-        "engines": {name: version_of(name) for name in ENGINE_PACKAGES},
+        "engines": {name: version_of(name) for name in engine_packages()},
         "settings": settings,
     }
     # as it will be read back: a tuple becomes a list

@@ -3,11 +3,9 @@
 import enum
 import math
 from dataclasses import dataclass, replace
-from importlib import import_module
 
 from analytic import simulate
 from analytic.response import Outcome, Response
-from engines import ENGINES
 from studies.cases.extreme import Extreme
 from studies.measures.energy import growth
 from studies.sources.registry import resolve
@@ -147,6 +145,5 @@ def friction_of(case: Extreme, source: str) -> float:
         return math.nan
     chosen = case.options(source).get("friction")
     if chosen is None:
-        module = import_module(ENGINES[source.partition(":")[0]])
-        chosen = module.PRESETS[asked.preset].friction
+        chosen = asked.used.settings.friction
     return float(chosen)

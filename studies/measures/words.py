@@ -5,20 +5,8 @@ from collections.abc import Sequence
 
 from studies.measures.differences import scientific
 
-PRESET_WORDS = {
-    "naive": "with the libraries' defaults",
-    "fixed": "with a tuned contact and a fixed step",
-    "landing": "with steps that land on impacts",
-}
-"""Preset of an engine -> what it is, as part of a sentence."""
-
 WHOLE = 0.1
 """From this part on a number is given in whole per cent."""
-
-
-def preset_of(source: str) -> str:
-    """Return the preset that an engine's name stands for; without one, steps land on impacts."""
-    return source.partition(":")[2] or "landing"
 
 
 def out_of(count: float, total: float) -> str:

@@ -6,16 +6,18 @@ from pathlib import Path
 
 import pandas as pd
 
+from engines import ENGINES
 from studies.catalogue import CHAPTERS
 from studies.kit.study import Chapter, Study
-from studies.measures.columns import GROUPS
 from studies.measures.claims import TABLE, Finding, read_findings
+from studies.measures.columns import GROUPS
 from studies.measures.differences import scientific
-from studies.measures.words import PRESET_WORDS, duration, listed, part, times
+from studies.measures.presets import in_words, preset_of
+from studies.measures.words import duration, listed, out_of, part
 from studies.page import hero
 from studies.page.markdown import table
-from studies.precision.choices import Choice, choices
-from studies.sweep.claims import preset_claim, engines_by_preset, preset_table, whole
+from studies.precision.choices import NEAR, TYPICAL, Choice, choices
+from studies.sweep.claims import preset_table, whole
 
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
@@ -51,8 +53,18 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
 
 
 def chapters(published: Path) -> list[Told]:
-    """Return every chapter in words."""
-    return [told(published, study, chapter) for study, chapter in CHAPTERS]
+    """Return every published chapter in words."""
+    return [told(published, *place) for place in CHAPTERS if is_published(published, place[1])]
+
+
+def is_published(published: Path, chapter: Chapter) -> bool:
+    """Say whether a chapter has published results."""
+    return (published / chapter.folder / "provenance.json").is_file()
+
+
+def missing(published: Path) -> list[str]:
+    """Return the folders of the chapters without published results."""
+    return [each.folder for _, each in CHAPTERS if not is_published(published, each)]
 
 
 def presets(published: Path) -> pd.DataFrame:
@@ -67,7 +79,7 @@ def presets_text(lines: pd.DataFrame) -> str:
     rows = [
         (
             f"`{row['source']}`",
-            PRESET_WORDS[row["preset"]],
+            in_words(row["preset"]),
             f"{row['right']} of {row['cases']}",
             *(part(row[name]) for name in ("median", "p90", "max")),
             duration(1e-3 * row["ms"]),
@@ -120,14 +132,28 @@ def hero_lines(published: Path) -> dict[str, str]:
     """Return what each source of the first picture does: its outcome, or the error of its peak."""
     lines = hero.summary(pd.read_csv(published / "hero" / "hero.csv"))
     return {
-        str(row["source"]): (
-            f"{row['error']:+.0%}".replace("%", " %")
-            if abs(row["error"]) >= 1e-3
-            else scientific(abs(float(row["error"])))
-        )
+        str(row["source"]): _of_peak(float(row["error"]))
         if row["outcome"] == "rocked"
-        else str(row["outcome"])
+        else f"the block {row['outcome']}"
         for _, row in lines.iterrows()
+    }
+
+
+def _of_peak(error: float) -> str:
+    """Return the error of a peak with its sign where it can be seen."""
+    if abs(error) < 1e-3:
+        return f"its peak is right to {scientific(abs(error))}"
+    return f"its peak is off by {error:+.0%}".replace("%", " %").replace("-", "−")
+
+
+def counts(published: Path) -> dict[str, int]:
+    """Return how many cases the tables on the first screen are about."""
+    lines = pd.read_csv(published / "precision" / "work-precision.csv")
+    each = lines.groupby("set")["cases"].max()
+    return {
+        "paper": int(presets(published)["cases"].max()),
+        "typical": int(each[TYPICAL]),
+        "near": int(each[NEAR]),
     }
 
 
@@ -150,6 +176,28 @@ def glossary() -> list[tuple[str, str]]:
         (name, table(heads, [(f"`{key}`", *column) for key, column in columns.items()]))
         for name, columns in GROUPS.items()
     ]
+
+
+def helps(core: bool = True) -> str:
+    """Return what each engine's adapter does for landing, as the engines declare it."""
+    words = [
+        f"in {engine.title} {'; '.join(help_.value for help_ in preset.helped_by)}"
+        for engine in ENGINES.values()
+        for preset in engine.presets
+        if preset.name == "landing" and engine.core == core
+    ]
+    return "; and ".join(words)
+
+
+def random_fixed(published: Path) -> str:
+    """Return which presets with a fixed step get random cases wrong; empty if none does."""
+    compared = pd.read_csv(published / "validate" / "errors.csv")
+    words = [
+        f"`{source}` gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right"
+        for source, rows in compared.groupby("source", sort=False)
+        if preset_of(str(source)) == "fixed" and not rows["agrees"].all()
+    ]
+    return listed(words) if words else ""
 
 
 def minutes(full: bool) -> int:

@@ -52,10 +52,14 @@ def pages(root: Path) -> dict[Path, str]:
     )
     known = {
         "chapters": facts.chapters(published),
+        "missing": facts.missing(published),
         "presets": facts.presets_text(facts.presets(published)),
         "choices": facts.choices_text(pd.read_csv(published / "precision" / "work-precision.csv")),
+        "counts": facts.counts(published),
         "hero": facts.hero_lines(published),
         "made": facts.made(published),
+        "helps": facts.helps(),
+        "random_fixed": facts.random_fixed(published),
         "glossary": facts.glossary(),
         "minutes": facts.minutes,
     }

@@ -1,6 +1,7 @@
 """What a scene costs and what leaving things out of it saves: measured by putting them back."""
 
 import contextlib
+import functools
 import importlib
 import math
 import time
@@ -20,6 +21,8 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Response
 from engines import ENGINES, Scene, run
+from engines.drive import build
+from engines.world import World
 from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
 from studies.kit import provenance
 from studies.kit.runner import own_folder
@@ -28,9 +31,6 @@ from studies.precision.cost_report import headline, paragraph, pictures, report
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 PRODUCTS = ("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt")
-
-ENGINE_STEP = {"pybullet": ("pybullet", "stepSimulation"), "mujoco": ("mujoco", "mj_step")}
-"""Engine -> module and function that does nothing but the engine's own step."""
 
 BUDGET_S, QUICK_BUDGET_S = 1.0, 0.15
 """Time [s] spent on timing one scene."""
@@ -150,10 +150,9 @@ def scene_memory(engine: str, put_back: dict[str, Any]) -> float:
     status = Path("/proc/self/statm")
     if not status.exists():
         return math.nan
-    adapter = importlib.import_module(ENGINES[engine])
-    worlds = [adapter.build(scene)]
+    worlds = [build(ENGINES[engine], scene)]
     before = _resident(status)
-    worlds += [adapter.build(scene) for _ in range(SCENES)]
+    worlds += [build(ENGINES[engine], scene) for _ in range(SCENES)]
     grown = _resident(status) - before
     for world in worlds:
         world.close()
@@ -204,19 +203,32 @@ def tick() -> float:
     return (time.perf_counter() - began) / count
 
 
+def own_step(engine: str) -> tuple[Any, str]:
+    """Return where an engine's own step stands, and its name there."""
+    library, _, path = ENGINES[engine].own_step.partition(":")
+    *owners, name = path.split(".")
+    return functools.reduce(getattr, owners, importlib.import_module(library)), name
+
+
+def example_world(engine: str) -> World:
+    """Return a world of an engine, closed: its class is wanted."""
+    block, motion = pose_case()
+    world = build(ENGINES[engine], Scene(block=block, motion=motion))
+    world.close()
+    return world
+
+
 @contextlib.contextmanager
 def clocks(engine: str) -> Iterator[dict[str, float]]:
     """Put clocks around the parts of a step while the context lasts; yield the sums [s]."""
     from engines.stepping.steps import Stepper
     from engines.watching.observe import Observer
 
-    adapter = importlib.import_module(ENGINES[engine])
-    library, function = ENGINE_STEP[engine]
-    world = {"pybullet": "BulletWorld", "mujoco": "MujocoWorld"}[engine]
+    world = type(example_world(engine))
     places = {
-        "engine": (importlib.import_module(library), function),
-        "step": (getattr(adapter, world), "step"),
-        "pose": (getattr(adapter, world), "pose"),
+        "engine": own_step(engine),
+        "step": (world, "step"),
+        "pose": (world, "pose"),
         "policy": (Stepper, "next"),
         "observer": (Observer, "see"),
     }

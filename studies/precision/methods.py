@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from engines import ENGINES, PRESETS
+from engines import ENGINES
+from engines.declaration import Preset
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +22,8 @@ class Method:
         What the option runs through, from cheap to dear.
     stepping : bool
         Whether the setting is a step, of which the error is a power.
+    of_engine : bool
+        Whether the setting is one of an engine's own.
     options : mapping
         The other options.
     """
@@ -29,19 +32,18 @@ class Method:
     setting: str = ""
     values: tuple[float, ...] = (0.0,)
     stepping: bool = False
+    of_engine: bool = False
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def options_at(self, value: float) -> dict[str, Any]:
         """Return the options with the open one at a value."""
         if not self.setting:
             return dict(self.options)
-        if self.setting in ENGINE_SETTINGS:
-            return {**self.options, "settings": {self.setting: int(value)}}
+        if self.of_engine:
+            whole = int(value) if float(value).is_integer() else value
+            return {**self.options, "settings": {self.setting: whole}}
         return {**self.options, self.setting: value}
 
-
-ENGINE_SETTINGS = ("iterations",)
-"""Open options that are settings of an engine."""
 
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))
 STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
@@ -52,6 +54,14 @@ ITERATIONS = (2.0, 5.0, 10.0, 50.0, 200.0)
 def _along_step(source: str, **options: Any) -> Method:
     steps = STEPS if options else ENGINE_STEPS
     return Method(source=source, setting="step", values=steps, stepping=True, options=options)
+
+
+def _of_preset(engine: str, preset: Preset) -> Method:
+    source = f"{engine}:{preset.name}"
+    if preset.dial is None:
+        return _along_step(source)
+    setting, values = preset.dial
+    return Method(source=source, setting=setting, values=values, of_engine=True)
 
 
 METHODS = {
@@ -70,18 +80,21 @@ METHODS = {
         for name in ("housner", "modified", "onset-matched")
     },
     **{
-        f"{engine} {preset}": _along_step(f"{engine}:{preset}")
-        for engine in ENGINES
-        for preset in PRESETS
+        f"{name} {preset.name}": _of_preset(name, preset)
+        for name, engine in ENGINES.items()
+        for preset in engine.presets
     },
     **{
-        f"{engine} fixed, iterations": Method(
-            source=f"{engine}:fixed",
+        f"{name} {preset.name}, iterations": Method(
+            source=f"{name}:{preset.name}",
             setting="iterations",
             values=ITERATIONS,
+            of_engine=True,
             options={"step": 1e-3},
         )
-        for engine in ENGINES
+        for name, engine in ENGINES.items()
+        for preset in engine.presets
+        if preset.name == "fixed" and hasattr(preset.settings, "iterations")
     },
 }
 """Name -> method."""

@@ -9,7 +9,8 @@ from analytic import MODELS, integrate, simulate
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from engines import ENGINES, PRESETS
+from engines import ENGINES
+from engines.declaration import Engine, Preset, Stepping
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
@@ -25,14 +26,31 @@ class UnknownSourceError(ValueError):
 class Source:
     """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
 
-    It can be sent to another process or machine. `preset` is an engine's, by default the best
-    there is; `stepping` sources have an option `step`, p dt.
+    It can be sent to another process or machine. `engine` and `preset` are names, the preset by
+    default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
+    ones an option `accuracy`.
     """
 
     kind: Kind
     call: Callable[..., Response]
+    engine: str = ""
     preset: str = ""
     stepping: bool = False
+
+    @property
+    def declared(self) -> Engine:
+        """What the engine says of itself; KeyError for other sources."""
+        return ENGINES[self.engine]
+
+    @property
+    def used(self) -> Preset:
+        """How the engine is used; KeyError for other sources."""
+        return self.declared.preset(self.preset)
+
+    @property
+    def accurate(self) -> bool:
+        """Whether it is an engine whose steps are not all equal."""
+        return bool(self.engine) and self.used.stepping is not Stepping.FIXED
 
 
 def run_engine(
@@ -62,15 +80,12 @@ def run_engine(
 
 def _engine(name: str, preset: str) -> Source:
     call = partial(run_engine, engine=name, preset=preset)
-    return Source("engine", call, preset, stepping=True)
+    return Source("engine", call, name, preset, stepping=True)
 
 
 def _peer(method: str) -> Source:
     return Source("peer", partial(solve_ivp_response, method=method))
 
-
-BEST_PRESET = "landing" if "landing" in PRESETS else "fixed"
-"""The preset that an engine's plain name stands for."""
 
 SOURCES: dict[str, Source] = {
     **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
@@ -79,7 +94,7 @@ SOURCES: dict[str, Source] = {
         "solver", partial(integrate, method="average-acceleration"), stepping=True
     ),
     **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
-    **{name: _engine(name, BEST_PRESET) for name in ENGINES},
+    **{name: _engine(name, engine.best.name) for name, engine in ENGINES.items()},
 }
 """Every source; a new model or engine appears here by being registered in its own storey."""
 
@@ -94,17 +109,22 @@ def resolve(name: str) -> Source:
     """
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
-    if source is None or (colon and (source.kind != "engine" or preset not in PRESETS)):
+    if source is None or (colon and preset not in presets_of(source)):
         raise UnknownSourceError(f"source is {name!r}; it must be one of {allowed()}")
     if not colon:
         return source
     return replace(source, call=partial(source.call, preset=preset), preset=preset)
 
 
+def presets_of(source: Source) -> list[str]:
+    """Return the names of an engine's presets; none of other sources."""
+    return [preset.name for preset in ENGINES[source.engine].presets] if source.engine else []
+
+
 def allowed() -> str:
     """Return the sentence that lists the sources and presets."""
-    names = ", ".join(SOURCES)
-    return f"{names}; an engine takes a preset after a colon: {', '.join(PRESETS)}"
+    presets = dict.fromkeys(name for source in SOURCES.values() for name in presets_of(source))
+    return f"{', '.join(SOURCES)}; an engine takes a preset after a colon: {', '.join(presets)}"
 
 
 Accuracy = Literal["loose", "standard", "tight"]
@@ -132,7 +152,7 @@ class Effort:
         chosen: dict[str, Any] = {}
         if self.step is not None and source.stepping:
             chosen["step"] = self.step
-        if self.accuracy is not None and source.preset == "landing":
+        if self.accuracy is not None and source.accurate:
             chosen["accuracy"] = self.accuracy
         return chosen
 

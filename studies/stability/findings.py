@@ -4,10 +4,10 @@ import math
 
 import pandas as pd
 
-from engines import PRESETS
 from studies.measures.differences import scientific
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import PRESET_WORDS, listed, out_of, preset_of
+from studies.measures.words import listed, out_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -28,13 +28,13 @@ def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> 
 
 def first_claim(matrix: pd.DataFrame) -> str:
     """Say how many of the extreme cases each preset of the engines gets right."""
-    engine = matrix["source"].map(lambda source: resolve(source).kind == "engine")
-    asked = matrix[engine & (matrix["verdict"] != Verdict.INVALID.value)]
+    valid = matrix["verdict"] != Verdict.INVALID.value
+    asked = matrix[matrix["source"].map(is_engine) & valid]
     right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
     words: dict[str, list[str]] = {}
     for source, good in right:
         words.setdefault(preset_of(str(source)), []).append(out_of(int(good.sum()), len(good)))
-    parts = [f"{PRESET_WORDS[name]} {listed(words[name])}" for name in PRESETS if name in words]
+    parts = [f"{in_words(name)} {listed(words[name])}" for name in in_order(words)]
     return f"Of extreme cases the engines get right: {', '.join(parts)}."
 
 
@@ -126,7 +126,7 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
         return []
     sentences = []
     for source, group in steps.groupby("source", sort=False):
-        usual = group[group["contact_s"].isna() | (source == "mujoco:naive")]
+        usual = group[~with_own_contact(group)]
         usual = usual[usual["invalid"] == ""]
         accurate = usual["largest_accurate"]
         if accurate.notna().any():
@@ -139,9 +139,17 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
     return [words, *_on_contacts(steps)]
 
 
+def with_own_contact(steps: pd.DataFrame) -> "pd.Series[bool]":
+    """Return which rows are of a contact that was given a time of its own.
+
+    With its defaults a library may have one by itself.
+    """
+    return steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()
+
+
 def _on_contacts(steps: pd.DataFrame) -> list[str]:
     """Say for which steps a contact with a time of its own is stable."""
-    own = steps[steps["source"].str.endswith(":fixed") & steps["contact_s"].notna()]
+    own = steps[with_own_contact(steps)]
     return [
         f"A contact of {OWN_CONTACT:g}/p in {source} is stable up to steps of "
         f"{span(group['stable_over_contact'])} of that time and accurate up to "

@@ -14,7 +14,7 @@ import numpy as np
 
 from analytic import simulate
 from analytic.response import Response
-from studies.cases.extreme import Extreme, contact_settings
+from studies.cases.extreme import Extreme, contact_settings, takes_spring
 from studies.kit.jobs import Job, ask
 from studies.kit.journal import Row
 from studies.measures.energy import growth
@@ -27,8 +27,6 @@ FACTOR = 1.05
 """Factor within which a largest step is found; coarser in a quick study."""
 QUICK_FACTOR = 1.3
 SAMPLES = 400
-LIBRARY_CONTACT_S = 0.02
-"""Time constant [s] of MuJoCo's default contact."""
 OWN_CONTACT = 0.01
 """Time, in units of 1/p, of a contact that does not follow the step."""
 
@@ -69,11 +67,17 @@ def step_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
 
 def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
     """Return the contact times [s] to try a source with; nan for one that has none of its own."""
-    if source == "mujoco:naive":
-        return (LIBRARY_CONTACT_S,)
-    if source.endswith(":fixed"):
+    asked = resolve(source)
+    if asked.kind != "engine":
+        return (math.nan,)
+    if is_sprung(source):
         return (math.nan, OWN_CONTACT / case.block.p)
-    return (math.nan,)
+    return (asked.used.contact_s,)
+
+
+def is_sprung(source: str) -> bool:
+    """Say whether a source is tried with a contact that does not follow the step, too."""
+    return source.endswith(":fixed") and takes_spring(resolve(source))
 
 
 def search_job(case: Extreme, source: str, contact_s: float, quick: bool) -> Job:
@@ -134,7 +138,7 @@ def search(job: Job, source: Source, time_limit_s: float) -> Response:
 def _at(job: Job, step: float) -> dict[str, Any]:
     """Return the options at a step; a contact with a time of its own does not follow it."""
     time = float(job.labels["contact_s"]) * job.block.p
-    if not job.source.endswith(":fixed") or math.isnan(time):
+    if not is_sprung(job.source) or math.isnan(time):
         return {"step": step}
     return {"step": step, "settings": contact_settings(job.source, time, step)}
 

@@ -4,16 +4,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from analytic.response import Response
+from engines.declaration import Stepping
 from studies.cases.extreme import Extreme
 from studies.kit.jobs import Job, ask
 from studies.measures.verdicts import ACCEPTED, judge
 from studies.sources.registry import Source, resolve
 
-FINER = {"landing": 5e-4, "fixed": 1e-4, "naive": 1e-4}
-"""p dt of the remedy for each preset of an engine."""
+FINER, FINEST = 5e-4, 1e-4
+"""p dt of the remedy for steps that land on impacts, and for equal ones."""
 NOTHING = "none of those tried"
-BETTER_SETTING = {"pybullet": ("iterations", 10000), "mujoco": ("impratio", 100.0)}
-"""The setting of each engine's contact solver that is worth a try."""
 SHARE = 0.3
 """Part of the time limit that is left to each run of an engine."""
 
@@ -66,27 +65,29 @@ def remedies(case: Extreme, source: str) -> list[tuple[str, str, dict[str, Any]]
         ]
     if asked.kind == "peer":
         return [("rtol 1e-12", source, {"rtol": 1e-12})]
-    return _of_engine(case, source, asked.preset, options) if asked.kind == "engine" else []
+    return _of_engine(case, source, options) if asked.kind == "engine" else []
 
 
 def _of_engine(
-    case: Extreme, source: str, preset: str, options: dict[str, Any]
+    case: Extreme, source: str, options: dict[str, Any]
 ) -> list[tuple[str, str, dict[str, Any]]]:
-    engine = source.partition(":")[0]
+    engine, preset = resolve(source).declared, resolve(source).used
+    tuned = preset is not engine.presets[0]
     tried = []
     if case.contact is not None:
         without = {k: v for k, v in options.items() if k != "settings"}
         tried.append(("the preset's own contact", source, without))
-    if case.step_s is None and preset != "naive":
-        step = FINER[preset]
+    if case.step_s is None and tuned:
+        step = FINEST if preset.stepping is Stepping.FIXED else FINER
         tried.append((f"p dt {step:g}", source, {**options, "step": step}))
-    name, value = BETTER_SETTING[engine]
-    if preset != "naive":
-        settings = {**options.get("settings", {}), name: value}
-        tried.insert(0, (f"{name} {value:g}", source, {**options, "settings": settings}))
+    if tuned and engine.remedy:
+        words = ", ".join(f"{name} {value:g}" for name, value in engine.remedy.items())
+        settings = {**options.get("settings", {}), **engine.remedy}
+        tried.insert(0, (words, source, {**options, "settings": settings}))
     better = {k: v for k, v in options.items() if k not in ("step", "settings")}
     if case.step_s is not None:
         tried.append(("the preset's own step", source, better))
-    if preset != "landing":
-        tried += [(f"preset {name}", f"{engine}:{name}", better) for name in ("fixed", "landing")]
+    if preset is not engine.best:
+        others = (other.name for other in engine.presets[1:])
+        tried += [(f"preset {name}", f"{engine.name}:{name}", better) for name in others]
     return [entry for entry in tried if entry[1:] != (source, options)]

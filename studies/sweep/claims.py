@@ -5,8 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from engines import PRESETS
-from studies.measures.words import PRESET_WORDS, alike, capital, listed, out_of, part, preset_of
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.words import alike, capital, listed, out_of, part
 from studies.sources.registry import resolve
 
 
@@ -19,9 +19,9 @@ def whole(folder: Path) -> pd.DataFrame:
 
 def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return the engines' lines of a summary, by preset, in the order in which these get better."""
-    engine = [resolve(source).kind == "engine" for source in lines["source"]]
-    rows = lines[engine].assign(preset=lines["source"].map(preset_of))
-    return {name: rows[rows["preset"] == name] for name in PRESETS if name in set(rows["preset"])}
+    rows = lines[lines["source"].map(is_engine)]
+    rows = rows.assign(preset=rows["source"].map(preset_of))
+    return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
 
 
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
@@ -30,7 +30,7 @@ def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     right = [out_of(row["agree"], row["cases"]) for _, row in lines.iterrows()]
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
     return capital(
-        f"{PRESET_WORDS[preset]}, {names} get {alike(right)} outcomes right, and peaks wrong by "
+        f"{in_words(preset)}, {names} get {alike(right)} outcomes right, and peaks wrong by "
         f"{alike(medians)} in the median and {alike(largest)} at most."
     )
 
@@ -65,7 +65,7 @@ def first_claim(lines: pd.DataFrame) -> str:
 def _short(preset: str, lines: pd.DataFrame) -> str:
     wrong = [out_of(row["cases"] - row["agree"], row["cases"]) for _, row in lines.iterrows()]
     largest = alike([part(error) for error in lines["max_error"]])
-    return f"{PRESET_WORDS[preset]} {alike(wrong)} outcomes are wrong, and peaks by up to {largest}"
+    return f"{in_words(preset)} {alike(wrong)} outcomes are wrong, and peaks by up to {largest}"
 
 
 def linearized(lines: pd.DataFrame) -> pd.DataFrame:

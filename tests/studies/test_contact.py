@@ -11,19 +11,21 @@ import pytest
 
 from analytic import simulate
 from analytic.response import Outcome
-from engines import Scene, run
-from engines.adapters.bullet import BulletSettings, BulletWorld
-from engines.adapters.mujoco import MujocoSettings, MujocoWorld
-from engines.scene import Grip, Step
-from studies.contact.factors import FACTORS
+from engines import ENGINES, Scene, run
+from engines.adapters.bullet import BulletWorld
+from engines.adapters.bullet_settings import BulletSettings
+from engines.adapters.mujoco_settings import MujocoSettings
+from engines.drive import build
+from engines.factors import BEST, DEFAULT
+from engines.stepping.steps import FixedSteps, Stepper
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
-from studies.contact.variants import BEST, DEFAULT, OWN_STEP
+from studies.contact.variants import OWN_STEP
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
 
 CASE = next(case for _, case in cases(True) if case.pulse == "full-sine")
-VARIANTS = all_variants()
+VARIANTS = all_variants(ENGINES)
 STEP = 5e-3
 
 
@@ -67,21 +69,17 @@ def test_every_variant_answers(variant):
 def test_variants_are_told_apart():
     names = [(v.engine, v.preset, v.name) for v in VARIANTS]
     assert len(set(names)) == len(names)
-    for engine, factors in FACTORS.items():
-        found = {v.factor for v in VARIANTS if v.engine == engine}
-        assert {factor.name for factor in factors} <= found
+    for name, engine in ENGINES.items():
+        found = {v.factor for v in VARIANTS if v.engine == name}
+        assert {factor.name for factor in engine.factors} <= found
 
 
 def test_a_variant_differs_from_its_preset():
     """What a variant sets is not what its preset sets already, or it would compare nothing."""
     for variant in VARIANTS:
-        settings = {"pybullet": BulletWorld, "mujoco": MujocoWorld}[variant.engine]
+        plain = ENGINES[variant.engine].preset(variant.preset).settings
         if variant.factor and not variant.scene and variant.name != OWN_STEP:
-            plain = settings(scene(preset=variant.preset))
-            varied = settings(scene(preset=variant.preset, settings=variant.settings))
-            plain.close()
-            varied.close()
-            assert plain.settings != varied.settings, variant
+            assert scene(settings=variant.settings).choose(plain) != plain, variant
 
 
 @pytest.mark.parametrize(
@@ -110,9 +108,10 @@ def test_what_is_not_allowed_is_named(settings, values, message):
 
 def test_solref_and_margin_reach_the_library():
     settings = of("mujoco", BEST, "reference: 2 dt 1").settings
-    world = MujocoWorld(scene(preset=BEST, settings={**settings, "margin": 1e-3}))
-    world.step(Step(world.dt_s, world.dt_s, 0.0, Grip.REST, 0.0))
-    assert np.all(world._model.pair_solref == [2.0 * world.dt_s, 1.0])
+    asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
+    world = build(ENGINES["mujoco"], asked)
+    world.step(Stepper(FixedSteps(dt_s), asked).next(world.pose(), False))
+    assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
     assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()
 
@@ -144,7 +143,7 @@ def test_a_mixed_reference_is_the_default():
 
 
 def test_a_base_without_velocity_carries_nothing():
-    for engine in FACTORS:
+    for engine in ENGINES:
         moved, told = (
             of(engine, BEST, f"moving base: {word}")
             for word in ("by position alone", "with its velocity")

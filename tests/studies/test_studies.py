@@ -10,7 +10,7 @@ import pytest
 
 from analytic import RigidBlock, SinePulse
 from analytic.response import Impact, Outcome, Response
-from engines import ENGINES, PRESETS
+from engines import ENGINES
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.histories import study as histories
@@ -26,7 +26,10 @@ def raises(block, motion, *, duration, times):
     raise RuntimeError("the engine\nsaid no")
 
 
-EVERY_NAME = [*SOURCES, *(f"{engine}:{preset}" for engine in ENGINES for preset in PRESETS)]
+EVERY_NAME = [
+    *SOURCES,
+    *(f"{engine.name}:{preset.name}" for engine in ENGINES.values() for preset in engine.presets),
+]
 
 
 @pytest.mark.parametrize("name", EVERY_NAME)

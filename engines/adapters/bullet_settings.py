@@ -1,0 +1,197 @@
+"""What PyBullet can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from engines.factors import BEST, BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.parts.settings import check, setting
+from engines.scene import GEOMETRIES
+
+LIBRARY_BREAKING_THRESHOLD = 0.02
+"""The library's own gap, over a body's size, up to which it keeps a contact."""
+
+SOLVERS = {
+    "sequential impulse": "CONSTRAINT_SOLVER_LCP_SI",
+    "PGS": "CONSTRAINT_SOLVER_LCP_PGS",
+    "Dantzig": "CONSTRAINT_SOLVER_LCP_DANTZIG",
+}
+"""Name of a contact solver -> the library's constant."""
+
+LARGEST_FRICTION = 10.0
+"""The library clamps the coefficient of a pair, the product of the two bodies', to this."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BulletSettings:
+    """Settings of PyBullet, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
+        mesh of the block's eight corners.
+    planar : bool
+        Put two corner spheres into the middle plane instead of four at the edges; a box has its
+        four corners either way.
+    multibody : bool
+        Build the block in reduced coordinates, as the library does by default.
+    friction : float
+        Coefficient between block and base, at most 10.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    exact_inertia : bool
+        Set the moments of inertia of the homogeneous block instead of those the library derives
+        from the collision shape.
+    damping : float or None
+        Linear and angular damping of the block.
+    iterations, residual : int, float or None
+        Of the contact solver: how many, and the squared velocity [m2/s2] at which they end.
+    contact_erp, friction_erp : float or None
+        Part of a position error that a step corrects.
+    friction_anchor : bool
+        Hold the point of contact by its position, too.
+    contact_slop : float or None
+        Penetration [m] that is left alone.
+    breaking_threshold : float
+        Gap, over the half diagonal, up to which a contact is kept. The library holds this once
+        for the whole process, so every scene sets it.
+    gap_by_step : bool
+        Keep contacts up to a gap of 4 (p dt sin(alpha))^2 half diagonals instead.
+    by_phase : bool
+        Correct no positions in the short steps around an impact.
+    base_geometry : str
+        "plane" or "box".
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    solver : str or None
+        Of the contacts: "sequential impulse", "PGS" or "Dantzig".
+    warm_starting : float or None
+        Part of the last step's impulses from which the solver starts.
+    split_impulse, cone_friction, separating_axis : bool or None
+        Correct penetration without giving it a velocity; bound friction by a cone instead of a
+        pyramid; find contacts of polyhedra by separating axes.
+    contact_stiffness, contact_damping : float or None
+        Of a yielding contact, over m p^2 and m p; both or neither.
+    """
+
+    geometry: str = setting("box", names=GEOMETRIES)
+    planar: bool = False
+    multibody: bool = True
+    friction: float = setting(1.0, most=LARGEST_FRICTION)
+    corner_radius: float = setting(1e-6, above=0.0)
+    exact_inertia: bool = False
+    damping: float | None = None
+    iterations: int | None = None
+    residual: float | None = None
+    contact_erp: float | None = None
+    friction_erp: float | None = None
+    friction_anchor: bool = False
+    contact_slop: float | None = None
+    breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
+    gap_by_step: bool = False
+    by_phase: bool = False
+    base_geometry: str = setting("plane", names=("plane", "box"))
+    base_velocity: bool = True
+    solver: str | None = setting(names=tuple(SOLVERS))
+    warm_starting: float | None = setting(least=0.0, most=1.0)
+    split_impulse: bool | None = None
+    cone_friction: bool | None = None
+    separating_axis: bool | None = None
+    contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
+    contact_damping: float | None = setting(above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+TUNED = BulletSettings(
+    geometry="corners",
+    planar=True,
+    multibody=False,
+    friction=LARGEST_FRICTION,
+    exact_inertia=True,
+    damping=0.0,
+    iterations=1000,
+    residual=1e-20,
+    contact_erp=1.0,
+    friction_erp=0.0,
+    contact_slop=0.0,
+)
+
+LANDING = replace(
+    TUNED, residual=1e-32, friction_erp=1.0, friction_anchor=True, gap_by_step=True, by_phase=True
+)
+
+DRAG = "drag that nobody asked for"
+SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
+ANCHORED = "an anchor kept through an impact drags the pivot along"
+SPHERES = "the inertia of the corner spheres instead of the block's"
+HULL_ON_BOX: dict[str, Any] = {"geometry": "hull", "base_geometry": "box"}
+
+FACTORS = (
+    factor("solver", level("PGS", BOTH, solver="PGS"), level("Dantzig", BOTH, solver="Dantzig")),
+    factor(
+        "residual",
+        level("1e-5", residual=1e-5),
+        level("1e-12", residual=1e-12),
+        name="residual threshold",
+    ),
+    factor("iterations", level("5", iterations=5)),
+    factor("contact_erp", level("0", contact_erp=0.0), name="contact ERP"),
+    factor("friction_erp", level("1", friction_erp=1.0), name="friction ERP"),
+    factor("contact_slop", level("1 mm", contact_slop=1e-3)),
+    factor(
+        "friction_anchor",
+        level("on", BOTH, friction_anchor=True),
+        level("on, friction ERP 1", trap=ANCHORED, friction_anchor=True, friction_erp=1.0),
+    ),
+    factor("breaking_threshold", level("1e-5 R", breaking_threshold=1e-5), name="kept gap"),
+    Factor(
+        "yielding contact",
+        ("contact_stiffness", "contact_damping"),
+        (
+            level("k 1e4, c 1e2", contact_stiffness=1e4, contact_damping=1e2),
+            level("k 1e4, c 1e3", contact_stiffness=1e4, contact_damping=1e3),
+            level("k 1e6, c 1e5", BOTH, contact_stiffness=1e6, contact_damping=1e5),
+        ),
+    ),
+    factor("damping", level("0.04, a multibody's default", trap=DRAG, damping=0.04)),
+    factor(
+        "multibody",
+        level("reduced, default damping", trap=DRAG, multibody=True, damping=None),
+        name="coordinates",
+    ),
+    factor("exact_inertia", name="inertia", traps={BEST: SPHERES}),
+    Factor(
+        "geometry",
+        ("geometry", "planar", "exact_inertia"),
+        (
+            level("hull on plane", trap=SLIDES, geometry="hull"),
+            level("hull on plane, default ERP", geometry="hull", contact_erp=None),
+            level("hull on plane", (DEFAULT,), geometry="hull"),
+            level("2 corners on box", base_geometry="box"),
+            level("box on box", BOTH, geometry="box", base_geometry="box"),
+            level("hull on box", trap=SLIDES, **HULL_ON_BOX),
+            level("hull on box", (DEFAULT,), **HULL_ON_BOX),
+            level("4 corners on plane", BOTH, geometry="corners", planar=False, exact_inertia=True),
+            level("corners of B/500", corner_radius=2e-3),
+            level("box, separating axes", geometry="box", separating_axis=True),
+        ),
+    ),
+    factor("split_impulse", level("on", split_impulse=True), level("off", split_impulse=False)),
+    factor(
+        "cone_friction",
+        level("cone", BOTH, cone_friction=True),
+        level("pyramid", BOTH, cone_friction=False),
+        name="friction cone",
+    ),
+    factor("warm_starting", level("off", warm_starting=0.0), level("0.95", warm_starting=0.95)),
+    factor("friction"),
+    MOVING_BASE,
+)
+"""What its contact can be set to."""
+
+
+def spring(time: float, step: float) -> dict[str, float]:
+    """Return the settings of a contact with a time of its own; see `Engine.spring`."""
+    return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}

@@ -1,0 +1,199 @@
+"""What MuJoCo can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.parts.settings import check, setting
+from engines.scene import GEOMETRIES
+
+INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
+"""Integrators of the library."""
+
+DEFAULT_CONTACT_S = 0.02
+"""Time constant [s] of the library's own contact, which does not follow the step."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MujocoSettings:
+    """Settings of MuJoCo, by default its own; None leaves a setting to the library.
+
+    A contact holds its points to the acceleration -b v - k r, v being their velocity and r the
+    gap. Here b and k are given without units, as b dt and k dt^2: b dt = 1 takes all velocity out
+    of a contact within one step.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
+        mesh of the block's eight corners.
+    planar : bool
+        Give the block two slides and a hinge, and two corners in the middle plane, instead of a
+        free joint and four corners at the edges.
+    friction : float
+        Coefficient between block and base.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    cone, solver, jacobian, tolerance, iterations, impratio, noslip_iterations : optional
+        Options of the contact solver.
+    integrator : str or None
+        "Euler", "RK4", "implicit" or "implicitfast".
+    damping, sliding_damping : float or None
+        b dt along the contact's normal and along the base; both or neither.
+    stiffness : float or None
+        k dt^2, wherever damping is set.
+    impedance : tuple of float or None
+        The five numbers of solimp; needed wherever damping is set.
+    solref : tuple of float or None
+        The contact in the library's other form, in place of damping and stiffness: its time
+        constant over dt and its damping ratio. Both should be positive: the library takes a pair
+        with one zero for its own default, and goes on.
+    margin : float or None
+        Gap, over the width, from which on a contact acts.
+    base_velocity : bool
+        Give a moving base the velocity that friction feels; else it is moved by position alone.
+    by_phase : bool
+        Use `stiffness` at rest alone.
+    reflection : bool
+        Give the velocities of the corner about which the block turns back to it, in proportion to
+        the step, so that its mean over two steps is zero; through an impact they are taken out.
+    carry : float or None
+        Gap, over the width, within which the corner about which the block turns stays in contact,
+        however long the step; the other corners act at the depth to which they carry the weight.
+    preload : bool
+        Press that corner from the start of a step by what its force yields, where `carry` is set.
+    """
+
+    geometry: str = setting("box", names=GEOMETRIES)
+    planar: bool = False
+    friction: float = 1.0
+    corner_radius: float = setting(1e-7, above=0.0)
+    cone: str | None = None
+    solver: str | None = None
+    jacobian: str | None = None
+    tolerance: float | None = None
+    iterations: int | None = None
+    impratio: float | None = None
+    # a reference with one zero would be replaced by the library's default
+    damping: float | None = setting(above=0.0, beside=("sliding_damping", "stiffness"))
+    sliding_damping: float | None = setting(above=0.0)
+    stiffness: float | None = setting(above=0.0)
+    impedance: tuple[float, ...] | None = None
+    by_phase: bool = False
+    reflection: bool = False
+    carry: float | None = setting(above=0.0)
+    preload: bool = False
+    integrator: str | None = setting(names=INTEGRATORS)
+    noslip_iterations: int | None = setting(least=0)
+    solref: tuple[float, float] | None = None
+    margin: float | None = setting(least=0.0)
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.damping is not None and self.impedance is None:
+            raise ValueError("impedance is None; it must be given wherever damping is")
+        if self.solref is not None and self.damping is not None:
+            raise ValueError(
+                f"solref is {self.solref!r}; it must be None wherever damping is given"
+            )
+
+
+TUNED = MujocoSettings(
+    geometry="corners",
+    planar=True,
+    friction=10.0,
+    cone="elliptic",
+    solver="Newton",
+    jacobian="dense",
+    tolerance=1e-15,
+    iterations=100,
+    impratio=1e4,
+    damping=1.0,
+    sliding_damping=1.0,
+    stiffness=0.01,
+    impedance=(0.9999, 0.9999, 0.001, 0.5, 2.0),
+)
+
+LANDING = replace(
+    TUNED,
+    friction=1e3,
+    stiffness=1.0,
+    impratio=3e3,
+    by_phase=True,
+    reflection=True,
+    carry=1e-4,
+    preload=True,
+)
+
+STEEP = "a pyramid this steep leaves too little normal force"
+ZERO = "one zero makes it the default, 0.02 s 1"
+ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness": None}
+"""The direct form of the reference given up."""
+
+FACTORS = (
+    factor(
+        "cone",
+        level("pyramid, friction 1", cone="pyramidal", friction=1.0),
+        level("pyramid, friction 1000", trap=STEEP, cone="pyramidal", friction=1e3),
+        level("ellipse, friction 10", (DEFAULT,), cone="elliptic", friction=10.0),
+        level("ellipse, friction 1000", cone="elliptic", friction=1e3),
+    ),
+    factor("friction", traps={DEFAULT: STEEP}),
+    factor(
+        "solver",
+        level("CG", BOTH, solver="CG"),
+        level("PGS", BOTH, solver="PGS"),
+        by_default=False,
+    ),
+    factor("tolerance", level("1e-4", tolerance=1e-4), name="solver tolerance"),
+    factor("iterations", level("2", iterations=2), name="solver iterations", by_default=False),
+    Factor(
+        "reference",
+        (*ORIGINAL, "impedance"),
+        (
+            level("0.02 s 1, best impedance", **ORIGINAL),
+            level("2 dt 1", solref=(2.0, 1.0), **ORIGINAL),
+            level("10 dt 1", solref=(10.0, 1.0), **ORIGINAL),
+            level("2 dt 1", (DEFAULT,), solref=(2.0, 1.0)),
+            level("2 dt 0", trap=ZERO, solref=(2.0, 0.0), **ORIGINAL),
+            level("b dt 0.3", damping=0.3, sliding_damping=0.3),
+            level("b dt 1.9", damping=1.9, sliding_damping=1.9),
+            level("k dt² 1e-4", stiffness=1e-4),
+            level("k dt² 0.3", stiffness=0.3),
+        ),
+    ),
+    factor(
+        "impedance",
+        level("0.9 to 0.95, the default", impedance=(0.9, 0.95, 0.001, 0.5, 2.0)),
+        level("0.99", impedance=(0.99, 0.99, 0.001, 0.5, 2.0)),
+        by_default=False,
+    ),
+    factor("impratio", level("100", impratio=100.0)),
+    factor("noslip_iterations", level("10 iterations", BOTH, noslip_iterations=10), name="noslip"),
+    factor(
+        "integrator",
+        level("RK4", BOTH, integrator="RK4"),
+        level("implicit", integrator="implicit"),
+        level("implicitfast", integrator="implicitfast"),
+    ),
+    factor("margin", level("1e-3 B", margin=1e-3), level("1e-2 B", margin=1e-2)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("planar box", geometry="box"),
+            level("hull", BOTH, geometry="hull"),
+            level("4 corners, free", planar=False),
+            level("planar box", (DEFAULT,), planar=True),
+        ),
+    ),
+    MOVING_BASE,
+)
+"""What its contact can be set to."""
+
+
+def spring(time: float, step: float) -> dict[str, float]:
+    """Return the settings of a contact with a time of its own; see `Engine.spring`."""
+    ratio = step / time
+    return {"stiffness": ratio**2, "damping": 2.0 * ratio}

@@ -1,0 +1,202 @@
+"""What an engine says of itself: what it can do, how it is used, and what each use is helped by."""
+
+import enum
+import importlib.util
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from analytic.block import RigidBlock
+from engines.factors import Factor
+from engines.parts.settings import largest
+from engines.scene import ACCURACIES, FRAMES, Scene, one_of
+from engines.world import ROUNDINGS, Resolution, World
+
+
+class Help(enum.Enum):
+    """What an adapter does for a preset, besides setting the engine once."""
+
+    STEPS = "steps that land on impacts, uplifts and the corners of the motion"
+    PHASES = "a contact that holds as firmly as each phase of the motion needs"
+    REFLECTION = "the pivot's velocity given back while the block turns about it"
+    MARGIN = "the pivot kept in contact over the gap by which it rises in a step"
+    PRELOAD = "the pivot pressed by its load from the start of a step"
+    POSITIONS = "positions moved by the adapter, from the engine's velocities"
+
+
+class Stepping(enum.Enum):
+    """Who chooses the steps of a preset."""
+
+    FIXED = "equal steps"
+    LANDING = "steps that land on impacts"
+    OWN = "the engine's own steps, by its own estimate of the error"
+
+
+class Precision(enum.Enum):
+    """The numbers that an engine computes with; the value is their relative rounding."""
+
+    DOUBLE = 2.0**-53
+    SINGLE = 2.0**-24
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Preset:
+    """One way to use an engine.
+
+    Attributes
+    ----------
+    name : str
+        "naive", "fixed", ...; "naive" is the library as a first-time user meets it.
+    title : str
+        What a reader is told it is.
+    settings : dataclass
+        The engine's settings; one of them is called "friction".
+    stepping : Stepping
+    step : float
+        p dt of equal steps, unless they are the library's own.
+    step_s, step_source : float, str
+        The library's own step [s], and where it stands.
+    contact_s : float
+        Time [s] of a contact that does not follow the step; nan where it does, or has none.
+    dial : pair or None
+        Name and values, from cheap to dear, of the setting that trades time for accuracy where
+        that is not the step.
+    helped_by : mapping
+        What helps -> the settings that leave it out; None where it is the preset itself.
+    """
+
+    name: str
+    title: str
+    settings: Any
+    stepping: Stepping = Stepping.FIXED
+    step: float = math.nan
+    step_s: float = math.nan
+    step_source: str = ""
+    contact_s: float = math.nan
+    dial: tuple[str, tuple[float, ...]] | None = None
+    helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        given = sum(map(math.isfinite, (self.step, self.step_s)))
+        if given != (self.stepping is Stepping.FIXED):
+            raise ValueError(
+                f"step, step_s of preset {self.name!r} are {self.step!r}, {self.step_s!r}; "
+                "equal steps need one of them, other steps none"
+            )
+
+    def ordinary_step(self, accuracy: str = "standard") -> float:
+        """Return the ordinary p dt; nan where the library has a step of its own in seconds.
+
+        Between two looks at the block, where the engine chooses its own steps.
+        """
+        return self.step if self.stepping is Stepping.FIXED else 1.0 / ACCURACIES[accuracy]
+
+    def ordinary_step_s(self, scene: Scene) -> float:
+        """Return the ordinary step [s] in a scene."""
+        p = scene.block.p
+        if scene.step is not None:
+            return scene.step / p
+        if self.stepping is not Stepping.FIXED:
+            return 1.0 / (ACCURACIES[scene.accuracy] * p)
+        return self.step / p if math.isnan(self.step_s) else self.step_s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Engine:
+    """A physics engine: its name, what it can do, how it is used.
+
+    Attributes
+    ----------
+    name, title : str
+        What a user types, and what a reader sees.
+    library : str
+        The module to import.
+    packages : tuple of str
+        Distributions whose versions decide its numbers.
+    install : str
+        What pip is told to install it.
+    build : callable
+        ``(scene, settings, dt_s) -> World``: builds a scene in the ordinary steps dt_s [s]. Only
+        this may import the library.
+    presets : tuple of Preset
+        From the library's own to the best there is, for which the engine's plain name stands.
+    core : bool
+        Whether the published studies ask it by default.
+    frames, geometries : tuple of str
+        Those of `FRAMES` and `GEOMETRIES` that it has.
+    spatial : bool
+        Whether the block can leave the plane (setting "planar" put to False).
+    precision : Precision
+    shortest_step : float
+        p dt below which a step has no effect that is resolved.
+    spring : callable or None
+        ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
+        m/time^2 with critical damping, both arguments in units of 1/p.
+    factors : tuple of Factor
+        What its contact can be set to.
+    remedy : mapping
+        The setting of its solver that is worth a try where a tuned preset fails.
+    own_step : str
+        "module:function" that does nothing but the engine's own step.
+    """
+
+    name: str
+    title: str
+    library: str
+    packages: tuple[str, ...]
+    install: str
+    build: Callable[[Scene, Any, float], World]
+    presets: tuple[Preset, ...]
+    core: bool = False
+    frames: tuple[str, ...] = FRAMES
+    geometries: tuple[str, ...] = ("box",)
+    spatial: bool = False
+    precision: Precision = Precision.DOUBLE
+    shortest_step: float = 1e-12
+    spring: Callable[[float, float], Mapping[str, Any]] | None = None
+    factors: tuple[Factor, ...] = ()
+    remedy: Mapping[str, Any] = field(default_factory=dict)
+    own_step: str = ""
+
+    @property
+    def best(self) -> Preset:
+        """The preset for which the plain name stands."""
+        return self.presets[-1]
+
+    def preset(self, name: str | None) -> Preset:
+        """Return the preset of a name, the best for None.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        """
+        if name is None:
+            return self.best
+        one_of(f"preset of {self.name}", name, [preset.name for preset in self.presets])
+        return next(preset for preset in self.presets if preset.name == name)
+
+    @property
+    def most_friction(self) -> float:
+        """The largest coefficient of friction that it takes."""
+        return largest(self.best.settings, "friction")
+
+    def resolution(self, block: RigidBlock) -> Resolution:
+        """Return what its numbers tell apart about a block."""
+        part = ROUNDINGS * self.precision.value
+        return Resolution(part * block.height, self.shortest_step / block.p, part)
+
+    @property
+    def installed(self) -> bool:
+        """Whether its library is there."""
+        return importlib.util.find_spec(self.library) is not None
+
+    def lacks(self, scene: Scene, settings: Any) -> str:
+        """Say what of a scene the engine cannot do, or return an empty string."""
+        if scene.frame not in self.frames:
+            return f"not available: {self.title} has no frame {scene.frame!r}"
+        geometry = getattr(settings, "geometry", self.geometries[0])
+        if geometry not in self.geometries:
+            return f"not available: {self.title} has no geometry {geometry!r}"
+        return ""

@@ -1,0 +1,90 @@
+"""What the contact of an engine can be set to, in the library's own words: data for studies."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+BEST, DEFAULT = "fixed", "naive"
+"""The presets from which one factor at a time is varied."""
+
+BOTH = (BEST, DEFAULT)
+
+Settings = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """A value of a factor.
+
+    Attributes
+    ----------
+    name : str
+    settings : mapping
+        Settings of the engine.
+    presets : tuple of str
+        From which it is tried.
+    trap : str
+        Why it goes wrong without a word, where it does.
+    scene : mapping
+        Options of the scene.
+    """
+
+    name: str
+    settings: Settings
+    presets: tuple[str, ...] = (BEST,)
+    trap: str = ""
+    scene: Settings = field(default_factory=dict)
+
+
+def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:
+    """Return a value of a factor that is a matter of the engine's settings alone."""
+    return Level(name=name, settings=settings, presets=presets, trap=trap)
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """Settings that belong together, and what they could be.
+
+    Each of the two presets is tried with the other's values of them, where these differ, and with
+    the levels.
+
+    Attributes
+    ----------
+    name : str
+    settings : tuple of str
+        Their names.
+    levels : tuple of Level
+    by_default : bool
+        Whether to try the best setting with the library's default of them.
+    traps : mapping
+        Preset -> why it goes wrong with the other's values, where it does.
+    """
+
+    name: str
+    settings: tuple[str, ...]
+    levels: tuple[Level, ...] = ()
+    by_default: bool = field(default=True, kw_only=True)
+    traps: Mapping[str, str] = field(default_factory=dict, kw_only=True)
+
+
+def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
+    """Return a factor that is a matter of one setting, called as it unless a name is given."""
+    return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
+
+
+UNMOVED = "a base without a velocity: friction does not feel it"
+
+MOVING_BASE = Factor(
+    "moving base",
+    ("base_velocity",),
+    (
+        Level(name="with its velocity", settings={"base_velocity": True}, scene={"frame": "world"}),
+        Level(
+            name="by position alone",
+            settings={"base_velocity": False},
+            trap=UNMOVED,
+            scene={"frame": "world"},
+        ),
+    ),
+)
+"""The base that moves in the world, or is moved by position alone (setting `base_velocity`)."""

@@ -1,0 +1,1 @@
+"""What adapters share: settings and their bounds, shapes, reading back, silence."""

@@ -1,0 +1,79 @@
+"""Settings of an engine: a frozen dataclass whose fields say what they allow.
+
+Its defaults are the library's own, so that ``Settings()`` is the library as it comes; None leaves
+a setting to the library.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from engines.scene import one_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Allowed:
+    """What a setting may be: a number between bounds, one of some names, or together with others.
+
+    above is a bound that is not allowed itself; least and most are.
+    """
+
+    above: float = -math.inf
+    least: float = -math.inf
+    most: float = math.inf
+    names: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+
+    def check(self, name: str, value: Any) -> None:
+        """Raise ValueError unless `value` is allowed."""
+        if self.names:
+            one_of(name, value, self.names)
+        elif self._bounded and not (
+            value > self.above and self.least <= value <= self.most and math.isfinite(value)
+        ):
+            raise ValueError(f"{name} is {value!r}; it must be {self._words()}")
+
+    @property
+    def _bounded(self) -> bool:
+        return max(self.above, self.least, -self.most) > -math.inf
+
+    def _words(self) -> str:
+        most = "" if self.most == math.inf else f"at most {self.most:g}"
+        if self.above == 0.0:
+            return f"positive and {most}" if most else "positive"
+        if self.least > -math.inf:
+            return f"from {self.least:g} to {self.most:g}" if most else f"{self.least:g} or more"
+        return most
+
+
+def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -> Any:
+    """Return a field of a settings class, with what it allows; see `Allowed`."""
+    return field(default=default, metadata={"allowed": Allowed(names=tuple(names), **allowed)})
+
+
+def check(settings: Any) -> None:
+    """Raise ValueError unless each of the settings is None or what its field allows."""
+    for item in fields(settings):
+        allowed, value = item.metadata.get("allowed"), getattr(settings, item.name)
+        if allowed is None:
+            continue
+        together = {item.name: value, **{n: getattr(settings, n) for n in allowed.beside}}
+        if len({v is None for v in together.values()}) > 1:
+            values = ", ".join(map(repr, together.values()))
+            raise ValueError(
+                f"{', '.join(together)} are {values}; they must be given together or not at all"
+            )
+        if value is not None:
+            allowed.check(item.name, value)
+
+
+def largest(settings: Any, name: str) -> float:
+    """Return the largest value that a setting may have."""
+    metadata = next(item.metadata for item in fields(settings) if item.name == name)
+    return float(metadata["allowed"].most) if "allowed" in metadata else math.inf
+
+
+def given(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings that are not left to the library."""
+    return {name: value for name, value in settings.items() if value is not None}

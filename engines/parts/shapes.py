@@ -1,0 +1,38 @@
+"""Shapes of block and base that every engine builds in its own words."""
+
+import itertools
+
+from engines.scene import Scene
+
+Point = tuple[float, float, float]
+
+FLOOR_HEIGHTS = 100.0
+"""Half of the extent of a base that is a box, in heights of the block and in its depths."""
+
+
+def half_size(scene: Scene) -> Point:
+    """Return half of the block's size [m] along x, y and z."""
+    return (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
+
+
+def corner_spheres(scene: Scene, radius: float, *, planar: bool) -> list[Point]:
+    """Return the centres [m] of spheres at the corners on the base, those at -x first.
+
+    They are relative to the block's centre: two in the middle plane if `planar`, or four at the
+    edges. `radius` is in metres.
+    """
+    x, y, z = half_size(scene)
+    depths = (0.0,) if planar else (-y, y)
+    return [(side, depth, radius - z) for side in (-x, x) for depth in depths]
+
+
+def hull_points(scene: Scene) -> list[Point]:
+    """Return the eight corners of the block [m], relative to its centre."""
+    x, y, z = half_size(scene)
+    return list(itertools.product((-x, x), (-y, y), (-z, z)))
+
+
+def floor_half_size(scene: Scene) -> Point:
+    """Return half of the size [m] of a base that is a box; its top is at its own half height."""
+    block = scene.block
+    return (FLOOR_HEIGHTS * block.height, FLOOR_HEIGHTS * scene.depth_m, block.height)

@@ -1,0 +1,124 @@
+"""What a built scene is told and must answer: steps, poses, and the moment of a velocity."""
+
+import enum
+from typing import NamedTuple, Protocol
+
+
+class Moment(enum.Enum):
+    """At which moment of a step the velocity holds that is read after it.
+
+    The value is the part of the step that has passed by then.
+    """
+
+    MIDDLE = 0.5
+    """The velocity was changed first, and has carried the block through the step (leapfrog)."""
+    END = 1.0
+    """Position and velocity belong to the same time."""
+    NEXT = 1.5
+    """The position was changed first; the velocity will carry the block through the next step."""
+
+
+ROUNDINGS = 16.0
+"""Roundings of the block's height from which the height of a corner above the base is made."""
+
+
+class Resolution(NamedTuple):
+    """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part."""
+
+    length_m: float = 0.0
+    time_s: float = 0.0
+    part: float = 0.0
+
+
+UNLIMITED = Resolution()
+
+
+class Grip(enum.Enum):
+    """What a step is for, by which an adapter may choose how firmly a contact holds."""
+
+    REST = "the block is at rest"
+    SWING = "the block turns about a corner"
+    APPROACH = "one of the shorter steps before an impact"
+    STRIKE = "one of the shortest steps through an impact"
+
+
+class Step(NamedTuple):
+    """A step of a policy, and what the base does meanwhile.
+
+    Attributes
+    ----------
+    dt_s, end_s : float
+        How far the step goes, and the time at its end [s].
+    kick_s : float
+        For how long forces act on the velocity [s]: from the moment of the last step's velocity
+        to that of this one's.
+    pull_x, pull_z : float
+        Gravity [m/s2] that gives the velocity in `dt_s` what the weight gives it in `kick_s`, and
+        along the base what the body force -m u_g'' does. In the frame "world" pull_x is zero.
+    base_kick, base_velocity, base_x : float
+        Change of the base's velocity [m/s] in `kick_s`; its velocity, which in the mean over the
+        step leads it to its place [m] at the end.
+    grip : Grip
+        What the step is for.
+    side : float
+        About which corner the block turns: -1 or 1, or 0 where it is held by both.
+    """
+
+    dt_s: float
+    end_s: float
+    kick_s: float
+    pull_x: float
+    pull_z: float
+    base_kick: float
+    base_velocity: float
+    base_x: float
+    grip: Grip
+    side: float
+
+
+class Pose(NamedTuple):
+    """Where the block is, relative to its base, as the engine reports it.
+
+    x, z [m] are the horizontal and vertical position of the centre of mass, zero under the
+    centre of the block at rest and at the level of the base; theta [rad] is positive when the
+    block leans towards +x; rate [rad/s] is the angular velocity, at the world's `Moment`.
+    """
+
+    x: float
+    z: float
+    theta: float
+    rate: float
+
+
+class World(Protocol):
+    """A built scene, the block where and as fast as `Scene.beginning` says."""
+
+    @property
+    def moment(self) -> Moment:
+        """At which moment of a step the velocity of a pose holds."""
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+
+    def fault(self) -> str:
+        """Say what the engine knows to have gone wrong, or return an empty string.
+
+        It is asked now and then while a run goes on, and at its end.
+        """
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+
+
+class SteppedWorld(World, Protocol):
+    """A world that takes the steps that it is given."""
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+
+
+class SelfSteppingWorld(World, Protocol):
+    """A world whose engine chooses its own steps, by its own estimate of the error."""
+
+    def advance(self, end_s: float) -> int:
+        """Advance to a time [s], the base moving as the scene says; return the steps taken."""

@@ -1,0 +1,212 @@
+"""A run that begins aloft: released from a tilt, or set turning while upright.
+
+Landing steps are of second order, (p dt)^2 = 2.5e-5 at the default accuracy, times a factor of
+order one; fixed ones carry the p dt of the impact's step.
+"""
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from analytic.block import RigidBlock
+from analytic.criteria import free_amplitude, quarter_period
+from analytic.motion import SinePulse
+from analytic.response import Outcome
+from engines import ENGINES, FRAMES, Scene, run
+from engines.declaration import Stepping
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+STILL = SinePulse(amplitude=0.0, omega=100.0)
+LANDING = [
+    (name, use.name)
+    for name, engine in ENGINES.items()
+    for use in engine.presets
+    if use.stepping is Stepping.LANDING
+]
+FIXED = [(name, "fixed") for name in ENGINES]
+TILT = 0.4 * BLOCK.alpha
+
+
+def released(start: tuple[float, float], **options: Any) -> Scene:
+    return Scene(block=BLOCK, motion=STILL, start=start, duration=8.0 / BLOCK.p, **options)
+
+
+def top(theta: float, rate: float) -> float:
+    """Return the rotation [rad] at which a block that sets out so would turn, by its energy."""
+    height = math.cos(BLOCK.alpha - abs(theta)) + 0.5 * (rate / BLOCK.p) ** 2
+    return BLOCK.alpha - math.acos(height)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize(("engine", "preset"), LANDING)
+def test_quarter_period_and_decay(engine: str, preset: str, frame: str, side: float) -> None:
+    """The first impact comes after a quarter period, the next after two of what energy leaves."""
+    response = run(engine, released((side * TILT, 0.0), preset=preset, frame=frame))
+    times = [impact.time for impact in response.impacts]
+    assert response.outcome is Outcome.ROCKED
+    assert response.peak_ratio == pytest.approx(0.4, rel=1e-12)  # where it was released
+    assert not response.crossed
+    assert response.uplifts == ()
+    assert times[0] == pytest.approx(quarter_period(BLOCK, TILT), rel=1e-5)
+    for n, gap in enumerate(np.diff(times[:5]), start=1):
+        swing = 2.0 * quarter_period(BLOCK, free_amplitude(BLOCK, TILT, n))
+        assert gap == pytest.approx(swing, rel=1e-4)
+    assert response.impacts[0].velocity_before * side < 0.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("engine", "preset"), LANDING)
+def test_set_turning_while_upright(engine: str, preset: str, side: float) -> None:
+    """The rate says about which corner: the block rises as far as its energy carries it."""
+    rate = side * 0.5 * BLOCK.p * BLOCK.alpha
+    response = run(engine, released((0.0, rate), preset=preset))
+    peak = top(0.0, rate)
+    assert response.peak_ratio == pytest.approx(peak / BLOCK.alpha, rel=1e-4)
+    assert response.impacts[0].time == pytest.approx(2.0 * quarter_period(BLOCK, peak), rel=1e-4)
+    assert response.impacts[0].velocity_before == pytest.approx(-rate, rel=1e-3)
+
+
+@pytest.mark.parametrize(("engine", "preset"), LANDING)
+def test_set_out_inward(engine: str, preset: str) -> None:
+    """The start is the peak before the impact, and what it leaves comes after."""
+    rate = -0.55 * BLOCK.p * BLOCK.alpha
+    response = run(engine, released((TILT, rate), preset=preset))
+    after = free_amplitude(BLOCK, top(TILT, rate), 1)
+    assert response.peak_ratio == pytest.approx(max(TILT, after) / BLOCK.alpha, rel=1e-4)
+    assert after > TILT
+
+
+@pytest.mark.parametrize(("engine", "preset"), FIXED)
+def test_equal_steps(engine: str, preset: str) -> None:
+    """A release falls freely until its impact, whose velocity an equal step misses by its p dt."""
+    response = run(engine, released((TILT, 0.0), preset=preset, step=1e-3))
+    times = [impact.time for impact in response.impacts]
+    assert times[0] == pytest.approx(quarter_period(BLOCK, TILT), rel=1e-3)
+    swing = 2.0 * quarter_period(BLOCK, free_amplitude(BLOCK, TILT, 1))
+    assert times[1] - times[0] == pytest.approx(swing, rel=1e-2)
+
+
+@pytest.mark.parametrize(("engine", "preset"), LANDING)
+def test_steps_are_of_second_order_from_the_first_on(engine: str, preset: str) -> None:
+    """A first step with the wrong inertia, or a whole kick, would leave an error of first order."""
+    exact = quarter_period(BLOCK, TILT)
+    coarse, fine = (
+        abs(run(engine, released((TILT, 0.0), preset=preset, step=step)).impacts[0].time - exact)
+        for step in (4e-2, 1e-2)
+    )
+    assert fine < 0.15 * coarse
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize(("engine", "preset"), LANDING)
+def test_start_then_pulse(engine: str, preset: str, frame: str, side: float) -> None:
+    """Released into a pulse that shakes it on: against an integration of the exact equation."""
+    motion = SinePulse(amplitude=-side * 0.3 * BLOCK.gravity, omega=2.0 * BLOCK.p, half_cycles=2)
+    start = (side * 0.2 * BLOCK.alpha, side * 0.1 * BLOCK.p * BLOCK.alpha)
+    times = np.linspace(0.0, motion.duration, 200)
+    response = run(
+        engine,
+        Scene(
+            block=BLOCK,
+            motion=motion,
+            start=start,
+            preset=preset,
+            frame=frame,
+            duration=motion.duration,
+            times=list(times),
+        ),
+    )
+    theta, impacts = integrated(start, motion, times)
+    assert response.history is not None
+    assert response.history.theta == pytest.approx(theta, abs=2e-4 * BLOCK.alpha)
+    assert len(impacts) >= 1
+    found = [impact.time for impact in response.impacts]
+    assert found == pytest.approx(impacts, abs=2e-4 / BLOCK.p)
+
+
+def integrated(
+    start: tuple[float, float], motion: SinePulse, times: np.ndarray[Any, Any]
+) -> tuple[np.ndarray[Any, Any], list[float]]:
+    """Return the exact rotation at some times, and the times of the impacts, by DOP853."""
+    theta, impacts = np.empty_like(times), []
+    state, now, side = list(start), 0.0, math.copysign(1.0, start[0])
+    while now < motion.duration:
+
+        def equation(t: float, x: Any, side: float = side) -> list[float]:
+            lean = BLOCK.alpha * side - x[0]
+            pull = float(motion.acceleration(t)) / BLOCK.gravity
+            return [x[1], -(BLOCK.p**2) * (math.sin(lean) + pull * math.cos(lean))]
+
+        def contact(t: float, x: Any, side: float = side) -> float:
+            return float(side * x[0])
+
+        contact.terminal, contact.direction = True, -1  # type: ignore[attr-defined]
+        path = solve_ivp(
+            equation, (now, motion.duration), state, "DOP853", rtol=1e-11, atol=1e-14,
+            events=contact, dense_output=True,
+        )  # fmt: skip
+        part = (times >= now) & (times <= path.t[-1])
+        theta[part] = path.sol(times[part])[0]
+        now = float(path.t[-1])
+        if path.t_events[0].size:
+            impacts.append(now)
+            state, side = [0.0, BLOCK.restitution * path.y[1, -1]], -side
+    return theta, impacts
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_beyond_alpha_and_back(engine: str) -> None:
+    """A block past its balance that moves inward fast enough comes back; one at rest falls."""
+    tilt = 1.2 * BLOCK.alpha
+    barrier = BLOCK.p * math.sqrt(2.0 * (1.0 - math.cos(BLOCK.alpha - tilt)))
+    back = run(engine, released((tilt, -1.1 * barrier)))
+    assert (back.outcome, back.crossed) == (Outcome.ROCKED, True)
+    assert back.peak_ratio == pytest.approx(1.2, rel=1e-12)
+    for rate in (0.0, -0.9 * barrier):
+        assert run(engine, released((tilt, rate))).outcome is Outcome.OVERTURNED
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_small_release_comes_to_rest(engine: str) -> None:
+    response = run(engine, released((1e-3 * BLOCK.alpha, 0.0)))
+    assert response.outcome is Outcome.ROCKED
+    assert response.peak_ratio == pytest.approx(1e-3, rel=1e-12)
+    assert response.uplifts == ()
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        ((0.5 * math.pi, 0.0), "tilt of the start is 1.57.*; it must be less than pi/2"),
+        ((math.nan, 0.0), "tilt of the start is nan; it must be a finite number"),
+        ((0.1, math.inf), "rate of the start is inf; it must be a finite number"),
+        ((BLOCK.alpha, 0.0), "a block balanced on its corner must have a rate"),
+        ((-BLOCK.alpha, 0.0), "a block balanced on its corner must have a rate"),
+    ],
+)
+def test_bad_starts_are_refused(start: tuple[float, float], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Scene(block=BLOCK, motion=STILL, start=start)
+
+
+def test_the_corner_stays_where_it_stands() -> None:
+    """Place and velocity of the start leave the corner that carries the block at rest."""
+    cases = itertools.product((0.2, -0.2, 0.0), (0.7, -0.7))
+    for theta, rate in cases:
+        scene = Scene(block=BLOCK, motion=STILL, start=(theta, rate))
+        at = scene.beginning
+        sine, cosine = math.sin(theta), math.cos(theta)
+        x, z = 0.5 * scene.side * BLOCK.width, -0.5 * BLOCK.height
+        corner = (at.x + x * cosine + z * sine, at.z - x * sine + z * cosine)
+        speed = (
+            at.velocity_x + rate * (-x * sine + z * cosine),
+            at.velocity_z + rate * (-x * cosine - z * sine),
+        )
+        assert corner == pytest.approx((x, 0.0), abs=1e-15)
+        assert speed == pytest.approx((0.0, 0.0), abs=1e-15)
