@@ -28,9 +28,10 @@ def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
     names = listed([source.partition(":")[0] for source in lines["source"]])
     right = [out_of(row["agree"], row["cases"]) for _, row in lines.iterrows()]
+    verb = "get" if len(lines) > 1 else "gets"
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
     return capital(
-        f"{in_words(preset)}, {names} get {alike(right)} outcomes right, and peaks wrong by "
+        f"{in_words(preset)}, {names} {verb} {alike(right)} outcomes right, and peaks wrong by "
         f"{alike(medians)} in the median and {alike(largest)} at most."
     )
 

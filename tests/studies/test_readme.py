@@ -50,9 +50,8 @@ def test_both_commands_of_ci_are_there_once():
 def test_every_link_of_a_page_leads_somewhere():
     for path in (ROOT / "README.md", PUBLISHED / "README.md"):
         text = path.read_text(encoding="utf-8")
-        targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text) + re.findall(
-            r'src="([^"]+)"', text
-        )
+        targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
+        targets += re.findall(r'src="([^"]+)"', text)
         inside = [target for target in targets if not target.startswith("http")]
         assert len(inside) > 5
         assert [name for name in inside if not (path.parent / name).exists()] == []

@@ -78,7 +78,8 @@ def test_the_page_says_what_the_tables_say(made):
     text = (made / "report.html").read_text()
     summary = pd.read_csv(made / "sweep" / "summary.csv").set_index("source")
     line = next(summary.loc[["modified"]].itertuples())
-    assert f"modified {line.agree} of 240 ({line.max_error:.1e})" in text
+    assert f"modified {line.agree} of 240" in text
+    assert f"and {line.max_error:.0%}".replace("%", " %") + " at most" in text
     record = json.loads((made / "sweep" / "provenance.json").read_text())
     assert f"mujoco {record['engines']['mujoco']}" in text
 
