@@ -27,11 +27,11 @@ def outline(width: float, height: float, theta: float) -> FloatArray:
 
 def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:
     """Draw a block that rocks, with the names of its parts."""
-    drawing = Figure(figsize=(4.4, 4.2), layout="constrained")
+    drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
     axes = drawing.subplots()
-    axes.set(xlim=(-1.45, 2.0), ylim=(-0.62, 2.75), aspect="equal")
+    axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6), aspect="equal")
     axes.set_axis_off()
-    axes.add_patch(Rectangle((-1.45, -0.16), 3.45, 0.16, color=GROUND, linewidth=0))
+    axes.add_patch(Rectangle((-1.2, -0.16), 2.95, 0.16, color=GROUND, linewidth=0))
     at_rest = outline(width, height, 1e-12)
     axes.add_patch(Polygon(at_rest, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
     corners = outline(width, height, theta)

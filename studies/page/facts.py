@@ -165,7 +165,7 @@ def made(published: Path) -> dict[str, str]:
         "engines": listed([f"{name} {version}" for name, version in record["engines"].items()]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
         "date": record["runs"][-1]["start"][:10],
-        "sweep": duration(record["runs"][-1]["duration_s"]),
+        "sweep": f"{record['runs'][-1]['duration_s']:.0f} s",
     }
 
 

@@ -8,6 +8,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.page import facts, hero
+from studies.sweep.claims import verdict
 
 PUBLISHED = Path("studies", "published")
 
@@ -52,6 +53,7 @@ def pages(root: Path) -> dict[Path, str]:
     )
     known = {
         "chapters": facts.chapters(published),
+        "verdict": verdict(facts.presets(published)),
         "missing": facts.missing(published),
         "presets": facts.presets_text(facts.presets(published)),
         "choices": facts.choices_text(pd.read_csv(published / "precision" / "work-precision.csv")),

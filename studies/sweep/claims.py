@@ -87,7 +87,10 @@ def claims(lines: pd.DataFrame) -> str:
 
 def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each preset and engine: outcomes, errors of the peak, time of a case."""
-    found = pd.concat(engines_by_preset(lines).values(), ignore_index=True)
+    groups = engines_by_preset(lines)
+    if not groups:
+        return pd.DataFrame()
+    found = pd.concat(groups.values(), ignore_index=True)
     return pd.DataFrame(
         {
             "preset": found["preset"],
@@ -100,4 +103,26 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
             "max": found["max_error"],
             "ms": 1e3 * found["wall_s"] / found["cases"],
         }
+    )
+
+
+def verdict(table: pd.DataFrame) -> str:
+    """Say in a sentence what the first and the best of the presets are off by, at worst.
+
+    Parameters
+    ----------
+    table : DataFrame
+        From `preset_table`, of one folder or several.
+    """
+    names = in_order(table["preset"])
+    parts = [_of_preset(name, table[table["preset"] == name]) for name in (names[0], names[-1])]
+    return f"{capital('; '.join(dict.fromkeys(parts)))}."
+
+
+def _of_preset(name: str, lines: pd.DataFrame) -> str:
+    engines = f"{len(lines)} engines are" if len(lines) > 1 else "an engine is"
+    lost = [out_of(row["cases"] - row["right"], row["cases"]) for _, row in lines.iterrows()]
+    return (
+        f"{in_words(name)} {engines} off by up to {part(lines['median'].max())} in the median peak "
+        f"and {part(lines['max'].max())} in the worst, with {alike(lost)} outcomes wrong"
     )
