@@ -7,7 +7,7 @@ from studies import page
 from studies.catalogue import STUDIES
 from studies.kit import app
 
-COMMANDS = (*STUDIES, page.REPORT, page.REDRAW)
+COMMANDS = (*STUDIES, page.REPORT, page.REDRAW, page.README)
 """Every command."""
 
 

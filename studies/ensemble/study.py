@@ -6,7 +6,6 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
@@ -14,7 +13,8 @@ from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
-from studies.ensemble.agreement import CLOSE, agreement, confusion
+from studies.ensemble.agreement import agreement, confusion
+from studies.ensemble.claims import first_claim, verdict
 from studies.ensemble.fragility import fragilities
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
@@ -263,14 +263,12 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
+    """Say whose statistics tests tell from the exact ones, and whose they do not."""
+    agreed = pd.read_csv(folder / "agreement.csv")
+    return first_claim(agreed[agreed["source"] != "exact"])
+
+
+def paragraph(folder: Path) -> str:
     """Say what became of the claim that statistics are predicted where responses are not."""
     agreed = pd.read_csv(folder / "agreement.csv")
-    words = [
-        f"{source} {np.average(rows['predicted'], weights=rows['cases']):.0%} and "
-        f"{(rows['capacity_ratio'] - 1.0).abs().max():.1%}"
-        for source, rows in agreed[agreed["source"] != "exact"].groupby("source", sort=False)
-    ]
-    return (
-        f"Share of single responses within {CLOSE:.0%} of the exact ones, and the largest error of "
-        f"the fitted overturning capacity: {', '.join(words)}."
-    )
+    return verdict(agreed[agreed["source"] != "exact"])

@@ -203,7 +203,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
-    text = f"{table_text(read(folder))}\n\n{headline(folder)}"
+    text = f"{table_text(read(folder))}\n\n{paragraph(folder)}"
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -223,7 +223,14 @@ def table_text(rows: pd.DataFrame) -> str:
 
 
 def headline(folder: Path) -> str:
-    """Say how far each source is from the closed forms of its model."""
+    """Say to what each source follows the closed forms of its model, at worst."""
+    worst = read(folder).groupby("source", sort=False)[["period_error", "decay_error"]].max()
+    words = [f"{name} {scientific(value)}" for name, value in worst.max(axis=1).items()]
+    return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
+
+
+def paragraph(folder: Path) -> str:
+    """Say how far period and decay of each source are from the closed forms of its model."""
     rows = read(folder).groupby("source", sort=False)[["period_error", "decay_error"]].max()
     words = [
         f"{source} {scientific(line['period_error'])} and {scientific(line['decay_error'])}"

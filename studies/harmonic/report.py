@@ -8,6 +8,7 @@ import pandas as pd
 
 from studies.kit import provenance
 from studies.measures.differences import scientific
+from studies.measures.words import capital, out_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +23,7 @@ def report(folder: Path) -> str:
 
     save_all(pictures(folder), folder)
     table, engines = read(folder, "harmonic"), read(folder, "engines")
-    text = "\n\n".join([*branches_text(table), *engines_text(engines), headline(folder)])
+    text = "\n\n".join([*branches_text(table), *engines_text(engines), paragraph(folder)])
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -89,6 +90,17 @@ def with_error(engines: pd.DataFrame) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
+    """Say how many points survive, and at how many abscissae two orbits live side by side."""
+    table = read(folder, "harmonic")
+    survivors = int((table["outcome"] == "rocked").sum())
+    return (
+        f"{capital(out_of(survivors, len(table)))} points survive; sweeps up and down settle on "
+        f"different orbits at {out_of(int(coexisting(table).sum()), table['x'].nunique())} "
+        "abscissae."
+    )
+
+
+def paragraph(folder: Path) -> str:
     """Say how many points settle, on how many two orbits live side by side, and the engines."""
     table, engines = read(folder, "harmonic"), read(folder, "engines")
     rocked = table[table["outcome"] == "rocked"]

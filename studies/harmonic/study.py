@@ -10,7 +10,7 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.response import Response
 from studies.harmonic import STUDY
-from studies.harmonic.report import headline, pictures, report
+from studies.harmonic.report import headline, paragraph, pictures, report
 from studies.harmonic.sweeps import Shaking, State, sweep
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
@@ -21,7 +21,7 @@ from studies.kit.runner import exit_code
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 Over = Literal["frequency", "amplitude"]
 RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}

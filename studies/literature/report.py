@@ -11,6 +11,7 @@ from studies.kit.tables import left_aligned
 from studies.literature.problems import Problem
 from studies.literature.readings import NAMED
 from studies.measures.differences import scientific
+from studies.measures.words import out_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,12 +25,20 @@ def report(folder: Path) -> str:
     text = table.to_csv(index=False, na_rep="nan")
     provenance.write_text(folder / "agreement.csv", text)
     save_all(pictures(folder), folder)
-    text = "\n\n".join([table_text(table), *works(table), headline(folder)])
+    text = "\n\n".join([table_text(table), *works(table), paragraph(folder)])
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
 
 def headline(folder: Path) -> str:
+    """Say how many printed numbers come out to their digits."""
+    table = _read(folder / "agreement.csv")
+    mine = table[table["source"] == table["model"]]
+    right = int((mine["agrees"] == "True").sum())
+    return f"Of the printed numbers of the literature {out_of(right, len(mine))} come out."
+
+
+def paragraph(folder: Path) -> str:
     """Say how many printed numbers come out to their digits, and the largest miss."""
     table = _read(folder / "agreement.csv")
     mine = table[table["source"] == table["model"]]

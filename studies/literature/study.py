@@ -9,10 +9,10 @@ from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
 from studies.literature import STUDY
 from studies.literature.problems import PROBLEMS, ModeEnd, Problem
 from studies.literature.readings import put, reduce, times_of
-from studies.literature.report import headline, pictures, report
+from studies.literature.report import headline, paragraph, pictures, report
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 DEFAULT_SOURCES = ("pybullet", "mujoco")
 

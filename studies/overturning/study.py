@@ -18,9 +18,9 @@ from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
-from studies.overturning.report import headline, pictures, report
+from studies.overturning.report import headline, paragraph, pictures, report
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 PRODUCTS = (
     "map.csv",

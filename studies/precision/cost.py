@@ -26,9 +26,9 @@ from engines.world import World
 from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
 from studies.kit import provenance
 from studies.kit.runner import own_folder
-from studies.precision.cost_report import headline, pictures, report
+from studies.precision.cost_report import headline, paragraph, pictures, report
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 PRODUCTS = ("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt")
 

@@ -20,10 +20,10 @@ from studies.kit.runner import exit_code, fill_folder
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import cost, cost_report
 from studies.precision.methods import METHODS, Method
-from studies.precision.report import headline, pictures, report
+from studies.precision.report import headline, paragraph, pictures, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 if TYPE_CHECKING:
     pass

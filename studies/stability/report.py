@@ -10,7 +10,7 @@ import pandas as pd
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.verdicts import Verdict
-from studies.stability.findings import failures, findings, verdicts_sentence
+from studies.stability.findings import failures, findings, first_claim, verdicts_sentence
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
 
@@ -46,7 +46,12 @@ def report(folder: Path) -> str:
 
 
 def headline(folder: Path) -> str:
-    """Return what the matrix of a folder shows first."""
+    """Return how many of the extreme cases the engines get right."""
+    return first_claim(_table(folder, "stability"))
+
+
+def paragraph(folder: Path) -> str:
+    """Return what the matrix of a folder shows of every source."""
     return verdicts_sentence(_table(folder, "stability"))
 
 

@@ -20,10 +20,10 @@ from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
 from studies.sources.registry import Source
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
-from studies.stability.report import headline, pictures, report
+from studies.stability.report import headline, paragraph, pictures, report
 from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
 METHODS = (

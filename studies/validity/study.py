@@ -18,7 +18,7 @@ from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.sources.registry import resolve
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import compared, findings
+from studies.validity.report import claims, compared, findings, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -198,14 +198,10 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say in which part of the map the reference holds for a block that survives."""
-    table = pd.read_csv(folder / "map.csv")
-    rocked = table[table["outcome"] == "rocked"]
-    words = [
-        f"H/B {aspect:g}: {(group['min_normal'] < 0.0).mean():.0%}"
-        for aspect, group in rocked.groupby("aspect")
-    ]
-    return (
-        "Of the full-sine pulses that a block survives, the part in which the reference would have "
-        f"to hold its pivot down, so that an engine is right to differ: {', '.join(words)}."
-    )
+    """Say from which amplitude on the reference does not hold, by slenderness."""
+    return first_claim(pd.read_csv(folder / "map.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say where the reference ends, and whether engines agree with it before."""
+    return claims(*(pd.read_csv(folder / name) for name in ("map.csv", "compared.csv")))

@@ -1,0 +1,213 @@
+"""What every column of every table means, once; tables of it are made for readers from here."""
+
+from typing import NamedTuple
+
+
+class Column(NamedTuple):
+    """The unit of a column, empty for words, "-" for numbers without one, and its meaning."""
+
+    unit: str
+    meaning: str
+
+
+CASES = {
+    "figure": Column("", "figure of the paper; all: all of them together"),
+    "panel": Column("", "panel of a figure of the paper"),
+    "pulse": Column("", "half-sine or full-sine"),
+    "half_cycles": Column("-", "half cycles of the pulse"),
+    "excess_g": Column("g", "amplitude of the pulse above B/H"),
+    "amplitude_g": Column("g", "amplitude of the pulse"),
+    "omega_over_p": Column("-", "frequency of the pulse over the block's p"),
+    "onsets": Column("-", "amplitude over the onset, g tan α"),
+    "intensity": Column("-", "largest acceleration of a motion over g tan α"),
+    "strength": Column("-", "factor of the motion: 1, or 1.01 for the motion 1 % stronger"),
+    "family": Column("", "kind of motion: noise, pulses, the user's records"),
+    "motion": Column("", "number or name of the motion"),
+    "aspect": Column("-", "H/B"),
+    "width_m": Column("m", "B"),
+    "height_m": Column("m", "H"),
+    "alpha": Column("rad", "atan(B/H), the critical rotation θcr"),
+    "tilt": Column("-", "rotation from which the block falls, over θcr"),
+    "case": Column("", "number or name of the case"),
+    "set": Column("", "typical, or near overturning"),
+    "group": Column("", "what is extreme in the case"),
+    "grid": Column("", "the paper's grid, or a wider one"),
+    "x": Column("-", "abscissa of an overturning map: ω/p, slenderness or size"),
+    "friction_factor": Column(
+        "-", "friction given over the friction needed; nan: the preset's own"
+    ),
+}
+
+ANSWERS = {
+    "source": Column("", "who answered: a model, solver, or engine with its preset"),
+    "model": Column("", "the model of an overturning map"),
+    "engine": Column("", "the engine"),
+    "preset": Column("", "naive: the library's defaults; fixed; landing"),
+    "outcome": Column("", "at rest, rocked, overturned, failed; left: it slid or flew away"),
+    "peak_ratio": Column("-", "largest |θ|/θcr; 0 at rest, inf when overturned, nan when failed"),
+    "impacts": Column("-", "impacts until the peak was decided"),
+    "steps": Column("-", "steps of the integrator or engine"),
+    "wall_s": Column("s", "time of the steps alone"),
+    "setup_s": Column("s", "time before the first step"),
+    "step_s": Column("s", "time of one step; in shares.csv the whole of it"),
+    "message": Column("", "why a row failed, or what should be known about it"),
+    "time_s": Column("s", "time on the ground's clock"),
+    "ground_g": Column("g", "acceleration of the ground"),
+    "theta_ratio": Column("-", "θ/θcr"),
+    "velocity_rad_s": Column("rad/s", "angular velocity"),
+    "slip_widths": Column("-", "largest slide of the pivot over B"),
+    "sink_widths": Column("-", "largest depth of a corner in the base over B"),
+    "hop_widths": Column("-", "largest height of the pivot above the base over B"),
+    "friction": Column("-", "coefficient of friction that the source used"),
+}
+
+REFERENCE = {
+    "exact_outcome": Column("", "outcome of the exact solution"),
+    "exact_peak": Column("-", "largest |θ|/θcr of the exact solution"),
+    "agrees": Column("", "whether the outcome is the exact one"),
+    "error": Column("-", "peak over the exact one, less 1; nan unless both rocked"),
+    "difference": Column("-", "peak_ratio less the exact one"),
+    "false_overturning": Column("", "overturned, and the exact solution survives"),
+    "missed_overturning": Column("", "survived, and the exact solution overturns"),
+    "kappa": Column("-", "κ = ∂ln θmax/∂ln a_p of the exact solution"),
+    "kappa_eta": Column("-", "κη = ∂ln θmax/∂ln η of the exact solution"),
+    "min_normal": Column("-", "least normal force over the weight in the exact solution"),
+    "friction_needed": Column("-", "friction that the exact solution needs not to slide"),
+    "invalid": Column("", "why the reference does not hold here; empty where it does"),
+    "verdict": Column("", "what an answer is worth, or what the pivot did"),
+    "reason": Column("", "why, with the numbers"),
+    "remedy": Column("", "first setting of those tried that avoids a failure"),
+}
+
+SUMMARIES = {
+    "cases": Column("-", "cases"),
+    "failed": Column("-", "cases without a usable result"),
+    "wrong": Column("-", "outcomes that are not the exact ones"),
+    "right": Column("-", "outcomes that are the exact ones"),
+    "agree": Column("-", "outcomes that are the exact ones"),
+    "false": Column("-", "false overturnings; in differences.csv their part of the map"),
+    "missed": Column("-", "missed overturnings; in differences.csv their part of the map"),
+    "false_overturnings": Column("-", "how many"),
+    "missed_overturnings": Column("-", "how many"),
+    "survivors": Column("-", "cases that survive in both"),
+    "median_error": Column("-", "median of |error|"),
+    "p90_error": Column("-", "nine tenths of |error| are below"),
+    "max_error": Column("-", "largest |error|; inf where an outcome is wrong (work-precision.csv)"),
+    "rms_error": Column("-", "root of the mean square of the error"),
+    "rms_difference": Column("-", "root of the mean square of the difference"),
+    "max_difference": Column("-", "largest |difference|"),
+    "max_error_over_kappa": Column("-", "largest |error| over the larger of |κ|, |κη| and 1"),
+    "statement": Column("", "a statement of the paper, or about its cases"),
+    "holds": Column("", "whether it holds; nan: a source was not asked"),
+    "numbers": Column("", "the numbers that say so"),
+    "title": Column("", "the linearization in words"),
+    "changed": Column("", "onset, frequency, saddle: 1 where not Housner's"),
+    "quantile": Column("-", "part of the cases whose |error| is below"),
+}
+
+METHODS = {
+    "method": Column("", "the method of a work-precision diagram"),
+    "value": Column("-", "its setting: tolerance, p dt or iterations"),
+    "own_error": Column("-", "difference of the peak from the method's own finest one"),
+    "impact_error": Column("1/p", "largest error of the first impact times"),
+    "impact_times": Column("1/p", "times of the first impacts"),
+    "energy_drift": Column("-", "largest change of energy between impacts, over its scale"),
+    "energy_growth": Column("-", "rise of energy in free rocking, over its largest value"),
+    "real_time_factor": Column("-", "length of the pulse over the time it took"),
+    "period_error": Column("-", "largest relative error of the time between two impacts"),
+    "decay_error": Column("-", "largest relative error of the rotation after an impact"),
+    "swings": Column("-", "swings that were compared"),
+    "quantity": Column("", "what was perturbed"),
+    "delta": Column("-", "relative size of the perturbation"),
+    "exact_change": Column("-", "change of ln(peak) of the exact solution"),
+    "change": Column("-", "change of ln(peak)"),
+    "growth": Column("-", "|change| over delta"),
+    "growth_over_kappa": Column("-", "growth over |κ|"),
+    "change_over_exact": Column("-", "|change| over that of the exact solution"),
+    "factor": Column("", "setting that differs from the preset; in steps.csv between two steps"),
+    "level": Column("", "what it is set to"),
+    "trap": Column("", "why a setting goes wrong without a word"),
+    "moved": Column("-", "largest relative change of a peak of the preset"),
+    "ratio_over_eta": Column("-", "velocity ratio at impacts over Housner's η, the median"),
+    "ratio_moved": Column("-", "relative change of that from the preset's"),
+    "velocity_ratio": Column("-", "velocity after over before an impact, the median"),
+    "newton_e": Column("-", "Newton's coefficient that gives this ratio"),
+    "worse": Column("", "failed, or more outcomes wrong than with the preset"),
+    "contact_s": Column("1/p", "time that the contact has of its own"),
+    "largest_stable": Column("1/p", "largest step that stays stable"),
+    "largest_accurate": Column("1/p", "largest step from which on peaks are right to 1 %"),
+    "stable_over_contact": Column("-", "largest_stable over contact_s"),
+    "accurate_over_contact": Column("-", "largest_accurate over contact_s"),
+    "runs": Column("-", "runs that a search took"),
+    "scene": Column("", "what was put back into a scene, or left out of the exact solution"),
+    "memory_kib": Column("KiB", "memory of a process with the scene"),
+    "engine_s": Column("s", "of a step, the engine's own"),
+    "adapter_s": Column("s", "of a step, the adapter around it"),
+    "pose_s": Column("s", "of a step, reading the pose"),
+    "policy_s": Column("s", "of a step, choosing the next"),
+    "observer_s": Column("s", "of a step, watching"),
+    "threads": Column("-", "threads"),
+    "seconds": Column("s", "time of all cases"),
+    "cases_a_second": Column("1/s", "cases a second"),
+    "us_a_case_and_core": Column("µs", "time of a case on one core"),
+    "times_exact": Column("-", "time over that of the exact solution on one thread"),
+}
+
+MAPS = {
+    "low": Column("onsets", "lower end of an interval; in curves.csv of a probability"),
+    "high": Column("onsets", "upper end of it"),
+    "mode": Column("-", "impacts before overturning; -1: it survives"),
+    "below": Column("-", "mode below an edge of the map"),
+    "above": Column("-", "mode above it"),
+    "found": Column("", "how an edge was found; in checks.csv the number found"),
+    "other_mode": Column("-", "part of the map overturned after other impacts than exactly"),
+    "cells": Column("-", "cells of a coarse grid"),
+    "false_from": Column("-", "abscissa below which a twentieth of the false part lies"),
+    "false_to": Column("-", "abscissa above which a twentieth of it lies"),
+    "missed_from": Column("-", "abscissa below which a twentieth of the missed part lies"),
+    "missed_to": Column("-", "abscissa above which a twentieth of it lies"),
+    "table": Column("", "the table that a row belongs to"),
+    "edge": Column("onsets", "amplitude of an exact edge"),
+    "overturns": Column("", "above or below the edge"),
+    "offset": Column("-", "relative distance from the edge"),
+    "shift": Column("-", "threshold of the source over the exact one, less 1"),
+    "check": Column("", "what is checked"),
+    "against": Column("", "what against"),
+    "expected": Column("-", "number expected"),
+}
+
+STATISTICS = {
+    "capacity": Column("onsets", "median of the fitted overturning intensity"),
+    "capacity_low": Column("onsets", "lower bound of it, by resampling motions"),
+    "capacity_high": Column("onsets", "upper bound of it"),
+    "capacity_ratio": Column("-", "capacity over the exact one of the same cases"),
+    "ratio_low": Column("-", "lower bound of it, by resampling motions"),
+    "ratio_high": Column("-", "upper bound of it"),
+    "beta": Column("-", "logarithmic standard deviation of the fitted intensity"),
+    "predicted": Column("-", "part of single responses right within 10 %"),
+    "ks": Column("-", "largest distance between the distributions of peaks"),
+    "ks_p": Column("-", "its p-value by Kolmogorov and Smirnov's test"),
+    "ks_tests": Column("-", "intensities tested"),
+    "ks_rejected": Column("-", "of these with p < 0.05"),
+    "mcnemar_p": Column("-", "p-value of as many overturnings too many as too few"),
+    "overturned": Column("-", "motions that overturn"),
+    "share": Column("-", "part of the motions that overturn"),
+    "share_low": Column("-", "lower bound of it"),
+    "share_high": Column("-", "upper bound of it"),
+    "median_peak": Column("-", "median of peak_ratio"),
+    "probability": Column("-", "fitted probability of overturning"),
+}
+
+GROUPS = {
+    "Cases": CASES,
+    "Answers": ANSWERS,
+    "Beside the exact solution": REFERENCE,
+    "Summaries": SUMMARIES,
+    "Methods and settings": METHODS,
+    "Maps": MAPS,
+    "Statistics": STATISTICS,
+}
+"""Heading -> the columns under it."""
+
+COLUMNS = {name: column for group in GROUPS.values() for name, column in group.items()}
+"""Name -> unit and meaning."""
