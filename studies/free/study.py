@@ -14,6 +14,7 @@ from analytic import RigidBlock, SinePulse, peak_ratios
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
+from studies.free import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -25,7 +26,6 @@ from studies.measures.differences import scientific
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PRODUCTS = ("free.csv", "free.png", "findings.txt")
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Rotations over alpha from which the blocks fall."""
@@ -90,11 +90,12 @@ def free(sources: Sequence[str], folder: Path, *, quick: bool, executor: Executo
         folder,
         "free",
         free_jobs(sources, quick),
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick},
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

@@ -17,7 +17,6 @@ import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pebble import ProcessPool
@@ -25,7 +24,8 @@ from pebble import ProcessPool
 from analytic.response import Response
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.executors import outcome_of
+from studies.kit.executors import ask_loaded, outcome_of
+from studies.kit.fingerprint import PACKAGES, ROOT
 from studies.kit.jobs import Job, ask, one_line
 from studies.sources.registry import Source, resolve
 
@@ -183,10 +183,11 @@ def _words(problem: Any) -> str:
 def fitness() -> dict[str, str]:
     """Return what must be the same on a worker for its results to be the same."""
     digest = hashlib.sha256()
-    for part in ("analytic", "engines", "studies"):
-        for path in sorted((provenance.ROOT / part).rglob("*.py")):
-            digest.update(path.name.encode() + b"\0" + Path(path).read_bytes() + b"\0")
-    packages = (*provenance.engine_packages(), "numpy", "scipy", "numba")
+    for part in PACKAGES:
+        for path in sorted((ROOT / part).rglob("*.py")):
+            name = path.relative_to(ROOT).as_posix()
+            digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+    packages = (*provenance.engine_packages(), *provenance.NUMERICAL_PACKAGES)
     return {
         "code": digest.hexdigest()[:12],
         "python": platform.python_version(),
@@ -220,7 +221,7 @@ def work(
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
     if source.kind == "engine" or job.is_long:
-        task = _processes().schedule(ask, args=(job, source), timeout=time_limit_s)
+        task = _processes().schedule(ask_loaded, args=(ask, job, source), timeout=time_limit_s)
         return outcome_of(task.result, time_limit_s)
     if job.source not in _loaded:
         # loading the compiled kernels is no part of the first case's run time

@@ -11,7 +11,8 @@ from pebble import ProcessExpired, ProcessPool
 
 from analytic.response import Response
 from studies.kit import provenance
-from studies.kit.jobs import Job, ask, one_line
+from studies.kit.jobs import Job, ask, one_line, short
+from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
 
 
@@ -64,13 +65,16 @@ class Local:
         # engines hold state of their own: no fork of a process that has loaded them
         pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
         try:
-            # the source travels with the job, so that a worker needs no registry of its own
-            tasks: dict[Future[Response], int] = {
-                pool.schedule(
-                    self.ask, args=(job, resolve(job.source)), timeout=self.time_limit_s
-                ): number
-                for number, job in jobs.items()
-            }
+            with left_to_this_process():
+                # the source travels with the job, so that a worker needs no registry of its own
+                tasks: dict[Future[Response], int] = {
+                    pool.schedule(
+                        ask_loaded,
+                        args=(self.ask, job, resolve(job.source)),
+                        timeout=self.time_limit_s,
+                    ): number
+                    for number, job in jobs.items()
+                }
             for task in as_completed(tasks):
                 yield tasks[task], outcome_of(task.result, self.time_limit_s)
         finally:
@@ -98,6 +102,21 @@ def choose(
     chosen = Cluster(cluster, time_limit_s, ask)
     chosen.check()
     return chosen
+
+
+def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -> Response:
+    """Put a job to its source in a process of its own.
+
+    A job that is long is not asked twice: what loads the compiled kernels is a short one.
+    """
+    if source.kind != "engine" and job.source not in _loaded:
+        _loaded.add(job.source)
+        ask(short(job), source)
+    return ask_(job, source)
+
+
+_loaded: set[str] = set()
+"""Sources whose kernels this process has loaded."""
 
 
 def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
