@@ -1,17 +1,18 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
-import signal
 from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import Future, TimeoutError, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessPool
 
 from analytic.response import Response
 from studies.kit import provenance
-from studies.kit.jobs import Job, ask, one_line, short
+from studies.kit.cluster import Cluster
+from studies.kit.jobs import Job, ask
+from studies.kit.processes import ask_loaded, outcome_of
 from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
 
@@ -92,46 +93,11 @@ def choose(
 
     Raises
     ------
-    studies.cluster.ClusterError
+    studies.dask_client.ClusterError
         If the cluster cannot be used.
     """
     if cluster is None:
         return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
-    from studies.kit.cluster import Cluster
-
     chosen = Cluster(cluster, time_limit_s, ask)
     chosen.check()
     return chosen
-
-
-def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -> Response:
-    """Put a job to its source in a process of its own.
-
-    A job that is long is not asked twice: what loads the compiled kernels is a short one.
-    """
-    if source.kind != "engine" and job.source not in _loaded:
-        _loaded.add(job.source)
-        ask(short(job), source)
-    return ask_(job, source)
-
-
-_loaded: set[str] = set()
-"""Sources whose kernels this process has loaded."""
-
-
-def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
-    """Return the result of a process, or the failure as which it ended."""
-    try:
-        return result()
-    except TimeoutError:
-        return Response.failure(f"no result within the time limit of {time_limit_s:g} s")
-    except ProcessExpired as error:
-        return Response.failure(_cause_of_death(error.exitcode))
-    except Exception as error:
-        return Response.failure(one_line(error))
-
-
-def _cause_of_death(exitcode: int) -> str:
-    if exitcode < 0:
-        return f"the process was ended by signal {signal.Signals(-exitcode).name}"
-    return f"the process ended by itself with exit code {exitcode}"

@@ -159,7 +159,7 @@ class _Reading:
         return ".".join([*parts[: len(parts) - node.level + 1], *filter(None, [node.module])])
 
     def _word(self, text: str) -> None:
-        """Follow "engines.adapters.mujoco", "engines.adapters.mujoco:build" and the beginning of "engines.{}"."""
+        """Follow text that names a module, one with a member, or the beginning of some."""
         name = text.partition(":")[0]
         if "." in name and _NAME.fullmatch(name.removesuffix(".")):
             self.imports.add(name)
