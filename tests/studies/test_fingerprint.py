@@ -8,34 +8,31 @@ import pytest
 
 from analytic.kernels.forces import watch_free
 from engines.adapters.bullet import BulletWorld
-from studies import (
-    contact,
-    ensemble,
-    free,
-    overturning,
-    precision,
-    runner,
-    stability,
-    sweep,
-    validity,
-)
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
+from studies.contact import study as contact
 from studies.contact.report import report as report_of_contact
 from studies.drawing.figures import draw_sweep
+from studies.ensemble import study as ensemble
+from studies.free import study as free
+from studies.kit import runner
 from studies.kit.fingerprint import PACKAGES, ROOT, fingerprint, reached
 from studies.kit.jobs import summary
 from studies.measures.energy import energy_drift
 from studies.measures.verdicts import judge
+from studies.overturning import study as overturning
 from studies.overturning.figure import draw_map
+from studies.precision import study as precision
 from studies.sources.registry import resolve
 from studies.sources.scipy_peers import solve_ivp_response
+from studies.stability import study as stability
 from studies.stability.largest_step import search
 from studies.stability.remedies import answer
+from studies.sweep import study as sweep
+from studies.validity import study as validity
 
-RESUMABLE = [
-    chapter for chapter in CHAPTERS if chapter.study not in ("histories", "linearizations")
-]
+AT_ONCE = ("histories", "linearizations")
+RESUMABLE = [place for place in CHAPTERS if place[0].name not in AT_ONCE]
 
 
 @pytest.fixture(scope="module")
@@ -110,18 +107,20 @@ def look(jobs, *, executor, reduce, journal):
     raise Seen(called)
 
 
-@pytest.mark.parametrize("chapter", RESUMABLE, ids=lambda chapter: chapter.folder)
-def test_what_a_row_runs_through_was_found(chapter, monkeypatch, tmp_path):
+@pytest.mark.parametrize(
+    ("study", "chapter"), RESUMABLE, ids=[chapter.folder for _, chapter in RESUMABLE]
+)
+def test_what_a_row_runs_through_was_found(study, chapter, monkeypatch, tmp_path):
     monkeypatch.setattr(runner, "run_jobs", look)
     with pytest.raises(Seen) as seen:
-        run(chapter.command_line(tmp_path, full=False))
+        run(study.command_line(chapter, tmp_path, full=False))
     ours = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
         for path in map(Path, seen.value.args[0])
         if path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in PACKAGES
     }
     assert len(ours) > 8
-    assert ours <= set(reached(f"studies.{chapter.study}"))
+    assert ours <= set(reached(study.module))
 
 
 MADE_UP = {
@@ -140,7 +139,9 @@ MADE_UP = {
     "engines/other.py": 'from importlib import import_module\nimport_module(f"engines.parts.{1}")',
     "studies/__init__.py": "",
     "studies/kit/runner.py": "import engines.registry as r",
-    "studies/drawing/style.py": "from matplotlib import figure\nfrom studies.drawing import colours",
+    "studies/drawing/style.py": (
+        "from matplotlib import figure\nfrom studies.drawing import colours"
+    ),
     "studies/drawing/colours.py": "",
     "studies/swing/__init__.py": "",
     "studies/swing/study.py": """
@@ -160,7 +161,9 @@ def command():
 """,
     "studies/swing/report.py": "",
     "studies/swing/measure.py": "import analytic",
-    "studies/swing/late.py": "def find():\n    'a docstring'\n    return (1 +\n            2)  # three",
+    "studies/swing/late.py": (
+        "def find():\n    'a docstring'\n    return (1 +\n            2)  # three"
+    ),
     "studies/swing/types.py": "",
 }
 
