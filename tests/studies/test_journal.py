@@ -2,20 +2,20 @@
 
 import json
 import os
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from studies.catalogue import CHAPTERS
+from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit.drafts import draft
 from studies.kit.journal import FolderError, open_journal
 from studies.kit.sealed import seal, unseal
 
 IDENTITY = {"study": "test", "settings": {"seed": 1}}
 ROWS = {f"key {n}": {"outcome": "rocked", "peak_ratio": 0.1 * n, "message": "θ"} for n in range(3)}
-PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
-STUDIES = sorted({chapter.study for chapter in CHAPTERS} | {"throughput"})
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+WRITING = [study for study in STUDIES if study.products]
+OF_FOLDER = {chapter.folder: study for study, chapter in CHAPTERS}
 
 
 def fill(folder, rows=ROWS):
@@ -113,9 +113,9 @@ def test_a_sealed_line_is_json():
     assert unseal(seal(entry)[:-1]) == entry
 
 
-@pytest.mark.parametrize("study", STUDIES)
+@pytest.mark.parametrize("study", WRITING, ids=lambda study: study.name)
 def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study, tmp_path):
-    products = import_module(f"studies.{study}").PRODUCTS
+    products = study.products
     for name in (*products, "provenance.json", ".lock"):
         folder = tmp_path / name
         folder.mkdir()
@@ -129,10 +129,9 @@ def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study,
         assert (folder / name).read_text() == "mine"
 
 
-@pytest.mark.parametrize("folder", sorted(path.name for path in PUBLISHED.iterdir()))
+@pytest.mark.parametrize("folder", [name for name in OF_FOLDER if (PUBLISHED / name).is_dir()])
 def test_whatever_a_study_writes_is_among_its_products(folder):
-    study = {"presets": "sweep"}.get(folder, folder)
-    products = {*import_module(f"studies.{study}").PRODUCTS, "provenance.json"}
+    products = {*OF_FOLDER[folder].products, "provenance.json"}
     assert {path.name for path in (PUBLISHED / folder).iterdir()} <= products
 
 
