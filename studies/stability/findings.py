@@ -7,7 +7,7 @@ import pandas as pd
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import listed, out_of
+from studies.measures.words import each_out_of, listed, out_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -31,10 +31,13 @@ def first_claim(matrix: pd.DataFrame) -> str:
     valid = matrix["verdict"] != Verdict.INVALID.value
     asked = matrix[matrix["source"].map(is_engine) & valid]
     right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
-    words: dict[str, list[str]] = {}
+    counts: dict[str, list[tuple[int, int]]] = {}
     for source, good in right:
-        words.setdefault(preset_of(str(source)), []).append(out_of(int(good.sum()), len(good)))
-    parts = [f"{in_words(name)} {listed(words[name])}" for name in in_order(words)]
+        counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
+    parts = [
+        f"{in_words(name)} {each_out_of(*zip(*counts[name], strict=True))}"
+        for name in in_order(counts)
+    ]
     return f"Of extreme cases the engines get right: {', '.join(parts)}."
 
 
