@@ -1,5 +1,6 @@
 """A ground motion known by equally spaced samples, and straight between them."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -31,7 +32,8 @@ class Record:
     Raises
     ------
     ValueError
-        If dt is not positive and finite, or there are not two finite samples.
+        If dt is not positive and finite, if there are not two finite samples, or if the slopes or
+        integrals of the samples overflow.
     """
 
     dt: float
@@ -49,6 +51,10 @@ class Record:
             raise ValueError(f"samples[{bad[0]}] is {samples[bad[0]]}; it must be a finite number")
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
+        peak, duration = self.peak, self.duration
+        steepest, farthest = 2.0 * peak / self.dt, peak * duration * duration
+        if not math.isfinite(steepest + peak * duration + farthest + duration):
+            raise ValueError(f"peak is {peak:g} m/s2 and dt {self.dt:g} s; their motion overflows")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record):
@@ -80,7 +86,8 @@ class Record:
 
     def scaled(self, factor: float) -> "Record":
         """Return the record with its acceleration multiplied; a negative factor mirrors it."""
-        return Record(dt=self.dt, samples=finite("factor", factor) * self.samples)
+        with np.errstate(over="ignore"):
+            return Record(dt=self.dt, samples=finite("factor", factor) * self.samples)
 
     def scaled_to(self, peak: float) -> "Record":
         """Return the record scaled to a largest absolute acceleration [m/s2].
@@ -107,10 +114,10 @@ class Record:
         """
         from scipy.signal import detrend
 
-        left = Record(dt=self.dt, samples=detrend(self.samples, type=kind))
-        if left.peak <= ROUNDING * self.peak:
+        left = Record(dt=self.dt, samples=detrend(self.samples / (self.peak or 1.0), type=kind))
+        if left.peak <= ROUNDING:
             raise ValueError(f"the record is its own {kind} trend; nothing is left without it")
-        return left
+        return left.scaled(self.peak)
 
     def acceleration(self, t: ArrayLike) -> FloatArray:
         """Ground acceleration [m/s2] at the times `t` [s]; zero before and after the record."""

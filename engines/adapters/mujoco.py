@@ -23,13 +23,11 @@ LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
 
 MOST_REFLECTION = 2.0
-"""Landing returns a contact's velocity in proportion to the steps before and after: the two then
-cancel where the contact is, and the scheme is symmetric. A step that is much longer than the one
-before returns no more than this part, ..."""
+"""Landing returns no more than this part of the velocity with which a contact comes into a step."""
 
-LOST_REFLECTION = 1.0
-"""... and all return by this many p dt less, so that what an impact leaves behind dies out before
-the next: more would cost energy, less would blur the velocities at impacts."""
+MOST_GROWTH = 20.0
+"""Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
+returned as if it grew by no more than this many p dt in a step."""
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
@@ -76,7 +74,10 @@ class MujocoWorld:
         self._data = self._mj.MjData(self._model)
         self._pull, self._option = self._model.opt.gravity, self._model.opt
         self._velocity = self._moved = self._dt = self._time = 0.0
-        self._elastic = max(1.0 - LOST_REFLECTION * scene.block.p * dt_s, 0.0)
+        self._rate, self._gained = scene.beginning.rate, 0.0
+        self._aloft, self._back, self._released = False, 0.0, bool(scene.side)
+        self._spin = 2 if s.planar else 4
+        self._growth = 1.0 + MOST_GROWTH * scene.block.p * dt_s
         self._sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
         self._by_step = s.by_phase or s.reflection or s.carry is not None
         self._set_reach(scene)
@@ -97,6 +98,8 @@ class MujocoWorld:
         self._time += step.dt_s
         if self._s.preload:
             self._look_at_yield(step)
+        if self._s.reflection:
+            self._look_at_rate(step)
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
@@ -140,9 +143,7 @@ class MujocoWorld:
             model.pair_solref[:] = model.geom_solref[:] = (s.solref[0] * dt, s.solref[1])
         if s.damping is None or s.sliding_damping is None or s.stiffness is None:
             return
-        back = 0.0
-        if s.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
-            back = self._elastic * min(dt / before, MOST_REFLECTION)
+        self._back = back = self._reflected(step, before) if s.reflection else 0.0
         firm = FEEBLE if s.by_phase and (step.side or step.grip is not Grip.REST) else s.stiffness
         self._sliding = s.sliding_damping + back
         # the library divides both numbers by the impedance, the first one twice
@@ -151,6 +152,25 @@ class MujocoWorld:
         model.pair_solreffriction[:] = (k, unit * self._sliding)
         if s.carry is not None:
             self._reach(step, s.carry * self._width)
+
+    def _reflected(self, step: Step, before: float) -> float:
+        """Part of a contact's velocity that is returned, with a change of sign.
+
+        A pivot is back where it was at the end of a step h if it leaves with -c h/2, c being its
+        centripetal acceleration, in proportion to the square of the angular velocity; it comes
+        into the next step with c h/2, or with c h if it was held and not returned before.
+        """
+        was_aloft, self._aloft = self._aloft, step.grip in (Grip.SWING, Grip.APPROACH)
+        self._released = self._released and self._aloft
+        if not (was_aloft and self._aloft and self._rate):
+            return 0.0
+        faster = 1.0 + self._gained * step.kick_s / self._rate
+        growth = faster * faster
+        if self._released and growth > self._growth:
+            # a released block gains speed steadily: what is returned too soon would stay in it
+            return 0.0
+        part = min(growth, self._growth) * step.dt_s / before
+        return min(part if self._back else 0.5 * part, MOST_REFLECTION)
 
     def _reach(self, step: Step, carry: float) -> None:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
@@ -181,6 +201,11 @@ class MujocoWorld:
             self._yield = float(data.efc_R[0]) * self._weight
         elif step.grip is Grip.SWING and data.ncon == self._corners:
             self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
+
+    def _look_at_rate(self, step: Step) -> None:
+        """Note the angular velocity [rad/s] of a step, and the acceleration [rad/s2] before it."""
+        before, self._rate = self._rate, float(self._data.qvel[self._spin])
+        self._gained = (self._rate - before) / step.kick_s
 
     def _set_reach(self, scene: Scene) -> None:
         pairs = self._model.npair

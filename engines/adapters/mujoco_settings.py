@@ -55,8 +55,8 @@ class MujocoSettings:
     by_phase : bool
         Use `stiffness` at rest alone.
     reflection : bool
-        Give the velocities of the corner about which the block turns back to it, in proportion to
-        the step, so that its mean over two steps is zero; through an impact they are taken out.
+        Give the velocity of the corner about which the block turns back to it, so that its mean
+        over a step is zero; in the steps of an impact and the first one after it is taken out.
     carry : float or None
         Gap, over the width, within which the corner about which the block turns stays in contact,
         however long the step; the other corners act at the depth to which they carry the weight.

@@ -51,6 +51,11 @@ MOST_STRIKES = 12
 SETTLED = 1e-6
 """An impact is over when a step changes the angular velocity by less than this part of it."""
 
+FIRST_PART = 0.25
+"""The first step after an impact, or of a run that begins aloft, is this part of the next ones: a
+contact that has just taken all velocity out of its point lets that rise by the square of the step.
+"""
+
 TOUCHING = 1e-9
 """A corner lower above the base than this part of the width touches it."""
 
@@ -135,7 +140,7 @@ class LandingSteps:
             self._side = math.copysign(1.0, pose.theta)
         if self._bouncing and not lifted and self._swing_s(pose) < self._shortest:
             return self._settle()
-        longest = self._longest(pose)
+        longest = self._longest(pose) if self._between else FIRST_PART * self._longest(pose)
         ahead = self._until_impact(pose)
         self._approaching = self._approaching and ahead < math.inf
         if self._approaching or ahead < min(2.0 * longest, self._times.left):
@@ -164,7 +169,7 @@ class LandingSteps:
         if self._swing_s(pose) < self._shortest:
             return self._settle()
         self._side = math.copysign(1.0, pose.rate)
-        return Choice(self._times.even(self._longest(pose)), Grip.SWING, self._side)
+        return Choice(self._times.even(FIRST_PART * self._longest(pose)), Grip.SWING, self._side)
 
     def _settle(self) -> Choice:
         """Leave the block to its contacts."""

@@ -105,6 +105,10 @@ def test_scaling():
         ({"samples": [[1.0, 2.0]]}, "shape"),
         ({"samples": [0.0, 1.0, math.nan]}, r"samples\[2\] is nan"),
         ({"samples": [math.inf, 1.0]}, r"samples\[0\] is inf"),
+        ({"samples": [1e307, -1e307], "dt": 0.01}, "peak is 1e\\+307 .* overflows"),
+        ({"dt": 1e308, "samples": [0.0, 0.0, 0.0]}, "dt 1e\\+308 s; their motion overflows"),
+        ({"dt": 1e200}, "overflows"),
+        ({"dt": 1e-320}, "overflows"),
     ],
 )
 def test_bad_records(change, words):

@@ -56,7 +56,9 @@ def test_quarter_period_and_decay(engine: str, preset: str, frame: str, side: fl
     for n, gap in enumerate(np.diff(times[:5]), start=1):
         swing = 2.0 * quarter_period(BLOCK, free_amplitude(BLOCK, TILT, n))
         assert gap == pytest.approx(swing, rel=1e-4)
-    assert response.impacts[0].velocity_before * side < 0.0
+    speed = BLOCK.p * math.sqrt(2.0 * (math.cos(BLOCK.alpha - TILT) - math.cos(BLOCK.alpha)))
+    assert response.impacts[0].velocity_before == pytest.approx(-side * speed, rel=1e-4)
+    assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=1e-4)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

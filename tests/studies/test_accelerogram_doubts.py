@@ -6,7 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from test_accelerogram_forms import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
 from studies.__main__ import run
@@ -35,6 +38,12 @@ DOUBTS = [
     ("velocity, given units", at2(UNLIKE), "g", "line 3 speaks of velocity"),
     ("displacement", at2("DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "g", "displacement"),
     ("displacement, no unit", at2("DISPLACEMENT TIME HISTORY"), "m/s2", "displacement"),
+    (
+        "a title, velocity",
+        at2("ACCELEROGRAM 12\nVELOCITY TIME SERIES"),
+        "g",
+        "line 4 speaks of vel",
+    ),
     ("units of velocity", at2("ACCELERATION TIME SERIES IN UNITS OF CM/S"), "g", "'cm/s'"),
     ("a column of velocity", f"t (s), v (m/s)\n{ROWS.replace(' ', ',')}", "g", "'v'"),
     ("a column of velocity, blanks", f"Time Velocity\n{ROWS}", "g", "'Velocity'"),
@@ -61,13 +70,27 @@ DOUBTS = [
     ("NaN after the last", f"{GOOD}NaN\n", None, "line 8: NaN must be a finite number"),
     ("NaN, no count", AT2["no count"].replace("-.1\n", "NaN\n"), None, "line 6: NaN must be"),
     ("too large", ROWS.replace("0.2\n", "1e999\n"), "g", "line 2: 1e999 must be a finite number"),
+    (
+        "too large in SI",
+        GOOD.replace("-.1", "1.7e308"),
+        None,
+        "samples[5] is inf; it must be a",
+    ),
+    ("too large to integrate", GOOD.replace("-.1", "1e307"), None, "their motion overflows"),
+    ("too fine", GOOD.replace(".0050", "1e-320"), None, "their motion overflows"),
+    ("too long", GOOD.replace(".0050", "1e300"), None, "their motion overflows"),
     ("a long word", ROWS.replace("0.2\n", "9x" * 3000 + "\n"), "g", "must be a number"),
     ("Latin-1", b"# caf\xe9, units: g\n0 0.1\n1 0.2\n", None, "line 1: the byte 0xe9 is not text"),
     ("no text", b"\x80\x81\xfe\xff\n" + ROWS.encode(), "g", "line 1: the byte 0x80 is not text"),
     ("UTF-16", ROWS.encode("utf-16"), "g", "line 1: the byte 0xff is not text"),
     ("zeros", b"# a\x00b\n" + ROWS.encode(), "g", r"line 1: '\x00' is not text"),
     ("a film", b"\x89PNG\r\n\x1a\n\x00\x00", "g", "line 1: the byte 0x89 is not text"),
-    ("a unit of time", f"t (min), a (g)\n{ROWS.replace(' ', ',')}", None, "times are in 'min'"),
+    (
+        "a unit of time",
+        f"t (min), a (g)\n{ROWS.replace(' ', ',')}",
+        None,
+        "line 1: its times are in 'min'",
+    ),
     ("a unit of time in a remark", f"# ms\n{ROWS}", "g", "line 1 speaks of ms"),
     ("a step in ms", GOOD.replace("SEC,", "MSEC,"), None, "line 4: the step is in MSEC"),
     ("swapped names", f"a (g), t (s)\n{ROWS.replace(' ', ',')}", None, "'a' and 't'; they must be"),
@@ -143,6 +166,34 @@ def test_a_doubt_is_refused_with_one_line(name, content, units, words, tmp_path)
     assert words in message
     assert "\n" not in message
     assert len(message) < len(str(path)) + 300
+
+
+MARKS = "0123456789.,;:eE+-= \t\r\n#%()[]_/*gmscANPTSDT\x00\x1a\u0663\u00e9\ufeff"
+EDITS = st.lists(st.tuples(st.integers(0, 600), st.integers(0, 9), st.text(MARKS, max_size=9)))
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    content=st.binary(max_size=60)
+    | st.text(MARKS, max_size=60).map(str.encode)
+    | st.sampled_from([*AT2.values(), ASC_HEADER + ASC_COLUMN, f"t (s), a (g)\n{ROWS}"]),
+    edits=EDITS,
+    units=st.sampled_from([None, "g", "cm/s2"]),
+)
+def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, tmp_path_factory):
+    """A file of any bytes, or a good one with some of its characters changed."""
+    if isinstance(content, str):
+        for begin, length, text in edits:
+            content = content[:begin] + text + content[begin + length :]
+        content = content.encode()
+    path = tmp_path_factory.getbasetemp() / "any.txt"
+    path.write_bytes(content)
+    try:
+        record = read_record(path, units)
+    except BadInputError as refusal:
+        assert len(str(refusal).splitlines()) == 1
+    else:
+        assert np.isfinite(record.samples).all()
 
 
 BLOCK = ["compare", "--width", "0.5", "--height", "1.5", "--units", "g", "--record"]

@@ -5,6 +5,8 @@ The samples are made up here; the headers are worded as those of the archives, w
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from studies.cases.accelerograms import UNITS, read_record
 
@@ -49,6 +51,7 @@ AT2 = {
         "7 points at equal spacing of 0.005 sec\nThe units are (g)\n*** Begin data ***\n"
         f"NPTS=  7, DT= .00500 SEC\n{COLUMNS}*** End Data ***\n"
     ),
+    "step first": f"{TITLE}ACCELERATION IN G\nDT=.005 NPTS=7\n{COLUMNS}",
     "no count": (
         f"{TITLE}ACCELERATION TIME HISTORY IN UNITS OF G\nDT= .005 SEC\n{COLUMNS}*** End Data ***\n"
     ),
@@ -146,6 +149,7 @@ def test_an_asc_file_of_esm_or_itaca(end, written):
         ("t/s,a/g", 5.0),
         ("Elapsed time (sec),Ground acceleration N-S (g)", 5.0),
         ("Zeit [s],a [g]", 5.0),
+        ('"Time (sec.)","Acceleration (g)"', 5.0),
         ("% t (s)   acc (g)", 5.0),
     ],
 )
@@ -173,3 +177,32 @@ def test_tables_that_leave_no_doubt(text, written):
     record = read_record(written(text))
     assert record.dt == 1.0
     assert record.samples[:2].tolist() == [9.81, 19.62]
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    samples=st.lists(st.floats(-1e3, 1e3), min_size=3, max_size=40),
+    unit=st.sampled_from(list(UNITS)),
+    columns=st.integers(1, 9),
+    end=st.sampled_from(["\n", "\r\n", "  \n"]),
+    form=st.sampled_from(["at2", "asc", "comma", "semicolon", "blank"]),
+)
+def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_factory):
+    """Any samples in any form, unit and layout, to the last digit that is printed."""
+    words = [repr(sample) for sample in samples]
+    count = len(samples)
+    if form == "at2":
+        rows = [" ".join(words[at : at + columns]) for at in range(0, count, columns)]
+        said = [f"ACCELERATION IN UNITS OF {unit.upper()}", f"NPTS= {count}, DT= .0050 SEC"]
+    elif form == "asc":
+        kind, step = "DATA_TYPE: ACCELERATION", "SAMPLING_INTERVAL_S: 0.005"
+        said, rows = [kind, f"NDATA: {count}", f"UNITS: {unit}", step], words
+    else:
+        mark = {"comma": ",", "semicolon": ";", "blank": " "}[form]
+        said = [f"t (s){mark}a ({unit})"]
+        rows = [f"{at * 0.005:.4f}{mark}{word}" for at, word in enumerate(words)]
+    path = tmp_path_factory.getbasetemp() / "form.txt"
+    path.write_bytes("".join(f"{line}{end}" for line in (*said, *rows)).encode())
+    record = read_record(path)
+    assert record.dt == pytest.approx(0.005, rel=1e-12)
+    assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()

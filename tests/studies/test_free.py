@@ -8,6 +8,7 @@ import pytest
 
 from analytic import RigidBlock, SinePulse, peak_ratios, simulate
 from analytic.response import Outcome
+from engines.scene import ACCURACIES
 from studies.free import study as free
 from studies.free.study import (
     OMEGA_OVER_P,
@@ -72,6 +73,17 @@ def test_engines_rock_as_the_closed_forms(engine):
     # the band of the sweep
     assert row["period_error"] < 1e-4
     assert row["decay_error"] < 1e-4
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize(("aspect", "tilt"), [(1.5, 0.1), (1.5, 0.9), (10.0, 0.9)])
+def test_the_rotation_after_an_impact(engine, aspect, tilt):
+    """What the contact leaves in the block at an impact is as small as a step's own error,
+    (p dt)^2 / 2, wherever the impact's share of the energy is large."""
+    job = released(aspect, tilt, engine)
+    row = reduce(job, ask(job, resolve(engine)))
+    assert row["swings"] == free.SWINGS
+    assert row["decay_error"] < 0.5 / ACCURACIES["standard"] ** 2
 
 
 def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):

@@ -4,11 +4,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from analytic.record import Record
 from studies.cases.accelerograms.text import MOST_SAMPLES, number, shown, too_long
-from studies.cases.accelerograms.units import Line, unit_of
+from studies.cases.accelerograms.units import Line, converted, unit_of
 
 STEP, COUNT, UNIT, TYPE = "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"
 """The keys that a record depends on; the others are about the event and the station."""
@@ -55,7 +53,7 @@ def read(lines: Sequence[str], units: str | None) -> Record | None:
     if len(samples) != header.count:
         problem = f"it must hold the {header.count} of its header"
         raise ValueError(f"it holds {len(samples)} samples; {problem}")
-    return Record(dt=header.dt, samples=header.unit * np.array(samples))
+    return Record(dt=header.dt, samples=converted(samples, header.unit))
 
 
 def _header(lines: Sequence[str], units: str | None) -> Header:

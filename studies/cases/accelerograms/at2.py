@@ -4,11 +4,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from analytic.record import Record
 from studies.cases.accelerograms.text import MOST_SAMPLES, NUMBER, number, too_long
-from studies.cases.accelerograms.units import check_quantity, numbered, unit_of
+from studies.cases.accelerograms.units import check_quantity, converted, numbered, unit_of
 
 LONGEST_HEADER = 100
 """Lines in which a header is looked for."""
@@ -22,8 +20,8 @@ STEP = re.compile(rf"\bDT\s*=\s*{VALUE}(?![\w.])\s*([a-z]*)", PLAIN)
 BEGIN = re.compile(r"^\s*\*+\s*begin\b", PLAIN)
 END = re.compile(r"^\s*\*+\s*end\b", PLAIN)
 
-NOT_SECONDS = ("m", "u", "n", "h")
-"""First letters of the units of time that a step may not be in, as of msec, min, hours, Hz."""
+NOT_SECONDS = re.compile(r"(?:[mun]|milli|micro|nano)s(?:ec\w*)?|min\w*|hours?|hz", PLAIN)
+"""What a step may not be in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +73,7 @@ def read(lines: Sequence[str], units: str | None) -> Record | None:
         raise ValueError(
             f"it holds {len(samples)} samples; it must hold the {count:.0f} of its header"
         )
-    return Record(dt=dt, samples=unit * np.array(samples))
+    return Record(dt=dt, samples=converted(samples, unit))
 
 
 def _header(lines: Sequence[str]) -> Header:
@@ -95,7 +93,7 @@ def _header(lines: Sequence[str]) -> Header:
 
 
 def _seconds(step: str, unit: str, line: int) -> float:
-    if unit.lower().startswith(NOT_SECONDS):
+    if NOT_SECONDS.fullmatch(unit):
         raise ValueError(f"line {line}: the step is in {unit}; it must be in seconds")
     return number(step, line)
 

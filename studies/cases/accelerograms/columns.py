@@ -93,7 +93,7 @@ def read_header(beside: Sequence[Line], separator: str | None, units: str | None
     found = [(line, labels) for line in beside if (labels := _labels(line.text, separator))]
     if not found:
         check_quantity(beside)
-        return Header(_second("", beside), unit_of(beside, units), named=False)
+        return Header(_unstated_second(beside), unit_of(beside, units), named=False)
     line, (time, other) = found[-1]
     if other.of_time or not time.of_time or other.quantity not in ("acceleration", ""):
         where = f"line {line.number}: its columns are {shown(time.name)} and {shown(other.name)}"
@@ -101,13 +101,14 @@ def read_header(beside: Sequence[Line], separator: str | None, units: str | None
     if not other.quantity and other.words != {"a"}:
         check_quantity(beside)
     stated = [Line(line.number, f"units: {other.unit}")] if is_unit(other.unit) else []
-    return Header(_second(time.unit, beside), unit_of([*beside, *stated], units), named=True)
+    second = _second(time.unit, line.number) if time.unit else _unstated_second(beside)
+    return Header(second, unit_of([*beside, *stated], units), named=True)
 
 
 def _labels(text: str, separator: str | None) -> tuple[Label, Label] | None:
     """Return what a line says of two columns, or None if it speaks of something else."""
     remarks = text.lstrip()[:1] in ("#", "%")
-    plain = re.sub(r"\s*/\s*", "/", text.strip("#% \t")).replace("_s2", "/s2")
+    plain = re.sub(r"\s*/\s*", "/", text.strip("#% \t")).replace("_s2", "/s2").replace('"', "")
     mark = next((mark for mark in (separator, ",", ";", "\t") if mark and mark in plain), None)
     fields = plain.split(mark) if mark else FIELD.findall(plain.replace(" in ", "/"))
     labels = [_label(field.strip()) for field in fields]
@@ -120,15 +121,18 @@ def _labels(text: str, separator: str | None) -> tuple[Label, Label] | None:
 
 def _label(field: str) -> Label:
     match = LABEL.fullmatch(field)
-    return Label(match["name"], (match["unit"] or "").strip()) if match else Label(field, "")
+    return Label(match["name"], (match["unit"] or "").strip(" .")) if match else Label(field, "")
 
 
-def _second(stated: str, beside: Sequence[Line]) -> float:
-    """Return the unit of time [s] that a label states; seconds, if nothing is said of others."""
-    if stated:
-        if stated.lower() not in SECONDS:
-            raise ValueError(f"its times are in {shown(stated)}; they must be in s or ms")
-        return SECONDS[stated.lower()]
+def _second(stated: str, line: int) -> float:
+    """Return the unit of time [s] that a label states."""
+    if stated.lower() not in SECONDS:
+        raise ValueError(f"line {line}: its times are in {shown(stated)}; they must be in s or ms")
+    return SECONDS[stated.lower()]
+
+
+def _unstated_second(beside: Sequence[Line]) -> float:
+    """Return the unit of time [s] where no label states one: a second, unless others are named."""
     for line in beside:
         if found := SHORTER.search(line.text):
             problem = f"line {line.number} speaks of {found[0]}"

@@ -5,12 +5,10 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from analytic.record import Record
 from studies.cases.accelerograms.columns import read_header
 from studies.cases.accelerograms.text import MOST_SAMPLES, is_number, number, too_long
-from studies.cases.accelerograms.units import Line
+from studies.cases.accelerograms.units import Line, converted
 
 UNEVEN = 0.03
 """Part of a step by which a printed time may miss its place: what four decimals do to 256 Hz."""
@@ -45,7 +43,7 @@ def read(lines: Sequence[str], units: str | None) -> Record:
         _check_order(rows)
         _check_commas([lines[row.line - 1] for row in rows], separator)
     dt = _step([(row.line, header.second * row.time) for row in rows])
-    return Record(dt=dt, samples=header.unit * np.array([row.acceleration for row in rows]))
+    return Record(dt=dt, samples=converted([row.acceleration for row in rows], header.unit))
 
 
 def _is_remark(line: str) -> bool:

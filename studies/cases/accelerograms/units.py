@@ -4,7 +4,10 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from analytic.block import STANDARD_GRAVITY
+from analytic.motion import FloatArray
 from studies.cases.accelerograms.text import shown
 
 Units = Literal["g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"]
@@ -91,6 +94,12 @@ def unit_of(header: Sequence[Line], given: str | None) -> float:
     return UNITS[next(iter(stated), given or "")]
 
 
+def converted(samples: Sequence[float], unit: float) -> FloatArray:
+    """Return samples [m/s2] from their unit [m/s2]; what overflows is infinite."""
+    with np.errstate(over="ignore"):
+        return unit * np.array(samples)
+
+
 def _units_in(text: str) -> Iterable[str]:
     """Yield the units that a line states; one of length may be of something else, as a depth."""
     for word in UNITS_OF.findall(text):
@@ -102,12 +111,19 @@ def _units_in(text: str) -> Iterable[str]:
 
 
 def check_quantity(header: Sequence[Line]) -> None:
-    """Raise ValueError if a header speaks of another quantity and not of acceleration."""
-    if any(QUANTITIES["acceleration"].search(line.text) for line in header):
+    """Raise ValueError if a header speaks of velocity or displacement, unless of acceleration, too.
+
+    One that speaks of both must state a unit of acceleration.
+    """
+    spoken = {
+        quantity: line
+        for line in header
+        for quantity, name in QUANTITIES.items()
+        if name.search(line.text)
+    }
+    accelerations = spoken.pop("acceleration", None)
+    stated = {unit for line in header for unit in _units_in(line.text)}
+    if accelerations and stated & UNITS.keys():
         return
-    for line in header:
-        for quantity, name in QUANTITIES.items():
-            if name.search(line.text):
-                raise ValueError(
-                    f"line {line.number} speaks of {quantity}; it must be acceleration"
-                )
+    for quantity, line in spoken.items():
+        raise ValueError(f"line {line.number} speaks of {quantity}; it must be acceleration")
