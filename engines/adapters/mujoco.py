@@ -22,8 +22,9 @@ from engines.world import Grip, Moment, Pose, Step
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
 
-MOST_REFLECTION = 2.0
-"""Landing returns no more than this part of the velocity with which a contact comes into a step."""
+MOST_REFLECTION = 25.0
+"""Landing returns no more than this part of the velocity with which a contact comes into a step:
+after a far shorter step that is noise."""
 
 MOST_GROWTH = 20.0
 """Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is

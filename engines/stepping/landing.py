@@ -51,7 +51,7 @@ MOST_STRIKES = 12
 SETTLED = 1e-6
 """An impact is over when a step changes the angular velocity by less than this part of it."""
 
-FIRST_PART = 0.25
+FIRST_PART = 0.02
 """The first step after an impact, or of a run that begins aloft, is this part of the next ones: a
 contact that has just taken all velocity out of its point lets that rise by the square of the step.
 """

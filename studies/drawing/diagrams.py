@@ -89,20 +89,24 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
 
 
 def draw_free(rows: pd.DataFrame) -> Figure:
-    """Draw the errors of period and decay over the tilt, a line for each source.
+    """Draw the errors of period and decay and the drift over the tilt, a line for each source.
 
     Parameters
     ----------
     rows : DataFrame
         The columns of free.csv.
     """
-    drawing = Figure(figsize=(10.0, 4.6), layout="constrained")
-    panels = drawing.subplots(1, 2, sharex=True, sharey=True)
-    titles = {"period_error": "time between two impacts", "decay_error": "rotation after an impact"}
+    drawing = Figure(figsize=(12.0, 4.6), layout="constrained")
+    panels = drawing.subplots(1, 3, sharex=True, sharey=True)
+    titles = {
+        "period_error": "time between two impacts",
+        "decay_error": "rotation after an impact",
+        "drift_p": "drift over 20 impacts  [1/p]",
+    }
     for axes, (column, title) in zip(panels, titles.items(), strict=True):
         for source, part in rows.groupby("source", sort=False):
             style = style_of(str(source))
-            worst = part.groupby("tilt")[column].max().clip(lower=LOWEST)
+            worst = part[column].abs().groupby(part["tilt"]).max().clip(lower=LOWEST)
             axes.plot(
                 worst.index,
                 worst,
@@ -116,7 +120,7 @@ def draw_free(rows: pd.DataFrame) -> Figure:
         axes.set(yscale="log", title=title)
         axes.set_xlabel("rotation from which the block falls  θ0/α  [–]")
         axes.grid(alpha=0.25)
-    panels[0].set_ylabel("largest relative error over H/B  [–]")
+    panels[0].set_ylabel("largest error over H/B, relative but for the drift")
     drawing.legend(
         *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False
     )

@@ -13,6 +13,7 @@ from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
+from studies.ensemble import STUDY
 from studies.ensemble.agreement import agreement, confusion
 from studies.ensemble.claims import first_claim, verdict
 from studies.ensemble.fragility import fragilities
@@ -55,7 +56,6 @@ DEFAULT_SOURCES = (
 )
 
 TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
-PRODUCTS = ("ensemble.csv", *TABLES, "ensemble.png", "findings.txt", "provenance.json")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -221,10 +221,11 @@ def ensemble(
         folder,
         "ensemble",
         jobs,
+        module=__name__,
         executor=executor,
         settings=settings,
         growing={"motion": range(max(case.motion for case, _ in cases) + 1), "source": asked},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

@@ -14,6 +14,7 @@ from analytic import RigidBlock, SinePulse, peak_ratios
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
+from studies.free import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -25,7 +26,6 @@ from studies.measures.differences import scientific
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PRODUCTS = ("free.csv", "free.png", "findings.txt")
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Rotations over alpha from which the blocks fall."""
@@ -38,6 +38,10 @@ OMEGA_OVER_P = 8.0
 SAMPLES = 6000
 SWINGS = 3
 """Swings after the fall from the tilt that are compared."""
+IMPACTS = 20
+"""Impacts over which the times of a source drift from those of the closed form, ..."""
+LEAST_SWING = 1e-3
+"""... or fewer, as many as are followed by swings to this part of alpha or more."""
 
 
 def command(
@@ -53,7 +57,8 @@ def command(
 
     A short pulse tilts the block; it falls back and rocks on. The time between two impacts is twice
     the quarter period of the rotation between them, and that rotation follows from the one before
-    by the velocity ratio at the impact.
+    by the velocity ratio at the impact. What the errors of many impacts add up to is the drift: by
+    how much the 20th impact comes too late, counted from the first.
 
     Parameters
     ----------
@@ -90,11 +95,12 @@ def free(sources: Sequence[str], folder: Path, *, quick: bool, executor: Executo
         folder,
         "free",
         free_jobs(sources, quick),
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick},
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -116,15 +122,16 @@ def released(aspect: float, tilt: float, source: str) -> Job:
         amplitude=tilting_amplitude(block, tilt, model) * block.gravity,
         omega=OMEGA_OVER_P * block.p,
     )
-    quarters = [quarter_period(block, tilt * block.alpha, model)]
-    duration = motion.duration + (3.0 + 2.0 * SWINGS) * quarters[0]
+    fall = quarter_period(block, tilt * block.alpha, model)
+    sampled = motion.duration + (3.0 + 2.0 * SWINGS) * fall
+    rocking = motion.duration + 3.0 * fall + sum(swing_times(block, tilt * block.alpha, model))
     return Job(
         labels={"aspect": aspect, "tilt": tilt},
         block=block,
         motion=motion,
         source=source,
-        duration=duration,
-        times=np.linspace(0.0, duration, SAMPLES),
+        duration=max(sampled, rocking),
+        times=np.linspace(0.0, sampled, SAMPLES),
     )
 
 
@@ -140,9 +147,10 @@ def tilting_amplitude(block: RigidBlock, tilt: float, model: str) -> float:
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the summary, and the largest errors of period and decay over the swings."""
+    """Return the summary, the largest errors of period and decay over the swings, and the drift."""
     model = MODEL_OF.get(job.source, "exact")
-    period_error = decay_error = math.nan
+    period_error = decay_error = drift = math.nan
+    timed = 0
     tops = turning_points(response)
     if response.outcome is Outcome.ROCKED and len(tops) > 1:
         times = [impact.time for impact in response.impacts]
@@ -156,12 +164,28 @@ def reduce(job: Job, response: Response) -> Row:
             for before, after in itertools.pairwise(tops)
         ]
         decay_error = max(map(abs, decays))
+        swings = swing_times(job.block, tops[0], model)
+        timed = 1 + len(swings)
+        if len(times) >= timed:
+            drift = (times[timed - 1] - times[0] - sum(swings)) * job.block.p
     return {
         **summary(job, response),
         "swings": max(len(tops) - 1, 0),
         "period_error": period_error,
         "decay_error": decay_error,
+        "timed_impacts": timed,
+        "drift_p": drift,
     }
+
+
+def swing_times(block: RigidBlock, theta: float, model: str) -> list[float]:
+    """Return the times [s] between the impacts that are timed, after a fall from `theta` [rad]."""
+    times: list[float] = []
+    top = next_amplitude(block, theta, model)
+    while len(times) < IMPACTS - 1 and top >= LEAST_SWING * block.alpha:
+        times.append(2.0 * quarter_period(block, top, model))
+        top = next_amplitude(block, top, model)
+    return times
 
 
 def next_amplitude(block: RigidBlock, theta: float, model: str) -> float:
@@ -215,30 +239,44 @@ def read(folder: Path) -> pd.DataFrame:
 
 def table_text(rows: pd.DataFrame) -> str:
     """Return, for each source and tilt, the largest errors over the aspect ratios."""
-    lines = rows.groupby(["source", "tilt"], sort=False)[["period_error", "decay_error"]].max()
-    cells = lines["period_error"].map(scientific) + " " + lines["decay_error"].map(scientific)
-    table = cells.unstack("tilt").rename_axis(index=None, columns="θ0/α")
-    head = "Largest relative error of the time between impacts and of the next rotation:"
-    return f"{head}\n{table.loc[list(rows['source'].unique())].to_string()}"
+    lines = errors(rows, ["source", "tilt"])
+    both = lines["period_error"].map(scientific) + " " + lines["decay_error"].map(scientific)
+    tables = {
+        "Largest relative error of the time between impacts and of the next rotation:": both,
+        f"Largest drift over up to {IMPACTS} impacts [1/p]:": lines["drift_p"].map(scientific),
+    }
+    order = list(rows["source"].unique())
+    return "\n\n".join(
+        f"{head}\n"
+        f"{cells.unstack('tilt').rename_axis(index=None, columns='θ0/α').loc[order].to_string()}"
+        for head, cells in tables.items()
+    )
+
+
+def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return the largest errors of each group of rows."""
+    sizes = rows.assign(drift_p=rows["drift_p"].abs())
+    return sizes.groupby(by, sort=False)[["period_error", "decay_error", "drift_p"]].max()
 
 
 def headline(folder: Path) -> str:
     """Say to what each source follows the closed forms of its model, at worst."""
-    worst = read(folder).groupby("source", sort=False)[["period_error", "decay_error"]].max()
-    words = [f"{name} {scientific(value)}" for name, value in worst.max(axis=1).items()]
+    worst = errors(read(folder), ["source"])[["period_error", "decay_error"]].max(axis=1)
+    words = [f"{name} {scientific(value)}" for name, value in worst.items()]
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
 
 
 def paragraph(folder: Path) -> str:
-    """Say how far period and decay of each source are from the closed forms of its model."""
-    rows = read(folder).groupby("source", sort=False)[["period_error", "decay_error"]].max()
+    """Say how far period, decay and drift of each source are from its model's closed forms."""
     words = [
-        f"{source} {scientific(line['period_error'])} and {scientific(line['decay_error'])}"
-        for source, line in rows.iterrows()
+        f"{source} {scientific(line['period_error'])}, {scientific(line['decay_error'])} and "
+        f"{scientific(line['drift_p'])}/p"
+        for source, line in errors(read(folder), ["source"]).iterrows()
     ]
     return (
         "Free rocking against the closed forms of each source's model, largest relative error of "
-        f"the time between two impacts and of the rotation after one: {', '.join(words)}."
+        "the time between two impacts, of the rotation after one, and the drift over up to "
+        f"{IMPACTS} impacts: {'; '.join(words)}."
     )
 
 

@@ -9,6 +9,7 @@ import pandas as pd
 
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
+from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.kit.executors import Executor, choose
@@ -27,6 +28,7 @@ from studies.measures.claims import (
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
 
 DEFAULT_SOURCES = {
     2: ("exact", "rk4", "average-acceleration"),
@@ -75,9 +77,8 @@ def command(
     if sources is not None:
         check_sources(sources)
     executor = choose(jobs, time_limit, cluster)
-    products = [*(f"figure-{number}.csv" for number in HISTORIES), TABLE]
     rows: list[Row] = []
-    with own_folder(out, "histories", products, sources=sources):
+    with own_folder(out, STUDY.name, STUDY.products, module=__name__, sources=sources):
         found = []
         for number in figure:
             told, finding = one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)

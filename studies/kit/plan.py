@@ -83,6 +83,7 @@ def fill(study: Study, plan: Plan, out: Path, running: _Running) -> list[Row]:
         out,
         study.name,
         plan.jobs,
+        module=study.module,
         executor=choose(running.jobs, running.time_limit, running.cluster, plan.ask),
         reduce=plan.reduce,
         settings=plan.settings,

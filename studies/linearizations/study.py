@@ -13,6 +13,7 @@ from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit import provenance
 from studies.kit.runner import own_folder
+from studies.linearizations import STUDY
 from studies.measures.claims import (
     Claim,
     Finding,
@@ -28,10 +29,6 @@ from studies.measures.words import listed, part
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PRODUCTS = (
-    *("linearizations.csv", "quantiles.csv", "findings.csv"),
-    *("linearizations.png", "findings.txt"),
-)
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
@@ -103,7 +100,7 @@ def command(*, out: Path) -> int:
     out
         Folder for the results; made if there is none.
     """
-    with own_folder(out, "linearizations", PRODUCTS):
+    with own_folder(out, STUDY.name, STUDY.products, module=__name__):
         errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
         tables = {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
         for name, table in tables.items():

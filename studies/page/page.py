@@ -123,7 +123,12 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
 def _provenance(folder: Path) -> list[tuple[str, str]]:
     """Return what the page says of versions and machine."""
     record = json.loads((folder / "provenance.json").read_text())
-    versions = {**record["engines"], "python": record["python"], **record["packages"]}
+    versions = {
+        **record["engines"],
+        "python": record["python"],
+        **record["packages"],
+        **record["tools"],
+    }
     return [
         ("project", f"{record['version']}, commit {(record['git'] or {}).get('commit', '-')}"),
         ("versions", ", ".join(f"{name} {version}" for name, version in versions.items())),

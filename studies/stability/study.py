@@ -18,6 +18,7 @@ from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
 from studies.sources.registry import Source
+from studies.stability import STUDY
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
 from studies.stability.report import headline, paragraph, pictures, report
@@ -25,7 +26,6 @@ from studies.stability.sensitivity import condition_number, reduce_sensitivity, 
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
 METHODS = (
     "exact",
     "rk4",
@@ -106,11 +106,12 @@ def stability(
             *step_jobs(sources, quick),
             *sensitivity_jobs(sources, quick),
         ],
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick, "bands": BANDS},
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
         tables="table",
     )
 

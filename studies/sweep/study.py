@@ -24,12 +24,11 @@ from studies.measures.differences import (
 )
 from studies.measures.findings import findings
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sweep import STUDY
 from studies.sweep.claims import claims, first_claim, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PRODUCTS = ("sweep.csv", "summary.csv", "findings.csv", "findings.txt", "provenance.json")
 
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
@@ -112,10 +111,11 @@ def sweep(
         folder,
         "sweep",
         sweep_jobs(numbers, sources, effort),
+        module=__name__,
         executor=executor,
         settings=asdict(effort),
         growing={"figure": numbers, "source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

@@ -23,13 +23,12 @@ from studies.measures.differences import (
     with_reference,
 )
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.validate import STUDY
 from studies.validate.cases import draw
 from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PRODUCTS = ("validate.csv", "errors.csv", "findings.txt", "provenance.json")
 
 
 def command(
@@ -106,10 +105,11 @@ def validate(
         folder,
         "validate",
         jobs,
+        module=__name__,
         executor=executor,
         settings={"seed": seed, **asdict(effort)},
         growing={"case": range(cases), "source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

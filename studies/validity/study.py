@@ -17,6 +17,7 @@ from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.sources.registry import resolve
+from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
 from studies.validity.report import claims, compared, findings, first_claim
 
@@ -39,10 +40,6 @@ MOST_NEEDED = 8.0
 """... where that is no more: near N = 0 it grows without bound, and PyBullet takes 10 at most."""
 
 DEFAULT_SOURCES = ("pybullet:fixed", "mujoco:fixed")
-PRODUCTS = (
-    *("validity.csv", "map.csv", "compared.csv"),
-    *("validity.png", "findings.txt", "provenance.json"),
-)
 
 
 def command(
@@ -116,6 +113,7 @@ def validity(
         folder,
         "validity",
         jobs,
+        module=__name__,
         executor=executor,
         reduce=_reduce,
         settings={
@@ -124,7 +122,7 @@ def validity(
             "factors": factors,
         },
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

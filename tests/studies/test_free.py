@@ -2,11 +2,13 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic import RigidBlock, SinePulse, peak_ratios, simulate
+from analytic.criteria import free_amplitude, quarter_period
 from analytic.response import Outcome
 from engines.scene import ACCURACIES
 from studies.free import study as free
@@ -16,6 +18,7 @@ from studies.free.study import (
     next_amplitude,
     reduce,
     released,
+    swing_times,
     tilting_amplitude,
     turning_points,
 )
@@ -84,6 +87,45 @@ def test_the_rotation_after_an_impact(engine, aspect, tilt):
     row = reduce(job, ask(job, resolve(engine)))
     assert row["swings"] == free.SWINGS
     assert row["decay_error"] < 0.5 / ACCURACIES["standard"] ** 2
+
+
+def test_the_impacts_that_are_timed():
+    slender, squat = (RigidBlock(width=1.0, height=aspect) for aspect in (4.0, 1.5))
+    fall = 0.9 * slender.alpha
+    times = swing_times(slender, fall, "exact")
+    assert len(times) == free.IMPACTS - 1
+    last = free_amplitude(slender, fall, free.IMPACTS - 1)
+    assert times[-1] == pytest.approx(2.0 * quarter_period(slender, last), rel=1e-12)
+    # a squat block loses its swings before
+    count = len(swing_times(squat, 0.9 * squat.alpha, "exact"))
+    least = free.LEAST_SWING * squat.alpha
+    assert free_amplitude(squat, 0.9 * squat.alpha, count) >= least
+    assert free_amplitude(squat, 0.9 * squat.alpha, count + 1) < least
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("aspect", [1.5, 10.0])
+def test_many_impacts_drift_no_further_than_their_errors_add_up(engine, aspect):
+    """An error of (p dt)^2 / 2 an impact, over some twenty of them."""
+    job = released(aspect, 0.9, engine)
+    row = reduce(job, ask(job, resolve(engine)))
+    error = 0.5 / ACCURACIES["standard"] ** 2
+    assert row["timed_impacts"] > 5
+    assert abs(row["drift_p"]) < error * row["timed_impacts"]
+
+
+def test_a_late_impact_is_a_drift():
+    job = released(4.0, 0.5, "exact")
+    response = ask(job, resolve("exact"))
+    late = response.impacts[: free.IMPACTS - 1] + tuple(
+        impact._replace(time=impact.time + 1e-3 / job.block.p)
+        for impact in response.impacts[free.IMPACTS - 1 :]
+    )
+    assert abs(reduce(job, response)["drift_p"]) < 1e-9
+    row = reduce(job, replace(response, impacts=late))
+    assert row["drift_p"] == pytest.approx(1e-3, abs=1e-9)
+    missed = reduce(job, replace(response, impacts=late[: free.IMPACTS - 1]))
+    assert math.isnan(missed["drift_p"])
 
 
 def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):
