@@ -6,7 +6,7 @@ from concurrent.futures import TimeoutError
 
 from pebble import ProcessExpired
 
-from analytic.response import Response
+from analytic.response import Reason, Response
 from studies.kit.jobs import Job, ask, one_line, short
 from studies.sources.registry import Source
 
@@ -30,7 +30,8 @@ def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
     try:
         return result()
     except TimeoutError:
-        return Response.failure(f"no result within the time limit of {time_limit_s:g} s")
+        words = f"no result within the time limit of {time_limit_s:g} s"
+        return Response.failure(words, reason=Reason.UNDECIDED)
     except ProcessExpired as error:
         return Response.failure(_cause_of_death(error.exitcode))
     except Exception as error:

@@ -76,6 +76,7 @@ REFERENCE = {
     "invalid": Column("", "why the reference does not hold here; empty where it does"),
     "verdict": Column("", "what an answer is worth, or what the pivot did"),
     "reason": Column("", "why, with the numbers"),
+    "failure": Column("", "kind of failure, where there is no result (analytic.response.Reason)"),
     "remedy": Column("", "first setting of those tried that avoids a failure"),
 }
 

@@ -11,9 +11,17 @@ WHOLE = 0.1
 
 def out_of(count: float, total: float) -> str:
     """Return "all 960", "none of 960" or "949 of 960"."""
-    if count == total:
+    if count == total > 1:
         return f"all {total:.0f}"
     return f"none of {total:.0f}" if count == 0 else f"{count:.0f} of {total:.0f}"
+
+
+def each_out_of(counts: Sequence[float], totals: Sequence[float]) -> str:
+    """Return several counts: "all 960", "949 and 955 of 960", "3 of 31 and all 27"."""
+    words = [out_of(*pair) for pair in zip(counts, totals, strict=True)]
+    if len(set(words)) > 1 and len(set(totals)) == 1:
+        return f"{listed([f'{count:.0f}' for count in counts])} of {totals[0]:.0f}"
+    return alike(words)
 
 
 def listed(words: Sequence[str], joint: str = "and") -> str:

@@ -4,14 +4,18 @@ import math
 
 import pandas as pd
 
+from analytic.response import Reason
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import listed, out_of
+from studies.measures.words import each_out_of, listed, out_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
 from studies.stability.sensitivity import FRICTION
+
+UNBOUNDED = (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)
+"""Failures in which a response has no bound."""
 
 REFERENCE = "exact"
 """The source that all others are held against."""
@@ -31,10 +35,13 @@ def first_claim(matrix: pd.DataFrame) -> str:
     valid = matrix["verdict"] != Verdict.INVALID.value
     asked = matrix[matrix["source"].map(is_engine) & valid]
     right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
-    words: dict[str, list[str]] = {}
+    counts: dict[str, list[tuple[int, int]]] = {}
     for source, good in right:
-        words.setdefault(preset_of(str(source)), []).append(out_of(int(good.sum()), len(good)))
-    parts = [f"{in_words(name)} {listed(words[name])}" for name in in_order(words)]
+        counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
+    parts = [
+        f"{in_words(name)} {each_out_of(*zip(*counts[name], strict=True))}"
+        for name in in_order(counts)
+    ]
     return f"Of extreme cases the engines get right: {', '.join(parts)}."
 
 
@@ -92,10 +99,11 @@ def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     tried = wrong[wrong["remedy"] != ""]
     mended = tried[tried["remedy"] != NOTHING]
     void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
-    unbounded = int(wrong["reason"].str.contains("not finite|thrown|BADQACC").sum())
+    unbounded = int(wrong["failure"].isin([reason.name for reason in UNBOUNDED]).sum())
     return [
         verdicts_sentence(matrix),
-        f"Answers that are not finite or throw the block away: {unbounded}; in which energy grows "
+        f"Answers that are not finite, throw the block away, or that the engine itself calls "
+        f"faulty: {unbounded}; in which energy grows "
         f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
         f"Another setting mends {len(mended)} of {len(wrong)} failures.",
         f"In {void['case'].nunique()} cases an engine differs where the reference itself does not "

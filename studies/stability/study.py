@@ -176,5 +176,6 @@ def judged(case: Extreme, source: str, response: Response) -> Row:
         "invalid": invalidity(case, source, exact),
         "verdict": found.verdict.value,
         "reason": found.reason,
+        "failure": response.reason.name if response.reason else "",
         "remedy": response.remedy if isinstance(response, Remedied) else "",
     }

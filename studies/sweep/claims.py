@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.words import alike, capital, listed, out_of, part
+from studies.measures.words import alike, capital, each_out_of, listed, out_of, part
 from studies.sources.registry import resolve
 
 
@@ -27,11 +27,11 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
     names = listed([source.partition(":")[0] for source in lines["source"]])
-    right = [out_of(row["agree"], row["cases"]) for _, row in lines.iterrows()]
+    right = each_out_of(list(lines["agree"]), list(lines["cases"]))
     verb = "get" if len(lines) > 1 else "gets"
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
     return capital(
-        f"{in_words(preset)}, {names} {verb} {alike(right)} outcomes right, and peaks wrong by "
+        f"{in_words(preset)}, {names} {verb} {right} outcomes right, and peaks wrong by "
         f"{alike(medians)} in the median and {alike(largest)} at most."
     )
 
@@ -64,9 +64,9 @@ def first_claim(lines: pd.DataFrame) -> str:
 
 
 def _short(preset: str, lines: pd.DataFrame) -> str:
-    wrong = [out_of(row["cases"] - row["agree"], row["cases"]) for _, row in lines.iterrows()]
+    wrong = each_out_of(list(lines["cases"] - lines["agree"]), list(lines["cases"]))
     largest = alike([part(error) for error in lines["max_error"]])
-    return f"{in_words(preset)} {alike(wrong)} outcomes are wrong, and peaks by up to {largest}"
+    return f"{in_words(preset)} {wrong} outcomes are wrong, and peaks by up to {largest}"
 
 
 def linearized(lines: pd.DataFrame) -> pd.DataFrame:
@@ -120,9 +120,8 @@ def verdict(table: pd.DataFrame) -> str:
 
 
 def _of_preset(name: str, lines: pd.DataFrame) -> str:
-    engines = f"{len(lines)} engines are" if len(lines) > 1 else "an engine is"
-    lost = [out_of(row["cases"] - row["right"], row["cases"]) for _, row in lines.iterrows()]
+    lost = each_out_of(list(lines["cases"] - lines["right"]), list(lines["cases"]))
     return (
-        f"{in_words(name)} {engines} off by up to {part(lines['median'].max())} in the median peak "
-        f"and {part(lines['max'].max())} in the worst, with {alike(lost)} outcomes wrong"
+        f"{in_words(name)} the largest rotation is off by {part(lines['median'].max())} in the "
+        f"median and {part(lines['max'].max())} at worst, and {lost} outcomes are wrong"
     )

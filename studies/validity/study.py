@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import simulate
-from analytic.response import Response
+from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -144,16 +144,16 @@ SLID_WIDTHS = 3e-4
 """... and one that moves along the base by this part has slid, five times the creep of a contact
 that holds."""
 
-LEFT = {"slid": "slid away", "thrown": "flew off"}
-"""Word of a failure's message -> verdict."""
+LEFT = {Reason.SLID: "slid away", Reason.THROWN: "flew off"}
+"""Reason of a failure that is an answer of the study -> verdict."""
 
 
 def _reduce(job: Job, response: Response) -> Row:
     row = summary(job, response)
     slip, hop = response.slip_m / job.block.width, response.hop_m / job.block.width
-    gone = [verdict for word, verdict in LEFT.items() if word in response.message]
-    if response.message:
-        verdict = gone[0] if gone else "failed"
+    gone = LEFT.get(response.reason) if response.reason else None
+    if response.outcome is Outcome.FAILED:
+        verdict = gone or "failed"
     elif slip > SLID_WIDTHS:
         verdict = "slid and lifted off" if hop > LIFTED_WIDTHS else "slid"
     else:

@@ -48,6 +48,9 @@ def test_lists_and_times():
     assert words.listed([]) == "none"
     assert words.listed(["a", "b", "c"]) == "a, b and c"
     assert words.alike(["1 %", "1 %"]) == "1 %"
+    assert words.each_out_of([949, 955], [960, 960]) == "949 and 955 of 960"
+    assert words.each_out_of([960, 960], [960, 960]) == "all 960"
+    assert words.each_out_of([3, 27], [31, 27]) == "3 of 31 and all 27"
     assert words.times(0.62) == "0.62 of" and words.times(192.4) == "192 times"
     assert words.duration(1.78e-3) == "1.78 ms" and words.duration(19.2e-6) == "19.2 µs"
 
@@ -77,7 +80,7 @@ def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
         ]
     )
     text = sweep.claims(lines)
-    assert "With the libraries' defaults, pybullet and mujoco get 9 of 10 and all 10" in text
+    assert "With the libraries' defaults, pybullet and mujoco get 9 and 10 of 10" in text
     assert "With steps that land on impacts, pybullet gets all 10 outcomes right" in text
     assert "housner 8 of 10 (2 falsely overturned)" in text
     table = sweep.preset_table(lines)
