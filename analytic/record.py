@@ -1,12 +1,17 @@
 """A ground motion known by equally spaced samples, and straight between them."""
 
+import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.checks import finite, positive
 from analytic.motion import FloatArray
+
+ROUNDING = 1e-12
+"""Part of a record that taking away its trend may leave of one that is nothing else."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -27,7 +32,8 @@ class Record:
     Raises
     ------
     ValueError
-        If dt is not positive and finite, or there are not two finite samples.
+        If dt is not positive and finite, if there are not two finite samples, or if the slopes or
+        integrals of the samples overflow.
     """
 
     dt: float
@@ -45,6 +51,10 @@ class Record:
             raise ValueError(f"samples[{bad[0]}] is {samples[bad[0]]}; it must be a finite number")
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
+        peak, duration = self.peak, self.duration
+        steepest, farthest = 2.0 * peak / self.dt, peak * duration * duration
+        if not math.isfinite(steepest + peak * duration + farthest + duration):
+            raise ValueError(f"peak is {peak:g} m/s2 and dt {self.dt:g} s; their motion overflows")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record):
@@ -65,13 +75,19 @@ class Record:
         return (self.samples.size - 1) * self.dt
 
     @property
+    def final_velocity(self) -> float:
+        """Velocity [m/s] that the base keeps after the record."""
+        return float(self._velocities()[-1])
+
+    @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times of the samples [s]."""
         return tuple(self._times().tolist())
 
     def scaled(self, factor: float) -> "Record":
         """Return the record with its acceleration multiplied; a negative factor mirrors it."""
-        return Record(dt=self.dt, samples=finite("factor", factor) * self.samples)
+        with np.errstate(over="ignore"):
+            return Record(dt=self.dt, samples=finite("factor", factor) * self.samples)
 
     def scaled_to(self, peak: float) -> "Record":
         """Return the record scaled to a largest absolute acceleration [m/s2].
@@ -84,6 +100,24 @@ class Record:
         if self.peak == 0.0:
             raise ValueError("the record is zero throughout; it cannot be scaled to a peak")
         return self.scaled(positive("peak", peak) / self.peak)
+
+    def detrended(self, kind: Literal["constant", "linear"]) -> "Record":
+        """Return the record without its mean, or without the straight line that fits it best.
+
+        A least-squares fit to the samples, by `scipy.signal.detrend`. The first and the last sample
+        become jumps of the acceleration, and the velocity need not end at zero exactly.
+
+        Raises
+        ------
+        ValueError
+            If nothing but rounding is left.
+        """
+        from scipy.signal import detrend
+
+        left = Record(dt=self.dt, samples=detrend(self.samples / (self.peak or 1.0), type=kind))
+        if left.peak <= ROUNDING:
+            raise ValueError(f"the record is its own {kind} trend; nothing is left without it")
+        return left.scaled(self.peak)
 
     def acceleration(self, t: ArrayLike) -> FloatArray:
         """Ground acceleration [m/s2] at the times `t` [s]; zero before and after the record."""

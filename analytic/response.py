@@ -30,6 +30,26 @@ _SENTENCES = {
 }
 
 
+class Reason(enum.Enum):
+    """Why there is no usable result; the value is the sentence that a reader sees."""
+
+    DIVERGED = "the state is not finite"
+    SANK = "the pivot sank into the base"
+    THROWN = "the block was thrown off the base"
+    SLID = "the pivot slid away along the base"
+    UNDECIDED = "not decided within the limits of time and steps"
+    FAULT = "the engine reports a fault of its own"
+    UNAVAILABLE = "the engine cannot do what was asked, or is not installed"
+    ERROR = "an error of the program, or a process that died"
+
+
+class Problem(NamedTuple):
+    """A reason, and the message with its numbers."""
+
+    reason: Reason
+    message: str
+
+
 class Impact(NamedTuple):
     """An impact of the block on its base, when the rotation passes through zero.
 
@@ -83,6 +103,8 @@ class Response:
         Seconds spent on what comes before the steps, where that was measured.
     message : str
         Why a response failed, or what a reader should know about it.
+    reason : Reason or None
+        Why it failed, without the numbers; None unless it did.
     history : History or None
         Present when samples were asked for.
     min_normal, friction_needed : float
@@ -106,6 +128,7 @@ class Response:
     wall_s: float = 0.0
     setup_s: float = 0.0
     message: str = ""
+    reason: Reason | None = None
     history: History | None = field(default=None, repr=False)
     min_normal: float = float("nan")
     friction_needed: float = float("nan")
@@ -114,7 +137,14 @@ class Response:
     hop_m: float = float("nan")
 
     @classmethod
-    def failure(cls, message: str, *, steps: int = 0, wall_s: float = 0.0) -> "Response":
+    def failure(
+        cls,
+        message: str,
+        *,
+        reason: Reason = Reason.ERROR,
+        steps: int = 0,
+        wall_s: float = 0.0,
+    ) -> "Response":
         """Make a failed response with its reason."""
         return cls(
             outcome=Outcome.FAILED,
@@ -122,4 +152,5 @@ class Response:
             steps=steps,
             wall_s=wall_s,
             message=message,
+            reason=reason,
         )

@@ -28,15 +28,18 @@ from analytic.kernels.excursions import (
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Law, Model, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Impact, Outcome, Response
+from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 
 OUTCOMES = (*list(Outcome), Outcome.FAILED)
 """In the order of the codes in `analytic.kernels.excursions`."""
 FAILURES = {
-    TOO_LONG: "the response takes too many steps",
-    BROKEN: "the solution overflows, or its steps vanish beside the time they start from",
+    TOO_LONG: Problem(Reason.UNDECIDED, "the response takes too many steps"),
+    BROKEN: Problem(
+        Reason.DIVERGED,
+        "the solution overflows, or its steps vanish beside the time they start from",
+    ),
 }
-"""What a reader is told of a failure, by its code."""
+"""Why a response failed, by its code."""
 
 LOOSEST = 1e-2
 """Largest tolerance that `simulate` takes."""
@@ -141,7 +144,8 @@ def respond(
 
     outcome = OUTCOMES[end.outcome]
     if outcome is Outcome.FAILED:
-        return Response.failure(FAILURES[end.outcome], steps=end.steps, wall_s=wall_s)
+        reason, message = FAILURES[end.outcome]
+        return Response.failure(message, reason=reason, steps=end.steps, wall_s=wall_s)
     impacts, uplifts, rests = read_log(log[: end.events], block.p)
     seen = int(np.searchsorted(notes.times, end.time, side="right"))
     history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import cast
 
-from analytic.response import Response
+from analytic.response import Problem, Reason, Response
 from engines.declaration import Engine, Stepping
 from engines.registry import find
 from engines.scene import Scene
@@ -58,7 +58,7 @@ def run(engine: str, scene: Scene) -> Response:
     try:
         world = build(asked, scene)
     except NotAvailableError as error:
-        return Response.failure(str(error))
+        return Response.failure(str(error), reason=Reason.UNAVAILABLE)
     built = time.perf_counter()
     try:
         response = simulate_world(
@@ -107,7 +107,7 @@ def simulate_world(
     stepper = Stepper(_policy(scene, dt_s, stepping, world.moment, resolution), scene, world.moment)
     take = _taker(world, stepping)
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
-    steps, looks, problem = 0, 0, ""
+    steps, looks, problem = 0, 0, None
     pose = world.pose()
     started = time.perf_counter()
     while not observer.done and not problem:
@@ -119,14 +119,25 @@ def simulate_world(
         problem = observer.broken
         if looks % LOOK_AROUND == 0 and not problem:
             late = time.perf_counter() - started > limit
-            problem = world.fault() or (f"not decided within {limit:g} s" if late else "")
+            problem = _fault(world) or (_undecided(f"{limit:g} s") if late else None)
         if steps >= scene.max_steps and not observer.done:
-            problem = problem or f"not decided within {steps} steps"
+            problem = problem or _undecided(f"{steps} steps")
     wall_s = time.perf_counter() - started
-    problem = world.fault() or problem
+    problem = _fault(world) or problem
     if problem:
-        return Response.failure(problem, steps=steps, wall_s=wall_s)
+        reason, message = problem
+        return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
     return observer.response(steps=steps, wall_s=wall_s)
+
+
+def _fault(world: World) -> Problem | None:
+    """Return what the engine says has gone wrong."""
+    message = world.fault()
+    return Problem(Reason.FAULT, message) if message else None
+
+
+def _undecided(limit: str) -> Problem:
+    return Problem(Reason.UNDECIDED, f"not decided within {limit}")
 
 
 def _policy(

@@ -3,9 +3,10 @@
 Every command is the module of its name; what it needs beside it is called after it (`contact`,
 `contact_report`, `contact_figure`). A case flows one way: `cases`, `selection`, `extremes`,
 `motions` and `accelerograms` pose it, `sources` answers (`peers`, `heyoka_peer`), `jobs`,
-`executors`, `cluster` and `runner` run it, `journal` and `provenance` keep it, `differences`,
-`energy` and `verdicts` judge it, `figures`, `diagrams` and `film` draw it, `chapters`, `report` and
-`page` show it. `arguments` and `posing` are the command line's.
+`executors`, `cluster` (`dask_client`, `alongside`, `worker`), `processes` and `runner` run it,
+`journal` and `provenance` keep it, `differences`, `energy` and `verdicts` judge it, `figures`,
+`diagrams` and `film` draw it, `chapters`, `report` and `page` show it. `arguments` and `posing` are
+the command line's.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
 """The command line: `rocking`, and `python -m studies`."""
 
-import io
 import sys
 
 from studies import page
 from studies.catalogue import STUDIES
-from studies.kit import app
+from studies.kit import app, signals, streams
 
-COMMANDS = (*STUDIES, page.REPORT, page.REDRAW)
+COMMANDS = (*STUDIES, page.REPORT, page.REDRAW, page.README)
 """Every command."""
 
 
@@ -18,11 +17,12 @@ def run(arguments: list[str]) -> int:
 
 def main() -> None:
     """Run the command that the arguments name, and exit."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            # a terminal without Greek letters shows question marks instead
-            stream.reconfigure(errors="replace")
-    sys.exit(run(sys.argv[1:]))
+    signals.install()
+    streams.prepare()
+    code = run(sys.argv[1:])
+    signals.ignore()
+    streams.finish()
+    sys.exit(code)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,10 @@ from studies import (
     contact,
     ensemble,
     free,
+    harmonic,
     histories,
     linearizations,
+    literature,
     overturning,
     precision,
     stability,
@@ -27,6 +29,8 @@ STUDIES: tuple[Study, ...] = (
     histories.STUDY,
     linearizations.STUDY,
     free.STUDY,
+    harmonic.STUDY,
+    literature.STUDY,
     validate.STUDY,
     precision.STUDY,
     precision.COST,
@@ -48,9 +52,11 @@ if TYPE_CHECKING:
     from studies.contact import study as _contact
     from studies.ensemble import study as _ensemble
     from studies.free import study as _free
+    from studies.harmonic import study as _harmonic
     from studies.histories import study as _histories
     from studies.kit.study import StudyModule
     from studies.linearizations import study as _linearizations
+    from studies.literature import study as _literature
     from studies.overturning import study as _overturning
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
@@ -62,5 +68,5 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_contact, _stability, _overturning, _validity, _ensemble),
+        *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

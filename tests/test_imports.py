@@ -5,9 +5,8 @@ import sys
 
 import pytest
 
-from analytic.kernels.compiled import forget_what_changed
-
 HEAVY = ("scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
+SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
 
 
 def loaded_by(statement):
@@ -33,21 +32,5 @@ def test_imports_are_light(module):
     assert not loaded_by(f"import {module}") & set(HEAVY)
 
 
-def test_the_command_line_starts_without_the_reference():
-    assert "numba" not in loaded_by("import studies.__main__")
-
-
-def test_compiled_kernels_are_forgotten_when_a_module_changes(tmp_path):
-    module, cache = tmp_path / "module.py", tmp_path / "__pycache__"
-    cache.mkdir()
-    module.write_text("a = 1")
-    for name in ("module.f-1.py311.nbi", "module.f-1.py311.1.nbc", "module.cpython-311.pyc"):
-        (cache / name).touch()
-    forget_what_changed(tmp_path)
-    assert {path.name for path in cache.iterdir()} == {"kernels.txt", "module.cpython-311.pyc"}
-    (cache / "module.f-1.py311.nbi").touch()
-    forget_what_changed(tmp_path)
-    assert (cache / "module.f-1.py311.nbi").exists()
-    module.write_text("a = 2")
-    forget_what_changed(tmp_path)
-    assert not (cache / "module.f-1.py311.nbi").exists()
+def test_nothing_is_loaded_before_signals_are_dealt_with():
+    assert not loaded_by("import studies.__main__") & set(SOON)

@@ -1,13 +1,24 @@
-"""One decorator for every compiled kernel of the reference."""
+"""One decorator for every compiled kernel of the reference, and where the compiled code is kept."""
 
 import hashlib
-from collections.abc import Callable
+import os
+import stat
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
+from shutil import rmtree
 from typing import Any, TypeVar, cast
 
 import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+_numba: Any = numba.config
+
+SOURCES = Path(__file__).parents[__name__.count(".") - 1]
+"""The folder of the package that holds the kernels and all that they call."""
 
 
 def kernel(function: Function) -> Function:
@@ -16,28 +27,69 @@ def kernel(function: Function) -> Function:
     No operation is merged with another: whether it is would depend on what the compiler inlines,
     and the last digit on which process compiled.
     """
-    compile_ = numba.njit(cache=True, nogil=True, error_model="numpy")
-    return cast(Function, compile_(function))
+    folder = kept_in()
+    compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+    with _cache_folder(folder):
+        return cast(Function, compile_(function))
 
 
-def forget_what_changed(folder: Path) -> None:
-    """Delete a folder's compiled kernels if one of its modules has changed since.
+@cache
+def kept_in() -> Path | None:
+    """Return the folder of the compiled kernels; None where no place can be written."""
+    return folder_for(SOURCES, places())
 
-    numba sees a change of a kernel's own module, not of a kernel that it calls in another one.
+
+def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
+    """Return a folder in the first of these places that can be written, for these sources alone.
+
+    It is named by what all modules of the package say: numba sees a change of a kernel's own
+    module, not of a kernel that it calls in another one.
     """
-    text = b"\0".join(path.read_bytes() for path in sorted(folder.rglob("*.py")))
-    stamp, cache = hashlib.sha256(text).hexdigest(), folder / "__pycache__"
-    mark = cache / "kernels.txt"
+    digest = hashlib.sha256()
+    for path in sorted(sources.rglob("*.py")):
+        digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")
+    name = f"kernels-{digest.hexdigest()[:16]}"
+    for place in where:
+        with suppress(OSError):
+            (place / name).mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=place / name).close()
+            if place.parent == sources:
+                _forget(path for path in place.glob("kernels-*") if path.name != name)
+            return place / name
+    return None
+
+
+def places() -> Iterator[Path]:
+    """Yield where compiled kernels may be kept: as numba would, then where temporary files are."""
+    if _numba.CACHE_DIR:
+        yield Path(_numba.CACHE_DIR)
+    yield SOURCES / "__pycache__"
+    with suppress(RuntimeError):
+        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking"
+    with suppress(OSError):
+        yield _private(Path(tempfile.gettempdir(), f"rocking-{os.getuid()}"))
+
+
+def _private(folder: Path) -> Path:
+    """Make a folder that nobody else can write to: what lies in it will be run."""
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise PermissionError(f"{folder} is open to others")
+    return folder
+
+
+def _forget(folders: Iterable[Path]) -> None:
+    for folder in folders:
+        rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _cache_folder(folder: Path | None) -> Iterator[None]:
+    """Let numba keep what is decorated meanwhile in a folder; it asks when it decorates."""
+    before = _numba.CACHE_DIR
+    _numba.CACHE_DIR = str(folder or "")
     try:
-        if mark.is_file() and mark.read_text() == stamp:
-            return
-        for kept in folder.rglob("*.nb[ci]"):
-            kept.unlink(missing_ok=True)
-        cache.mkdir(exist_ok=True)
-        mark.write_text(stamp)
-    except OSError:
-        # a folder that cannot be written holds no kernels of an earlier version either
-        return
-
-
-forget_what_changed(Path(__file__).parents[1])
+        yield
+    finally:
+        _numba.CACHE_DIR = before

@@ -6,7 +6,7 @@ of the steps; what lies between two steps is interpolated.
 
 import math
 
-from analytic.response import Impact, Outcome, Response
+from analytic.response import Impact, Outcome, Problem, Reason, Response
 from engines.scene import Scene
 from engines.watching.history import sample
 from engines.watching.swing import Row, Swing, extrapolated
@@ -58,8 +58,8 @@ class Observer:
         Whether the block is aloft at the last row.
     done : bool
         Whether the response is decided.
-    broken : str
-        Why the response is no longer that of a rocking block, or an empty string.
+    broken : Problem or None
+        Why the response is no longer that of a rocking block.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class Observer:
         self._overturned = self._turned = False
         self._begin(scene)
         self.done = False
-        self.broken = ""
+        self.broken: Problem | None = None
 
     def _begin(self, scene: Scene) -> None:
         """Begin at rest, or in a swing that no uplift began."""
@@ -107,7 +107,7 @@ class Observer:
         """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
         x, z, theta, rate = pose
         if not math.isfinite(x + z + theta + rate):
-            self.broken = "the engine's state is not finite"
+            self.broken = Problem(Reason.DIVERGED, "the engine's state is not finite")
             return
         row = Row(time, time - self._ahead * dt_s, theta, rate)
         sine, cosine = math.sin(theta), math.cos(theta)
@@ -137,11 +137,14 @@ class Observer:
         width = 2.0 * self._half_width
         self._sink, self._highest = max(self._sink, -depth), max(self._highest, depth)
         if depth < -SINK_WIDTHS * width:
-            self.broken = f"the pivot sank {-depth:.3g} m into the base"
+            words = f"the pivot sank {-depth:.3g} m into the base"
+            self.broken = Problem(Reason.SANK, words)
         elif depth > THROWN_WIDTHS * width:
-            self.broken = f"the block was thrown {depth:.3g} m off the base"
+            words = f"the block was thrown {depth:.3g} m off the base"
+            self.broken = Problem(Reason.THROWN, words)
         elif self._slide > SLIDE_WIDTHS * width:
-            self.broken = f"the pivot slid {self._slide:.3g} m along the base"
+            words = f"the pivot slid {self._slide:.3g} m along the base"
+            self.broken = Problem(Reason.SLID, words)
 
     def _aloft(self, row: Row, dt_s: float) -> None:
         side = math.copysign(1.0, row.theta)

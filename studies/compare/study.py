@@ -11,9 +11,9 @@ import numpy as np
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from studies.cases.accelerograms import Units
+from studies.cases.accelerograms import Baseline, Units
 from studies.cases.paper import free_rocking_window
-from studies.drawing.comparison import draw, json_lines, table_text
+from studies.drawing.comparison import baseline_note, draw, json_lines, table_text
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -45,6 +45,7 @@ def command(
     units: Units | None = None,
     scale: Positive | None = None,
     pga: Positive | None = None,
+    baseline: Baseline | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     step: Positive | None = None,
@@ -73,14 +74,18 @@ def command(
     half_cycles
         Number of half cycles, instead of --pulse.
     record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, or a table of time [s] and
-        acceleration. It is straight between its samples.
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
+        a table of time [s] and acceleration. It is straight between its samples.
     units
         Of the record's acceleration, where the file does not state them.
     scale
         Factor on the record's acceleration.
     pga
         Scale the record to this largest absolute acceleration [g].
+    baseline
+        Correct the record, before it is scaled, by what scipy.signal.detrend takes away: its mean
+        (constant) or the line that fits it best (linear). By default it is taken as it is, and what
+        velocity it leaves the base with is reported.
     sources
         exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
         rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in pybullet:naive.
@@ -107,14 +112,16 @@ def command(
     block = posed_block(width, height)
     if record is None:
         refuse_given(
-            {"units": units, "scale": scale, "pga": pga},
+            {"units": units, "scale": scale, "pga": pga, "baseline": baseline},
             "only with --record",
         )
         motion: Motion = posed_pulse(amplitude, omega, pulse, half_cycles)
+        note = ""
     else:
         shape = {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles}
         refuse_given(shape, "only without --record")
-        motion = posed_record(record, units, scale, pga)
+        motion = posed_record(record, units, scale, pga, baseline)
+        note = baseline_note(motion, baseline)
     window = _window(block, motion, duration)
     times = np.linspace(0.0, window, 1501) if plot else None
     executor = choose(jobs, time_limit, cluster)
@@ -127,7 +134,7 @@ def command(
         effort=Effort(step, accuracy),
         executor=executor,
     )
-    print(json_lines(rows) if json else table_text(block, motion, window, rows))
+    print(json_lines(rows, note) if json else table_text(block, motion, window, rows, note))
     if plot:
         draw(rows, block, motion, plot)
     return exit_code(rows)

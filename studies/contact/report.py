@@ -8,21 +8,18 @@ import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import BEST, BOTH, DEFAULT
+from engines.factors import BEST, DEFAULT
+from studies.contact.claims import errors_of, findings, first_claim, name_of, overview
 from studies.contact.variants import AS_BEST, BY_DEFAULT, preset_values
 from studies.kit import provenance
+from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
-from studies.stability.report import left_aligned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
-
-NOTABLE, NOTABLE_RATIO = 1e-3, 5e-3
-"""A setting that moves no peak by more than the first, and the velocity ratio of impacts by no more
-than the second, both relative, makes no difference worth a sentence."""
 
 
 def report(folder: Path) -> str:
@@ -51,9 +48,14 @@ def report(folder: Path) -> str:
 
 
 def headline(folder: Path) -> str:
-    """Return, for each engine, its errors with the best settings and with the defaults."""
+    """Return, for each engine, the tuned setting that matters most."""
+    return first_claim(_read(folder / "variants.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Return, for each engine, the errors of its presets and the settings that matter most."""
     lines = _read(folder / "variants.csv")
-    return " ".join(_overview(lines, engine) for engine in lines["engine"].unique())
+    return " ".join(overview(lines, engine) for engine in lines["engine"].unique())
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
@@ -108,11 +110,6 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def name_of(line: "pd.Series[Any]") -> str:
-    """Return a variant's name."""
-    return f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
-
-
 def variants_text(lines: pd.DataFrame) -> str:
     """Return all variants as an aligned table."""
     shown = pd.DataFrame(
@@ -154,7 +151,7 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
                     "set": ", ".join(f"{name} {value}" for name, value in values.items()),
                     "moves": math.nan if left is None else left["moved"],
                     "turns": math.nan if left is None else left["ratio_moved"],
-                    "without": "-" if left is None else _errors(left),
+                    "without": "-" if left is None else errors_of(left),
                     "defaults": _with_ratio(naive),
                     "alone": _with_ratio(alone),
                     "weight": _weight(left, alone),
@@ -177,7 +174,7 @@ def _find(
 
 def _with_ratio(line: "pd.Series[Any]") -> str:
     ratio = float(line["ratio_over_eta"])
-    return _errors(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
+    return errors_of(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
 
 
 def _weight(*found: "pd.Series[Any] | None") -> float:
@@ -186,13 +183,6 @@ def _weight(*found: "pd.Series[Any] | None") -> float:
     if any(line["worse"] for line in lines):
         return math.inf
     return max(float(line[name]) for line in lines for name in ("moved", "ratio_moved"))
-
-
-def _errors(line: "pd.Series[Any]") -> str:
-    broken = int(line["failed"]) + int(line["wrong"])
-    parts = [scientific(float(line["max_error"]))] if math.isfinite(line["max_error"]) else []
-    parts += [f"{broken} of {line['cases']} failed or wrong"] if broken else []
-    return ", ".join(parts) or "-"
 
 
 def recommendation_text(lines: pd.DataFrame) -> str:
@@ -210,63 +200,3 @@ def recommendation_text(lines: pd.DataFrame) -> str:
         }
     )
     return left_aligned(shown.astype(str))
-
-
-def findings(lines: pd.DataFrame) -> str:
-    """Return the findings in sentences, from the numbers."""
-    return "\n".join(
-        sentence for engine in lines["engine"].unique() for sentence in _findings(lines, engine)
-    )
-
-
-WAYS = {
-    BEST: "at a fixed step",
-    "landing": "where steps land on impacts",
-    DEFAULT: "with the library's defaults at the same step",
-}
-"""Preset -> how it is used in the study, in words."""
-
-
-def _overview(lines: pd.DataFrame, engine: str) -> str:
-    base = lines[(lines["engine"] == engine) & (lines["factor"] == "")]
-    lines_of = {line["preset"]: line for _, line in base.iterrows()}
-    order = [BEST, *(name for name in lines_of if name not in BOTH), DEFAULT]
-    parts = [
-        f"{_errors(lines_of[name])} {WAYS.get(name, f'with the preset {name}')}"
-        for name in order
-        if name in lines_of
-    ]
-    return f"{engine}: largest error {', '.join(parts)}."
-
-
-def _findings(lines: pd.DataFrame, engine: str) -> list[str]:
-    mine = lines[lines["engine"] == engine]
-    varied = mine[(mine["preset"] == BEST) & (mine["factor"] != "")]
-    whole = varied[~varied["worse"]]
-    still = (whole["moved"] < NOTABLE) & (whole["ratio_moved"] < NOTABLE_RATIO)
-    costly = whole.sort_values("moved", ascending=False).head(5)
-    bent = whole.sort_values("ratio_moved", ascending=False).head(5)
-    broken = varied[varied["worse"]]
-    traps = mine[mine["trap"] != ""]
-    sentences = [
-        _overview(lines, engine),
-        "Peaks move most by " + _listed(costly, "moved") + ".",
-        "The impact depends most on " + _listed(bent, "ratio_moved") + ".",
-        f"Without visible effect (peaks {NOTABLE:g}, velocity ratios {NOTABLE_RATIO:g}): "
-        f"{_listed(whole[still])}.",
-        "Failed, or more wrong outcomes than the preset as it is: " + _listed(broken) + ".",
-    ]
-    for _, line in traps.iterrows():
-        sentences.append(
-            f"Trap: {name_of(line)} (from {line['preset']}): {line['trap']}; largest error "
-            f"{_errors(line)}{line['message'] and ', ' + line['message']}."
-        )
-    return sentences
-
-
-def _listed(lines: pd.DataFrame, column: str = "") -> str:
-    names = [
-        name_of(line) + (f" ({scientific(line[column])})" if column else "")
-        for _, line in lines.iterrows()
-    ]
-    return "; ".join(names) or "none"

@@ -14,7 +14,8 @@ from engines import ENGINES, core_engines
 from engines.declaration import Stepping
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.contact.report import headline, pictures, report
+from studies.contact import STUDY
+from studies.contact.report import headline, paragraph, pictures, report
 from studies.contact.variants import OWN_STEP, Variant, variants
 from studies.kit.arguments import Count, Positive, check_engines, several
 from studies.kit.executors import Executor, choose
@@ -23,9 +24,8 @@ from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.energy import SAMPLES, energy_drift, growth
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-PRODUCTS = ("contact.csv", "variants.csv", "contact.png", "findings.txt")
 STEP, QUICK_STEP = 1e-3, 2e-3
 """p dt of every variant but those that are about the step."""
 QUICK_ASPECTS = (2, 4)
@@ -86,11 +86,12 @@ def contact(folder: Path, engines: Sequence[str], *, quick: bool, executor: Exec
             for variant in all_variants(engines)
             for kind, case in cases(quick)
         ],
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick},
         growing={"engine": engines},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 

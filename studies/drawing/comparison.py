@@ -11,25 +11,32 @@ import pandas as pd
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse
+from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.simulate import strongest
 from studies.cases.paper import PULSES
 from studies.kit.journal import Row
 from studies.measures.differences import scientific
 
+DRIFT = 1e-6
+"""Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
 
-def json_lines(rows: list[Row]) -> str:
-    """Return one JSON object a line; a peak that is not finite is null."""
+
+def json_lines(rows: list[Row], note: str = "") -> str:
+    """Return one JSON object a line; a peak that is not finite is null, a note in each message."""
     names = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
     objects: list[dict[str, Any]] = [{name: row[name] for name in names} for row in rows]
     for item in objects:
+        item["message"] = "; ".join(words for words in (item["message"], note) if words)
         if not math.isfinite(item["peak_ratio"]):
             item["peak_ratio"] = None
     return "\n".join(json.dumps(item, allow_nan=False) for item in objects)
 
 
-def table_text(block: RigidBlock, motion: Motion, window: float, rows: list[Row]) -> str:
-    """Return the table with its head, and the messages under it."""
+def table_text(
+    block: RigidBlock, motion: Motion, window: float, rows: list[Row], note: str = ""
+) -> str:
+    """Return the table with its head, a note on the motion in it, and the messages under it."""
     table = pd.DataFrame(
         {
             "source": [row["source"] for row in rows],
@@ -50,6 +57,7 @@ def table_text(block: RigidBlock, motion: Motion, window: float, rows: list[Row]
             f"α = θcr = {block.alpha:.5g} rad, p = {block.p:.5g} rad/s",
             f"ground  {motion_name(motion)}, {strongest(motion) / block.gravity:.6g} g, "
             f"{motion_details(motion)}; observed for {window:.4g} s",
+            *([f"base    {note}"] if note else []),
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
             f"valid   {validity(block, motion)}",
@@ -90,6 +98,19 @@ def motion_details(motion: Motion) -> str:
     speed = float(np.abs(motion.velocity(times)).max())
     step = motion.duration / (times.size - 1)
     return f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s, {motion.duration:.4g} s"
+
+
+def baseline_note(record: Record, baseline: str | None) -> str:
+    """Say how a record was corrected, and what velocity it leaves the base with; or nothing."""
+    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
+    largest = float(np.abs(record.velocity(record.breakpoints)).max())
+    if abs(record.final_velocity) > DRIFT * largest:
+        part = abs(record.final_velocity) / largest
+        words.append(
+            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
+            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
+        )
+    return "; ".join(words)
 
 
 def _peak(row: Row) -> str:

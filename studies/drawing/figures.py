@@ -11,6 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.kit.drafts import draft
+
 LOWEST = 1e-16
 """Errors below are drawn here, on the floor of double precision."""
 OVERTURNED = "overturned"
@@ -223,9 +225,8 @@ def _handle(source: str) -> Line2D:
 
 def save(drawing: Figure, path: Path) -> None:
     """Write a figure in one piece, in the format of the file's suffix."""
-    draft = path.with_name(f".part.{path.name}")
-    drawing.savefig(draft, dpi=130)
-    draft.replace(path)
+    with draft(path) as file:
+        drawing.savefig(file, format=path.suffix[1:], dpi=130)
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:

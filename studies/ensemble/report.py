@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.agreement import CLOSE
+from studies.ensemble.claims import claims
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
 from studies.measures.differences import scientific
 
@@ -113,20 +113,3 @@ def _block_table(block: pd.DataFrame) -> str:
         }
     )
     return shown.to_string(index=False)
-
-
-def claims(agreed: pd.DataFrame) -> list[str]:
-    """Hold the claim that statistics are predicted where single responses are not."""
-    lines = []
-    for source, group in agreed.groupby("source", sort=False):
-        predicted = np.average(group["predicted"], weights=group["cases"])
-        apart = (group["capacity_ratio"] - 1.0).abs().max()
-        sure = (group["ratio_low"] > 1.0) | (group["ratio_high"] < 1.0)
-        singles = f"{predicted:.0%} of single responses predicted within {CLOSE:.0%}"
-        rejected, tests = int(group["ks_rejected"].sum()), int(group["ks_tests"].sum())
-        lines.append(
-            f"{source}: {singles}; the fitted capacity is off by up to {apart:.1%}, by more than "
-            f"resampling explains for {int(sure.sum())} of {len(group)} blocks; the peaks' "
-            f"distributions differ (p < 0.05) at {rejected} of {tests} intensities."
-        )
-    return lines

@@ -6,14 +6,16 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 import pandas as pd
+from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from analytic.record import Record
-from studies.cases.accelerograms import Units, read_record
+from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
-from studies.ensemble.agreement import CLOSE, agreement, confusion
+from studies.ensemble import STUDY
+from studies.ensemble.agreement import agreement, confusion
+from studies.ensemble.claims import first_claim, verdict
 from studies.ensemble.fragility import fragilities
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
@@ -54,7 +56,6 @@ DEFAULT_SOURCES = (
 )
 
 TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
-PRODUCTS = ("ensemble.csv", *TABLES, "ensemble.png", "findings.txt", "provenance.json")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,20 +85,27 @@ def drawn(family: str, count: int, seed: int) -> list[Record]:
     return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
 
 
-def recorded(paths: Sequence[Path], units: str | None) -> list[Record]:
-    """Read records, all of the same units where they state none.
+def recorded(
+    paths: Sequence[Path], units: str | None, baseline: Baseline | None = None
+) -> list[Record]:
+    """Read records, all of the same units where they state none, and correct them.
 
     Raises
     ------
     BadInputError
-        If one cannot be read, or does not move.
+        If one cannot be read, does not move, or is nothing but its trend.
     """
-    motions = [read_record(path, units, "--records") for path in paths]
-    for path, motion in zip(paths, motions, strict=True):
+    motions = []
+    for path in paths:
+        motion = read_record(path, units, "--records")
         if motion.peak == 0.0:
             raise BadInputError(
                 f"--records is {str(path)!r}; it is zero throughout, and must not be"
             )
+        try:
+            motions.append(corrected(motion, baseline))
+        except ValueError as error:
+            raise BadInputError(f"--records is {str(path)!r}; {error}") from error
     return motions
 
 
@@ -121,8 +129,9 @@ def command(
     family: Literal["noise", "near-fault", "ricker"] | None = None,
     motions: Count | None = None,
     seed: Count | None = None,
-    records: Annotated[tuple[Path, ...], several] = (),
+    records: Annotated[tuple[Path, ...] | None, Parameter(consume_multiple=True)] = None,
     units: Units | None = None,
+    baseline: Baseline | None = None,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
@@ -143,9 +152,13 @@ def command(
     seed
         Seed of the motions, a positive whole number, 1 by default; another one draws others.
     records
-        Recorded accelerograms instead of a family, PEER AT2 files or tables; at best several.
+        Recorded accelerograms instead of a family, files as `rocking compare --record` takes them;
+        at best several.
     units
         Of the records' acceleration, where the files do not state them.
+    baseline
+        Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
+        line that fits them best (linear).
     sources
         housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's rk45
         dop853 radau lsoda, beside the exact solution; an engine takes a preset after a colon.
@@ -159,19 +172,25 @@ def command(
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
-    if records:
+    if records is not None:
         refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
         refuse_repeats("--records", records)
-        name, ground = "records", recorded(records, units)
+        name, ground = "records", recorded(records, units, baseline)
     else:
-        refuse_given({"units": units}, "only with --records")
+        refuse_given({"units": units, "baseline": baseline}, "only with --records")
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
         ground = drawn(name, count, seed or 1)
     sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
     executor = choose(jobs, time_limit, cluster)
-    origin = [path.name for path in records] or [name, str(seed or 1)]
-    settings = {"motions": origin, "sizes_m": sizes, "intensities": intensities}
+    origin = [path.name for path in records] if records else [name, str(seed or 1)]
+    settings: dict[str, object] = {
+        "motions": origin,
+        "sizes_m": sizes,
+        "intensities": intensities,
+    }
+    if records:
+        settings["baseline"] = baseline or "none"
     rows = ensemble(cases, sources, out, executor=executor, settings=settings)
     print(report(out))
     return exit_code(rows)
@@ -202,10 +221,11 @@ def ensemble(
         folder,
         "ensemble",
         jobs,
+        module=__name__,
         executor=executor,
         settings=settings,
         growing={"motion": range(max(case.motion for case, _ in cases) + 1), "source": asked},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -244,14 +264,12 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
+    """Say whose statistics tests tell from the exact ones, and whose they do not."""
+    agreed = pd.read_csv(folder / "agreement.csv")
+    return first_claim(agreed[agreed["source"] != "exact"])
+
+
+def paragraph(folder: Path) -> str:
     """Say what became of the claim that statistics are predicted where responses are not."""
     agreed = pd.read_csv(folder / "agreement.csv")
-    words = [
-        f"{source} {np.average(rows['predicted'], weights=rows['cases']):.0%} and "
-        f"{(rows['capacity_ratio'] - 1.0).abs().max():.1%}"
-        for source, rows in agreed[agreed["source"] != "exact"].groupby("source", sort=False)
-    ]
-    return (
-        f"Share of single responses within {CLOSE:.0%} of the exact ones, and the largest error of "
-        f"the fitted overturning capacity: {', '.join(words)}."
-    )
+    return verdict(agreed[agreed["source"] != "exact"])

@@ -14,6 +14,7 @@ from analytic import RigidBlock, SinePulse, peak_ratios
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
+from studies.free import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -25,7 +26,6 @@ from studies.measures.differences import scientific
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PRODUCTS = ("free.csv", "free.png", "findings.txt")
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Rotations over alpha from which the blocks fall."""
@@ -95,11 +95,12 @@ def free(sources: Sequence[str], folder: Path, *, quick: bool, executor: Executo
         folder,
         "free",
         free_jobs(sources, quick),
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick},
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -226,7 +227,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
-    text = f"{table_text(read(folder))}\n\n{headline(folder)}"
+    text = f"{table_text(read(folder))}\n\n{paragraph(folder)}"
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -259,7 +260,14 @@ def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say how far each source is from the closed forms of its model."""
+    """Say to what each source follows the closed forms of its model, at worst."""
+    worst = errors(read(folder), ["source"])[["period_error", "decay_error"]].max(axis=1)
+    words = [f"{name} {scientific(value)}" for name, value in worst.items()]
+    return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
+
+
+def paragraph(folder: Path) -> str:
+    """Say how far period, decay and drift of each source are from its model's closed forms."""
     words = [
         f"{source} {scientific(line['period_error'])}, {scientific(line['decay_error'])} and "
         f"{scientific(line['drift_p'])}/p"

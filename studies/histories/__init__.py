@@ -19,6 +19,7 @@ Writes for each figure its samples (CSV), its drawing (PNG) and what was found (
         "figure-5.csv",
         "figure-5.png",
         "figure-5.txt",
+        "findings.csv",
     ),
     chapters=(
         Chapter(

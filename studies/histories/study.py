@@ -9,16 +9,26 @@ import pandas as pd
 
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
+from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, own_folder, run_jobs
-from studies.measures.findings import Finding, findings_text
+from studies.measures.claims import (
+    TABLE,
+    Claim,
+    Finding,
+    read_findings,
+    sentences,
+    tally,
+    write_findings,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
 
 DEFAULT_SOURCES = {
     2: ("exact", "rk4", "average-acceleration"),
@@ -67,16 +77,27 @@ def command(
     if sources is not None:
         check_sources(sources)
     executor = choose(jobs, time_limit, cluster)
-    products = [f"figure-{number}.csv" for number in HISTORIES]
     rows: list[Row] = []
-    with own_folder(out, "histories", products, sources=sources):
+    with own_folder(out, STUDY.name, STUDY.products, module=__name__, sources=sources):
+        found = []
         for number in figure:
-            rows += one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
+            told, finding = one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
+            rows += told
+            found.append(finding)
+        write_findings(out, [*_others(out, found), *found])
     return exit_code(rows)
 
 
-def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Executor) -> list[Row]:
-    """Run, store, draw and judge one figure; return its rows."""
+def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
+    """Return what a folder holds about figures that were not drawn now."""
+    held = read_findings(folder) if (folder / TABLE).is_file() else []
+    return [item for item in held if item.statement not in {new.statement for new in found}]
+
+
+def one_figure(
+    figure: int, sources: Sequence[str], folder: Path, executor: Executor
+) -> tuple[list[Row], Finding]:
+    """Run, store, draw and judge one figure; return its rows and what was found."""
     from studies.drawing.figures import save_all
 
     cases = HISTORIES[figure]
@@ -89,10 +110,11 @@ def one_figure(figure: int, sources: Sequence[str], folder: Path, executor: Exec
     if len(table):
         provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
         save_all({f"figure-{figure}": drawn(folder, figure)}, folder)
-    text = report(figure, rows, table)
+    found = judge(figure, rows, table)
+    text = report(figure, rows, found)
     provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
     print(text, end="\n\n")
-    return rows
+    return rows, found
 
 
 def history_job(case: HistoryCase, source: str) -> Job:
@@ -136,12 +158,12 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def headline(folder: Path) -> str:
     """Say how many of the paper's statements about its histories hold."""
-    text = "\n".join(path.read_text() for path in sorted(folder.glob("figure-*.txt")))
-    lines = text.splitlines()
-    held, missed = (
-        sum(line.startswith(word) for line in lines) for word in ("holds:", "does not hold:")
-    )
-    return f"Of the paper's {held + missed} statements about its time histories {held} hold."
+    return tally(read_findings(folder), "the paper's statements about its time histories")
+
+
+def paragraph(folder: Path) -> str:
+    """Say which of the paper's statements hold, with the numbers."""
+    return sentences(read_findings(folder))
 
 
 def drawn(folder: Path, figure: int) -> "Figure":
@@ -151,8 +173,8 @@ def drawn(folder: Path, figure: int) -> "Figure":
     return draw_histories(pd.read_csv(folder / f"figure-{figure}.csv"), TITLES[figure])
 
 
-def report(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> str:
-    """Return the peaks of a figure as a table, and its findings."""
+def report(figure: int, rows: Sequence[Row], found: Finding) -> str:
+    """Return the peaks of a figure as a table, and what the paper says about it."""
     peaks = pd.DataFrame(rows).assign(
         shown=lambda f: (
             f["peak_ratio"].map("{:.4f}".format).where(f["outcome"] == "rocked", f["outcome"])
@@ -162,32 +184,26 @@ def report(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> str:
     shown = shown[list(dict.fromkeys(row["source"] for row in rows))]
     shown.index = [f"{figure}-{panel}" for panel in shown.index]
     shown.columns.name = "θmax/θcr"
-    return f"{TITLES[figure]}\n{shown.to_string()}\n{findings_text(judge(figure, rows, table))}"
+    return f"{TITLES[figure]}\n{shown.to_string()}\n{found.text}"
 
 
-def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> list[Finding]:
+def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
     """Test what the paper says about a figure."""
-    checks = {2: solvers_coincide, 4: housner_strays, 5: housner_overturns}
-    needed = {2: {"rk4", "average-acceleration"}}.get(figure, {"exact", "housner", "modified"})
-    check = checks[figure]
-    statement = str(check.__doc__).splitlines()[0].rstrip(".")
-    if not needed.issubset(row["source"] for row in rows):
-        return [Finding(statement, None, f"needs the sources {', '.join(sorted(needed))}")]
-    holds, numbers = check(rows, table)
-    return [Finding(statement, holds, numbers)]
+    summaries = pd.DataFrame(rows).drop(columns="response")
+    return CLAIMS[figure].finding(table if figure == 2 and len(table) else summaries)
 
 
-def solvers_coincide(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
-    """Runge–Kutta and average acceleration coincide (within 0.001 of θcr)."""
+def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
+    """Compare the samples of both solvers."""
     lines = table.pivot(index=["panel", "time_s"], columns="source", values="theta_ratio")
     apart = (lines["rk4"] - lines["average-acceleration"]).abs().groupby("panel").max()
     words = ", ".join(f"2-{panel} {value:.1e}" for panel, value in apart.items())
     return bool((apart < 1e-3).all()), f"largest difference of θ/θcr: {words}"
 
 
-def housner_strays(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
-    """Housner's error grows as H/B falls, and the modified linearization's stays smaller."""
-    peak = {(row["panel"], row["source"]): row["peak_ratio"] for row in rows}
+def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
+    """Compare the errors of both linearizations from panel to panel."""
+    peak = rows.set_index(["panel", "source"])["peak_ratio"]
     errors = {
         name: [peak[panel, name] / peak[panel, "exact"] - 1.0 for panel in "abc"]
         for name in ("housner", "modified")
@@ -200,12 +216,12 @@ def housner_strays(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]
         f"{name} " + ", ".join(f"{value:+.1%}" for value in values)
         for name, values in errors.items()
     )
-    return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
+    return bool(holds), f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
 
 
-def housner_overturns(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, str]:
-    """In 5-b and 5-c the block overturns by Housner alone, and survives otherwise."""
-    outcome = {(row["panel"], row["source"]): row["outcome"] for row in rows}
+def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
+    """Look at the outcomes in 5-b and 5-c."""
+    outcome = rows.set_index(["panel", "source"])["outcome"]
     holds = all(
         outcome[panel, "housner"] == "overturned"
         and outcome[panel, "exact"] == outcome[panel, "modified"] == "rocked"
@@ -216,3 +232,23 @@ def housner_overturns(rows: Sequence[Row], table: pd.DataFrame) -> tuple[bool, s
         for panel in "bc"
     )
     return holds, "; ".join(words)
+
+
+CLAIMS = {
+    2: Claim(
+        "Runge–Kutta and average acceleration coincide (within 0.001 of θcr)",
+        solvers_coincide,
+        ("average-acceleration", "rk4"),
+    ),
+    4: Claim(
+        "Housner's error grows as H/B falls, and the modified linearization's stays smaller",
+        housner_strays,
+        ("exact", "housner", "modified"),
+    ),
+    5: Claim(
+        "In 5-b and 5-c the block overturns by Housner alone, and survives otherwise",
+        housner_overturns,
+        ("exact", "housner", "modified"),
+    ),
+}
+"""Figure -> what the paper says about it."""

@@ -1,20 +1,29 @@
-"""The command line: what runs a command, and what a user sees when it cannot be run."""
+"""The command line: what runs a command, and what a user sees when it cannot be run.
+
+What takes time to import is imported inside functions, so that a signal meanwhile is dealt with.
+"""
+
+from __future__ import annotations
 
 import itertools
-import os
 import signal
 import sys
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from cyclopts import App, CycloptsError, Parameter
+from studies.kit import signals, streams
 
-from studies.kit.arguments import BadInputError
-from studies.kit.journal import FolderError
-from studies.kit.study import Study
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cyclopts import App
+
+    from studies.kit.study import Study
 
 
 def make_app(studies: Sequence[Study]) -> App:
     """Return the command line with these commands, each loaded when it is asked for."""
+    from cyclopts import App, Parameter
+
     app = App(
         name="rocking",
         help="A rocking block: the exact solution, its linearizations, PyBullet and MuJoCo.",
@@ -37,6 +46,29 @@ def _version() -> str:
 
 def run(studies: Sequence[Study], arguments: list[str]) -> int:
     """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
+    try:
+        code = _answer(studies, arguments)
+        sys.stdout.flush()
+    except KeyboardInterrupt as stop:
+        number = stop.number if isinstance(stop, signals.Ended) else signal.SIGINT
+        kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
+        print(f"rocking: {kind}; {stop}".rstrip("; "), file=sys.stderr)
+        return 128 + number
+    except BrokenPipeError:
+        # whoever read the output has gone: nothing more can be said there, not even on exit
+        streams.give_up_output()
+        return 128 + signal.SIGPIPE
+    except OSError as error:
+        return _refuse(str(error))
+    return code
+
+
+def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
+    from cyclopts import CycloptsError
+
+    from studies.kit.arguments import BadInputError
+    from studies.kit.journal import FolderError
+
     for name, value in itertools.pairwise(["", *arguments]):
         if not value:
             return _refuse(f"{name} is empty; it must be given")
@@ -48,17 +80,7 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
             verbose=False,
             result_action="return_value",
         )
-        sys.stdout.flush()
     except (CycloptsError, BadInputError, FolderError) as error:
-        return _refuse(str(error))
-    except KeyboardInterrupt as stop:
-        print(f"rocking: interrupted; {stop}".rstrip("; "), file=sys.stderr)
-        return 128 + signal.SIGINT
-    except BrokenPipeError:
-        # whoever read the output has gone: nothing more can be said there, not even on exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 128 + signal.SIGPIPE
-    except OSError as error:
         return _refuse(str(error))
     return code if isinstance(code, int) else 0
 

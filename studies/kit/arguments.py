@@ -7,9 +7,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter, Token
 
-
-class BadInputError(Exception):
-    """One line that names the argument, its value and what is allowed."""
+from studies.cases.refusal import BadInputError as BadInputError
 
 
 def _number(allowed: str, accepts: Callable[[float], bool]) -> Any:

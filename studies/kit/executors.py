@@ -1,17 +1,19 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
-import signal
 from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import Future, TimeoutError, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessPool
 
 from analytic.response import Response
 from studies.kit import provenance
-from studies.kit.jobs import Job, ask, one_line
+from studies.kit.cluster import Cluster
+from studies.kit.jobs import Job, ask
+from studies.kit.processes import ask_loaded, outcome_of
+from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
 
 
@@ -64,13 +66,16 @@ class Local:
         # engines hold state of their own: no fork of a process that has loaded them
         pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
         try:
-            # the source travels with the job, so that a worker needs no registry of its own
-            tasks: dict[Future[Response], int] = {
-                pool.schedule(
-                    self.ask, args=(job, resolve(job.source)), timeout=self.time_limit_s
-                ): number
-                for number, job in jobs.items()
-            }
+            with left_to_this_process():
+                # the source travels with the job, so that a worker needs no registry of its own
+                tasks: dict[Future[Response], int] = {
+                    pool.schedule(
+                        ask_loaded,
+                        args=(self.ask, job, resolve(job.source)),
+                        timeout=self.time_limit_s,
+                    ): number
+                    for number, job in jobs.items()
+                }
             for task in as_completed(tasks):
                 yield tasks[task], outcome_of(task.result, self.time_limit_s)
         finally:
@@ -88,31 +93,11 @@ def choose(
 
     Raises
     ------
-    studies.cluster.ClusterError
+    studies.dask_client.ClusterError
         If the cluster cannot be used.
     """
     if cluster is None:
         return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
-    from studies.kit.cluster import Cluster
-
     chosen = Cluster(cluster, time_limit_s, ask)
     chosen.check()
     return chosen
-
-
-def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
-    """Return the result of a process, or the failure as which it ended."""
-    try:
-        return result()
-    except TimeoutError:
-        return Response.failure(f"no result within the time limit of {time_limit_s:g} s")
-    except ProcessExpired as error:
-        return Response.failure(_cause_of_death(error.exitcode))
-    except Exception as error:
-        return Response.failure(one_line(error))
-
-
-def _cause_of_death(exitcode: int) -> str:
-    if exitcode < 0:
-        return f"the process was ended by signal {signal.Signals(-exitcode).name}"
-    return f"the process ended by itself with exit code {exitcode}"

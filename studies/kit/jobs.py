@@ -2,14 +2,15 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, is_dataclass
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from analytic.block import RigidBlock
-from analytic.motion import FloatArray, Motion
+from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
 from studies.kit.journal import Row
 from studies.sources.registry import Source, resolve
@@ -66,6 +67,19 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return dict(value)
     raise TypeError(f"{value!r} cannot be part of a job's identity")
+
+
+def short(job: Job) -> Job:
+    """Return a question that takes no time and runs through the same compiled kernels."""
+    block = job.block
+    pulse = SinePulse(amplitude=2.0 * block.gravity * math.tan(block.alpha), omega=4.0 * block.p)
+    return replace(
+        job,
+        motion=pulse,
+        duration=None if job.duration is None else pulse.duration,
+        times=None if job.times is None else np.linspace(0.0, pulse.duration, 3),
+        options={name: value for name, value in job.options.items() if name != "step"},
+    )
 
 
 def ask(job: Job, source: Source) -> Response:

@@ -3,16 +3,22 @@
 import fcntl
 import json
 import os
+import stat
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+from studies.kit.sealed import seal, unseal
+
 Row = dict[str, Any]
 """One line of a table."""
 
-FORMAT = 1
+FORMAT = 2
 """Version of the journal's own format."""
+
+JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
+"""Files of every results folder, beside the products of its study."""
 
 
 class FolderError(Exception):
@@ -26,18 +32,36 @@ class Journal:
     """Rows on disk, appended one at a time; a line that was not completed does not count.
 
     The first line is the identity of the study: whatever changes the meaning of its rows. Every
-    other line is one finished job, `{"key": ..., "row": {...}}`. Failures are written down but not
-    remembered, so that a rerun tries them again.
+    other line is one finished job, `{"crc": ..., "key": ..., "row": {...}}`, crc its checksum.
+    Failures are written down but not remembered, so that a rerun tries them again.
     """
 
     def __init__(self, path: Path, rows: dict[str, Row]) -> None:
         self.rows = rows
-        self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND)
+        self._path = path
+        self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW)
 
     def append(self, key: str, row: Row) -> None:
-        """Store one finished row, at once and in one piece."""
+        """Store one finished row, at once and in one piece.
+
+        Raises
+        ------
+        FolderError
+            If the folder is no longer there.
+        """
+        self.check()
         _write(self._descriptor, {"key": key, "row": row})
         self.rows[key] = row
+
+    def check(self) -> None:
+        """Raise FolderError if the folder, or the journal in it, is no longer there."""
+        try:
+            there = os.path.samestat(self._path.stat(), os.fstat(self._descriptor))
+        except (FileNotFoundError, NotADirectoryError):
+            there = False
+        if not there:
+            problem = f"its {JOURNAL} was removed during the run, and its rows with it"
+            raise FolderError(self._path.parent, problem)
 
     def close(self) -> None:
         """Bring the rows to the disk."""
@@ -64,16 +88,19 @@ def open_journal(
     Raises
     ------
     FolderError
-        If the folder cannot be written, is in use, or holds something else.
+        If the folder cannot be written, is in use, is damaged, holds something else, or is removed
+        meanwhile.
     """
-    path = folder / "journal.jsonl"
+    path = folder / JOURNAL
     header = {"journal": FORMAT, **identity}
     with ExitStack() as stack:
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            _refuse_strangers(path, header, products)
             stack.enter_context(_locked(folder))
-            _check_new_or_ours(folder, path, header, products)
-            journal = Journal(path, _finished(path))
+            if _refuse_strangers(path, header, products):
+                _begin(path, header)
+            journal = Journal(path, _finished(path, header))
         except (FileExistsError, NotADirectoryError) as error:
             raise FolderError(folder, "it must be a folder, not a file") from error
         except OSError as error:
@@ -81,11 +108,12 @@ def open_journal(
             raise FolderError(folder, problem) from error
         stack.callback(journal.close)
         yield journal
+        journal.check()
 
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    with (folder / ".lock").open("a") as lock:
+    with (folder / LOCK).open("a") as lock:
         try:
             # the kernel releases it when the process ends, however it ends
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -94,22 +122,59 @@ def _locked(folder: Path) -> Iterator[None]:
         yield
 
 
-def _check_new_or_ours(
-    folder: Path, path: Path, header: Mapping[str, Any], products: Sequence[str]
-) -> None:
-    complete = path.read_bytes().rpartition(b"\n")[0] if path.exists() else b""
-    if not complete:
-        _refuse_strangers(folder, products)
-        start = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
-        _write(start, header)
-        os.close(start)
-        return
+def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[str]) -> bool:
+    """Refuse a folder with files that are not ours; say whether its journal has yet to begin."""
+    folder = path.parent
+    for name in (LOCK, JOURNAL, PROVENANCE):
+        # a link leads elsewhere, and on a pipe or a device a run would hang
+        if os.path.lexists(folder / name) and not stat.S_ISREG((folder / name).lstat().st_mode):
+            raise FolderError(folder, f"its {name} must be a file")
+    content = path.read_bytes() if path.exists() else b""
+    # a run may have been killed while it wrote the first line
+    if not seal(header).startswith(content) or content.endswith(b"\n"):
+        return False
+    strange = [name for name in (PROVENANCE, *products) if os.path.lexists(folder / name)]
+    if (folder / LOCK).exists() and (folder / LOCK).stat().st_size:
+        strange.append(LOCK)
+    if strange:
+        raise FolderError(folder, f"it must be new, and it holds a {strange[0]} of unknown origin")
+    return True
+
+
+def _begin(path: Path, header: Mapping[str, Any]) -> None:
+    start = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o644)
     try:
-        found = json.loads(complete.partition(b"\n")[0])
-    except ValueError:
+        _write(start, header)
+    finally:
+        os.close(start)
+
+
+def _finished(path: Path, header: Mapping[str, Any]) -> dict[str, Row]:
+    """Read the finished rows, and cut off a last line that a killed run left incomplete."""
+    content = path.read_bytes()
+    *lines, torn = content.split(b"\n")
+    _refuse_others(path.parent, lines[0] if lines else b"", header)
+    rows: dict[str, Row] = {}
+    for number, line in enumerate(lines[1:], start=2):
+        key, row = _row(path.parent, number, line)
+        rows.pop(key, None)
+        if row["outcome"] != "failed":
+            rows[key] = row
+    if torn:
+        os.truncate(path, len(content) - len(torn))
+    return rows
+
+
+def _refuse_others(folder: Path, line: bytes, header: Mapping[str, Any]) -> None:
+    """Refuse a folder whose journal has another first line than ours."""
+    try:
+        found = json.loads(line)
+    except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict) or "journal" not in found:
-        raise FolderError(folder, "its journal.jsonl is not a journal of results")
+        raise FolderError(folder, f"its {JOURNAL} is not a journal of results")
+    if "crc" in found:
+        found = _entry(folder, 1, line)
     if found != header:
         raise FolderError(
             folder,
@@ -118,41 +183,46 @@ def _check_new_or_ours(
         )
 
 
-def _refuse_strangers(folder: Path, products: Sequence[str]) -> None:
-    for name in products:
-        if (folder / name).exists():
-            raise FolderError(folder, f"it must be new, and it holds a {name} of unknown origin")
-
-
 def _differences(found: Row, here: Row) -> str:
-    names = [name for name in (*here, *found) if found.get(name) != here.get(name)]
+    there, ours = _leaves(found), _leaves(here)
+    names = [name for name in (*ours, *there) if there.get(name) != ours.get(name)]
     return "; ".join(
-        f"{name}: {json.dumps(found.get(name))} there, {json.dumps(here.get(name))} here"
+        f"{name}: {json.dumps(there.get(name))} there, {json.dumps(ours.get(name))} here"
         for name in dict.fromkeys(names)
     )
 
 
-def _finished(path: Path) -> dict[str, Row]:
-    """Read the finished rows, and cut off a last line that a killed run left incomplete."""
-    content = path.read_bytes()
-    complete = content[: content.rfind(b"\n") + 1]
-    if len(complete) < len(content):
-        os.truncate(path, len(complete))
-    rows: dict[str, Row] = {}
-    for number, line in enumerate(complete.splitlines()[1:], start=2):
-        try:
-            entry = json.loads(line)
-            key, row = entry["key"], entry["row"]
-        except (ValueError, TypeError, KeyError) as error:
-            problem = f"its journal.jsonl is damaged in line {number}"
-            raise FolderError(path.parent, problem) from error
-        rows.pop(key, None)
-        if row["outcome"] != "failed":
-            rows[key] = row
-    return rows
+def _leaves(values: Mapping[str, Any], prefix: str = "") -> Row:
+    """Return the innermost values of nested mappings, each with its path."""
+    leaves: Row = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            leaves |= _leaves(value, f"{prefix}{name} ")
+        else:
+            leaves[prefix + name] = value
+    return leaves
+
+
+def _row(folder: Path, number: int, line: bytes) -> tuple[str, Row]:
+    entry = _entry(folder, number, line)
+    key, row = entry.get("key"), entry.get("row")
+    if not isinstance(key, str) or not isinstance(row, dict) or "outcome" not in row:
+        raise _damage(folder, number)
+    return key, row
+
+
+def _entry(folder: Path, number: int, line: bytes) -> Row:
+    try:
+        return unseal(line)
+    except (ValueError, RecursionError) as error:
+        raise _damage(folder, number) from error
+
+
+def _damage(folder: Path, number: int) -> FolderError:
+    return FolderError(folder, f"its {JOURNAL} is damaged in line {number}")
 
 
 def _write(descriptor: int, entry: Mapping[str, Any]) -> None:
-    line = json.dumps(entry).encode() + b"\n"
+    line = seal(entry)
     if os.write(descriptor, line) < len(line):
         raise OSError("the disk is full")

@@ -5,7 +5,7 @@ from pathlib import Path
 from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.record import Record
-from studies.cases.accelerograms import read_record
+from studies.cases.accelerograms import Baseline, corrected, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import BadInputError
 
@@ -42,12 +42,19 @@ def posed_pulse(
         raise BadInputError(f"--{error}") from error
 
 
-def posed_record(path: Path, units: str | None, scale: float | None, pga: float | None) -> Record:
-    """Return the record of --record and --units, scaled by --scale or to --pga."""
+def posed_record(
+    path: Path,
+    units: str | None,
+    scale: float | None,
+    pga: float | None,
+    baseline: Baseline | None = None,
+) -> Record:
+    """Return the record of --record and --units, corrected, then scaled by --scale or to --pga."""
     if scale is not None and pga is not None:
         raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
     record = read_record(path, units)
     try:
+        record = corrected(record, baseline)
         if pga is not None:
             return record.scaled_to(pga * STANDARD_GRAVITY)
         return record.scaled(1.0 if scale is None else scale)

@@ -1,11 +1,9 @@
 """What ran: versions, settings, commit, machine."""
 
-import hashlib
 import json
 import os
 import platform
 import subprocess
-import sys
 import time
 from datetime import UTC, datetime
 from functools import cache
@@ -13,10 +11,14 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from studies.kit.drafts import draft
+from studies.kit.fingerprint import ROOT, fingerprint
 from studies.kit.journal import FolderError
 
-PACKAGES = ("numpy", "scipy", "numba", "pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
-ROOT = Path(__file__).parents[2]
+NUMERICAL_PACKAGES = ("numpy", "scipy", "numba")
+"""Packages that a number may depend on."""
+TOOLS = ("pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
+"""Packages that run, keep and show what the others find."""
 
 
 def version_of(package: str) -> str:
@@ -38,20 +40,6 @@ def project_version() -> str:
     return version_of("rocking")
 
 
-@cache
-def code_fingerprint() -> str:
-    """Return a hash of everything that decides a number: the reference, engines and cases."""
-    files = [
-        path
-        for part in ("analytic", "engines", "studies")
-        for path in sorted((ROOT / part).rglob("*.py"))
-    ]
-    digest = hashlib.sha256()
-    for path in files:
-        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()[:12]
-
-
 def engine_packages() -> list[str]:
     """Return the distributions whose versions decide what the engines answer."""
     from engines import ENGINES
@@ -59,13 +47,19 @@ def engine_packages() -> list[str]:
     return [package for engine in ENGINES.values() for package in engine.packages]
 
 
-def identity(study: str, **settings: Any) -> dict[str, Any]:
-    """Return what the rows of a results folder depend on besides their own case and source."""
+def identity(study: str, module: str, **settings: Any) -> dict[str, Any]:
+    """Return what the rows of a results folder depend on besides their own case and source.
+
+    The project's version; the code of the study's module and of all that it imports, pictures
+    apart; Python, the engines and the packages that compute; the settings.
+    """
     parts = {
         "study": study,
         "version": project_version(),
-        "code": code_fingerprint(),
+        "code": fingerprint(module),
+        "python": platform.python_version(),
         "engines": {name: version_of(name) for name in engine_packages()},
+        "packages": {name: version_of(name) for name in NUMERICAL_PACKAGES},
         "settings": settings,
     }
     # as it will be read back: a tuple becomes a list
@@ -117,8 +111,7 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     record = {
         **subject,
         "git": git_commit(),
-        "python": sys.version.split()[0],
-        "packages": {name: version_of(name) for name in PACKAGES},
+        "tools": {name: version_of(name) for name in TOOLS},
         "machine": {
             "cpu": _cpu_model(),
             "cores": usable_cores(),
@@ -140,7 +133,7 @@ def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
         if all(record[name] == value for name, value in subject.items()):
             return list(record["runs"])
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         pass
     problem = "it must be new, or hold results of the same version and settings"
     raise FolderError(path.parent, f"{problem} (its provenance.json says otherwise)")
@@ -154,6 +147,5 @@ def finish(path: Path, record: dict[str, Any], began: float, **counted: int) -> 
 
 def write_text(path: Path, text: str) -> None:
     """Write a file in one piece: it is complete, or it is still the one before."""
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
+    with draft(path) as file:
+        file.write(text.encode())

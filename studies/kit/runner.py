@@ -15,7 +15,7 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
-from studies.kit.journal import FolderError, Journal, Row, open_journal
+from studies.kit.journal import PROVENANCE, FolderError, Journal, Row, open_journal
 
 _LABELS = ("figure", "panel", "case", "aspect", "width_m", "omega_over_p")
 """Columns that name a failed case."""
@@ -30,6 +30,7 @@ def fill_folder(
     study: str,
     jobs: Sequence[Job],
     *,
+    module: str,
     executor: Executor,
     reduce: Reduce = summary,
     settings: Mapping[str, Any],
@@ -47,6 +48,8 @@ def fill_folder(
         Its name; the table is `<study>.csv`.
     jobs : sequence of Job
         In the order of the table.
+    module : str
+        The study's own, whose code and imports decide the rows.
     executor : Executor
     reduce : callable, optional
         As in `run_jobs`.
@@ -66,29 +69,34 @@ def fill_folder(
         If the folder cannot be used.
     """
     began = time.perf_counter()
-    identity = provenance.identity(study, **settings)
+    identity = provenance.identity(study, module, **settings)
     with open_journal(folder, identity, products) as journal:
         _refuse_a_part(folder, journal.rows.values(), growing)
-        path = folder / "provenance.json"
+        path = folder / PROVENANCE
         record = provenance.begin(path, identity, {k: _short(v) for k, v in growing.items()})
         try:
             rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
+            journal.check()
             for name in dict.fromkeys(row[tables] for row in rows) if tables else [study]:
                 part = [row for row in rows if row[tables] == name] if tables else rows
                 text = pd.DataFrame(part).to_csv(index=False, na_rep="nan")
                 provenance.write_text(folder / f"{name}.csv", text)
             provenance.finish(path, record, began, rows=len(rows))
         except (KeyboardInterrupt, BadInputError, OSError) as stop:
+            journal.check()
             kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
             words = f"{stop}; " if str(stop) else ""
-            kind = KeyboardInterrupt if isinstance(stop, KeyboardInterrupt) else BadInputError
-            raise kind(f"{words}{kept}; the same command goes on from there") from stop
+            text = f"{words}{kept}; the same command goes on from there"
+            if isinstance(stop, KeyboardInterrupt):
+                stop.args = (text,)
+                raise
+            raise BadInputError(text) from stop
     return rows
 
 
 @contextmanager
 def own_folder(
-    folder: Path, study: str, products: Sequence[str], **settings: Any
+    folder: Path, study: str, products: Sequence[str], *, module: str, **settings: Any
 ) -> Iterator[None]:
     """Hold a results folder for a study that is done in one go, and write its provenance.
 
@@ -98,11 +106,12 @@ def own_folder(
         If the folder cannot be used.
     """
     began = time.perf_counter()
-    identity = provenance.identity(study, **settings)
-    with open_journal(folder, identity, products):
-        path = folder / "provenance.json"
+    identity = provenance.identity(study, module, **settings)
+    with open_journal(folder, identity, products) as journal:
+        path = folder / PROVENANCE
         record = provenance.begin(path, identity, {})
         yield
+        journal.check()
         provenance.finish(path, record, began)
 
 

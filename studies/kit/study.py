@@ -53,7 +53,10 @@ class StudyModule(Command, Protocol):
     """The module of a study that leaves tables behind."""
 
     def headline(self, folder: Path) -> str:
-        """Return what a folder's tables show, in a sentence or two."""
+        """Return what a folder's tables show first, as a claim of one sentence."""
+
+    def paragraph(self, folder: Path) -> str:
+        """Return what a folder's tables show, in sentences made from them."""
 
     def pictures(self, folder: Path) -> dict[str, Figure]:
         """Draw a folder's figures from its CSVs alone, by name."""

@@ -11,7 +11,13 @@ All eight combinations against the exact solution, on the paper's cases and on a
 the paper's conclusions (a), (b), (c). Writes linearizations.csv, quantiles.csv, a PNG and
 findings.txt. A few seconds.""",
     table="linearizations.csv",
-    products=("linearizations.csv", "quantiles.csv", "linearizations.png", "findings.txt"),
+    products=(
+        "linearizations.csv",
+        "quantiles.csv",
+        "findings.csv",
+        "linearizations.png",
+        "findings.txt",
+    ),
     chapters=(
         Chapter(
             folder="linearizations",

@@ -13,13 +13,22 @@ from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit import provenance
 from studies.kit.runner import own_folder
+from studies.linearizations import STUDY
+from studies.measures.claims import (
+    Claim,
+    Finding,
+    findings_text,
+    read_findings,
+    sentences,
+    tally,
+    write_findings,
+)
 from studies.measures.differences import posed_cases, scientific
-from studies.measures.findings import Finding, findings_text
+from studies.measures.words import listed, part
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PRODUCTS = ("linearizations.csv", "quantiles.csv", "linearizations.png", "findings.txt")
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
@@ -91,7 +100,7 @@ def command(*, out: Path) -> int:
     out
         Folder for the results; made if there is none.
     """
-    with own_folder(out, "linearizations", PRODUCTS):
+    with own_folder(out, STUDY.name, STUDY.products, module=__name__):
         errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
         tables = {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
         for name, table in tables.items():
@@ -158,9 +167,10 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def key(word: str) -> tuple[int, ...]:
+def key(word: str) -> tuple[int, int, int]:
     """Return a variant's key from its column "changed"."""
-    return tuple(map(int, word))
+    onset, frequency, saddle = map(int, word)
+    return onset, frequency, saddle
 
 
 def report(folder: Path, errors: pd.DataFrame) -> str:
@@ -169,10 +179,12 @@ def report(folder: Path, errors: pd.DataFrame) -> str:
 
     save_all(pictures(folder), folder)
     table = read(folder, "linearizations")
+    found = conclusions(table, errors)
+    write_findings(folder, found)
     text = "\n\n".join(
         [
             *(f"On the {name} grid:\n" + table_text(table, name) for name in GRIDS),
-            findings_text(conclusions(table, errors)),
+            findings_text(found),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -193,17 +205,22 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how far each change alone takes Housner's linearization on the wide grid."""
+    """Say which of the paper's conclusions hold."""
+    return tally(read_findings(folder), "the paper's conclusions about the linearizations")
+
+
+def paragraph(folder: Path) -> str:
+    """Say how near each named linearization is, and what holds of the paper's conclusions."""
     table = read(folder, "linearizations")
-    wide = table[table["grid"] == "wide"].set_index("changed")
+    wide = table[(table["grid"] == "wide") & table["changed"].map(lambda word: key(word) in NAMED)]
     words = [
-        f"{VARIANTS[key(str(name))].title} {scientific(float(line['median_error']))} and "
-        f"{line['wrong'] / line['cases']:.1%}"
-        for name, line in wide.iterrows()
-        if key(str(name)) in NAMED
+        f"{NAMED[key(line['changed'])]} errs by {part(line['median_error'])} in the median, with "
+        f"{part(line['wrong'] / line['cases'])} of the outcomes wrong"
+        for _, line in wide.iterrows()
     ]
     return (
-        f"Median error of the peak and share of wrong outcomes on a wide grid: {'; '.join(words)}."
+        f"On a wide grid of {wide['cases'].iloc[0]} cases {listed(words)}. "
+        f"{sentences(read_findings(folder))}"
     )
 
 
@@ -226,13 +243,8 @@ def table_text(table: pd.DataFrame, name: str) -> str:
     return shown.to_string(index=False)
 
 
-def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
-    """Hold the paper's conclusions (a), (b) and (c) against the numbers."""
-    return [frequency_matters(table), maps_mislead(errors), modified_is_better(errors)]
-
-
-def frequency_matters(table: pd.DataFrame) -> Finding:
-    """(a) p√cos α in place of p brings a linearization closer, other things being equal."""
+def frequency_matters(table: pd.DataFrame) -> tuple[bool, str]:
+    """Change the frequency alone, with either onset and either saddle."""
     lines = table.set_index(["grid", "changed"])["median_error"]
     pairs = [
         (name, onset, saddle, lines[name, f"{onset}0{saddle}"], lines[name, f"{onset}1{saddle}"])
@@ -246,15 +258,14 @@ def frequency_matters(table: pd.DataFrame) -> Finding:
         for name, onset, saddle, before, after in pairs
     ]
     closer = sum(after < before for *_, before, after in pairs)
-    return Finding(
-        str(frequency_matters.__doc__).splitlines()[0].rstrip("."),
+    return (
         closer == len(pairs),
         f"the median error falls in {closer} of {len(pairs)} comparisons ({'; '.join(words)})",
     )
 
 
-def maps_mislead(errors: pd.DataFrame) -> Finding:
-    """(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more."""
+def maps_mislead(errors: pd.DataFrame) -> tuple[bool, str]:
+    """Count what Housner's linearization overturns falsely, also where H/B is 3 or more."""
     housner = errors[errors["changed"] == "000"]
     words = []
     for name, rows in housner.groupby("grid", sort=False):
@@ -265,15 +276,14 @@ def maps_mislead(errors: pd.DataFrame) -> Finding:
             f"{int(rows['missed'].sum())} missed"
         )
     slender = housner[(housner["aspect"] >= 3.0) & (housner["grid"] == "paper")]
-    return Finding(
-        str(maps_mislead.__doc__).splitlines()[0].rstrip("."),
+    return (
         bool(slender["false"].any()),
         "; ".join(words),
     )
 
 
-def modified_is_better(errors: pd.DataFrame) -> Finding:
-    """(c) The modified linearization is closer than Housner's at every slenderness tried."""
+def modified_is_better(errors: pd.DataFrame) -> tuple[bool, str]:
+    """Compare median errors and wrong outcomes at every slenderness."""
     wide = errors[errors["grid"] == "wide"].assign(size=errors["error"].abs())
     medians = wide.groupby(["changed", "aspect"])["size"].median().unstack("aspect")
     wrong = wide.groupby(["changed", "aspect"])["wrong"].mean().unstack("aspect")
@@ -283,11 +293,34 @@ def modified_is_better(errors: pd.DataFrame) -> Finding:
         for aspect in medians.columns[::3]
     ]
     better = (medians.loc["111"] < medians.loc["000"]) & (wrong.loc["111"] <= wrong.loc["000"])
-    return Finding(
-        str(modified_is_better.__doc__).splitlines()[0].rstrip("."),
+    return (
         bool(better.all()),
         "median errors of housner, modified, onset-matched: " + "; ".join(words),
     )
+
+
+CLAIMS = (
+    Claim(
+        "(a) p√cos α in place of p brings a linearization closer, other things being equal",
+        frequency_matters,
+    ),
+    Claim(
+        "(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more",
+        maps_mislead,
+    ),
+    Claim(
+        "(c) The modified linearization is closer than Housner's at every slenderness tried",
+        modified_is_better,
+    ),
+)
+"""The paper's conclusions; the first needs the summary, the others all errors."""
+
+
+def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
+    """Hold the paper's conclusions (a), (b) and (c) against the numbers."""
+    return [
+        claim.finding(given) for claim, given in zip(CLAIMS, (table, errors, errors), strict=True)
+    ]
 
 
 def shares(values: "pd.Series[float]") -> str:

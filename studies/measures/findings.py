@@ -1,90 +1,53 @@
 """The paper's conclusions held against a sweep's numbers, reported whichever way they fall."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from textwrap import fill
 
 import pandas as pd
+
+from studies.measures.claims import Claim, Finding
 
 PAPER_PAIR = ("housner", "modified")
 MODELS = ("exact", *PAPER_PAIR, "onset-matched")
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """A statement, whether it holds (None: a source that it needs was not asked), the numbers."""
-
-    statement: str
-    holds: bool | None
-    numbers: str
-
-    @property
-    def text(self) -> str:
-        """The finding as a reader sees it."""
-        verdict = {True: "holds", False: "does not hold", None: "not tested"}[self.holds]
-        lines = fill(self.numbers, 99, initial_indent="    ", subsequent_indent="    ")
-        return f"{verdict}: {self.statement}\n{lines}"
-
-
 def findings(compared: pd.DataFrame) -> list[Finding]:
-    """Test every conclusion.
+    """Test every conclusion of the paper, and what else a sweep has to show.
 
     Parameters
     ----------
     compared : DataFrame
         From `studies.measures.differences.with_reference`.
     """
-    checks = (
-        (false_overturnings, ("housner",)),
-        (missed_overturnings, ("modified",)),
-        (modified_is_closer, PAPER_PAIR),
-        (agreement_at_high_frequency, PAPER_PAIR),
-        (squat_blocks_differ_more, ("housner",)),
-        (onset_explains, ("housner", "onset-matched")),
-    )
-    named = set(compared["source"])
-    tested = [
-        check(compared)
-        if named.issuperset(needed)
-        else Finding(_statement(check), None, f"needs the sources {', '.join(needed)}")
-        for check, needed in checks
-    ]
+    tested = [claim.finding(compared) for claim in CONCLUSIONS]
     return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
 
 
-def _statement(check: object) -> str:
-    return str(check.__doc__).splitlines()[0].rstrip(".")
-
-
-def false_overturnings(compared: pd.DataFrame) -> Finding:
-    """Housner's linearization overturns blocks that survive, even at H/B = 3."""
+def false_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
+    """Count the falsely overturned, and look for them at H/B = 3."""
     housner = _of(compared, "housner")
     wrong = housner[housner["false_overturning"]]
-    return Finding(
-        _statement(false_overturnings),
+    return (
         bool((wrong["aspect"] >= 3).any()),
         f"{len(wrong)} of {len(housner)} cases{_where(wrong)}",
     )
 
 
-def missed_overturnings(compared: pd.DataFrame) -> Finding:
-    """The modified linearization never lets a block survive that overturns."""
+def missed_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
+    """Count the overturnings that are missed."""
     modified = _of(compared, "modified")
     wrong = modified[modified["missed_overturning"]]
-    return Finding(
-        _statement(missed_overturnings),
+    return (
         wrong.empty,
         f"{len(wrong)} of {len(modified)} cases missed{_where(wrong)}",
     )
 
 
-def modified_is_closer(compared: pd.DataFrame) -> Finding:
-    """The modified linearization stays closer to the exact solution than Housner's."""
+def modified_is_closer(compared: pd.DataFrame) -> tuple[bool, str]:
+    """Compare the errors of both linearizations over what survives in both."""
     housner, modified = (_by_case(_of(compared, name)) for name in PAPER_PAIR)
     both = pd.DataFrame({"h": housner["error"].abs(), "m": modified["error"].abs()}).dropna()
     closer = int((both["m"] < both["h"]).sum())
-    return Finding(
-        _statement(modified_is_closer),
+    return (
         bool(both["m"].median() < both["h"].median() and closer > len(both) / 2),
         f"closer in {closer} of {len(both)} cases where all three survive; median error "
         f"{both['m'].median():.2%} against {both['h'].median():.2%}, p90 "
@@ -94,8 +57,8 @@ def modified_is_closer(compared: pd.DataFrame) -> Finding:
     )
 
 
-def agreement_at_high_frequency(compared: pd.DataFrame) -> Finding:
-    """Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)."""
+def agreement_at_high_frequency(compared: pd.DataFrame) -> tuple[bool, str]:
+    """Look at the errors at high and at middle frequencies."""
     medians, words = [], []
     for name in PAPER_PAIR:
         rows = _of(compared, name)
@@ -107,11 +70,11 @@ def agreement_at_high_frequency(compared: pd.DataFrame) -> Finding:
             f"{name} {high.median():.2%}, that is {apart:.4f} of θcr "
             f"(at ω/p from 0.5 to 1.5: {middle.median():.2%})"
         )
-    return Finding(_statement(agreement_at_high_frequency), max(medians) < 0.05, "; ".join(words))
+    return (max(medians) < 0.05, "; ".join(words))
 
 
-def squat_blocks_differ_more(compared: pd.DataFrame) -> Finding:
-    """The smaller the aspect ratio, the larger Housner's error in the median of its figure."""
+def squat_blocks_differ_more(compared: pd.DataFrame) -> tuple[bool, str]:
+    """Look whether the median errors fall as blocks become slender."""
     housner = _of(compared, "housner")
     medians = housner["error"].abs().groupby([housner["figure"], housner["aspect"]]).median()
     table = medians.unstack("aspect")
@@ -121,22 +84,56 @@ def squat_blocks_differ_more(compared: pd.DataFrame) -> Finding:
         + ", ".join(f"{value:.2%} at {aspect:g}" for aspect, value in row.items())
         for figure, row in table.iterrows()
     ]
-    return Finding(_statement(squat_blocks_differ_more), falling, "; ".join(words))
+    return (falling, "; ".join(words))
 
 
-def onset_explains(compared: pd.DataFrame) -> Finding:
-    """Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment."""
+def onset_explains(compared: pd.DataFrame) -> tuple[bool, str]:
+    """See how much of the error is left where the onset is matched."""
     housner, matched = (_by_case(_of(compared, name)) for name in ("housner", "onset-matched"))
     both = pd.DataFrame({"h": housner["error"].abs(), "o": matched["error"].abs()}).dropna()
     explained = 1.0 - both["o"].median() / both["h"].median()
     wrong_h, wrong_o = (int((~rows["agrees"]).sum()) for rows in (housner, matched))
-    return Finding(
-        _statement(onset_explains),
+    return (
         bool(explained > 0.5 and wrong_o <= wrong_h / 2),
         f"with the onset matched the median error falls from {both['h'].median():.2%} to "
         f"{both['o'].median():.2%} ({explained:.0%} of it), wrong outcomes from {wrong_h} to "
         f"{wrong_o} (of {len(housner)} cases)",
     )
+
+
+CONCLUSIONS = (
+    Claim(
+        "Housner's linearization overturns blocks that survive, even at H/B = 3",
+        false_overturnings,
+        ("housner",),
+    ),
+    Claim(
+        "The modified linearization never lets a block survive that overturns",
+        missed_overturnings,
+        ("modified",),
+    ),
+    Claim(
+        "The modified linearization stays closer to the exact solution than Housner's",
+        modified_is_closer,
+        PAPER_PAIR,
+    ),
+    Claim(
+        "Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)",
+        agreement_at_high_frequency,
+        PAPER_PAIR,
+    ),
+    Claim(
+        "The smaller the aspect ratio, the larger Housner's error in the median of its figure",
+        squat_blocks_differ_more,
+        ("housner",),
+    ),
+    Claim(
+        "Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment",
+        onset_explains,
+        ("housner", "onset-matched"),
+    ),
+)
+"""The paper's conclusions, and what explains them."""
 
 
 def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
@@ -171,11 +168,6 @@ def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
             )
         )
     return result
-
-
-def findings_text(items: Iterable[Finding]) -> str:
-    """Return the findings, one after the other."""
-    return "\n".join(item.text for item in items)
 
 
 def _of(compared: pd.DataFrame, source: str) -> pd.DataFrame:

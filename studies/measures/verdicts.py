@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass, replace
 
 from analytic import simulate
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from studies.cases.extreme import Extreme
 from studies.measures.energy import growth
 from studies.sources.registry import resolve
@@ -23,7 +23,7 @@ SMALLEST = 1e-6
 SMALLEST_WORDS = "1e-6"
 BANDS = (BAND, WIDE_BAND, ENERGY_BAND, SLIP_BAND, SMALLEST)
 """What the rows of a results folder depend on."""
-LEFT = ("the pivot slid", "the block was thrown")
+LEFT = (Reason.SLID, Reason.THROWN)
 """How a run ends that leaves the problem, which is right where the reference does so."""
 
 
@@ -80,7 +80,7 @@ def judge(case: Extreme, source: str, response: Response) -> Judgement:
     verdict, reason = _verdict(case, response, exact, error, grown)
     why = invalidity(case, source, exact)
     # a run that breaks down is no answer, whatever the reference
-    broke = verdict is Verdict.FAILED and not response.message.startswith(LEFT)
+    broke = verdict is Verdict.FAILED and response.reason not in LEFT
     if why and not broke and verdict is not Verdict.GOOD:
         verdict, reason = Verdict.INVALID, f"{why} ({reason})"
     return Judgement(verdict, reason, error, grown)

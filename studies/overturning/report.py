@@ -3,7 +3,7 @@
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -14,6 +14,7 @@ from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
 from studies.measures.differences import scientific
+from studies.measures.words import listed, out_of, part
 from studies.overturning.checks import checks
 
 if TYPE_CHECKING:
@@ -69,15 +70,44 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how much of the map each source gets wrong."""
-    words = [
-        f"{line['source']} {line['false']:.2%} and {line['missed']:.2%}"
-        for _, line in read(folder, "differences").iterrows()
+    """Say how much of the map the linearizations get wrong, and how many cells engines do."""
+    lines = read(folder, "differences")
+    models, engines = lines[lines["cells"].isna()], lines[lines["cells"].notna()]
+    shares = [
+        f"{row['source']} {part(row['false'] + row['missed'])}" for _, row in models.iterrows()
     ]
-    return (
-        f"{window_of(folder).title}: part of the map falsely overturned, and of overturnings "
-        f"missed: {', '.join(words)}."
-    )
+    cells = [f"{row['source']} {out_of(_lost(row), row['cells'])}" for _, row in engines.iterrows()]
+    words = f"Of an overturning map is wrong: {listed(shares)}"
+    return f"{words}; of the cells of a coarse grid: {listed(cells)}." if cells else f"{words}."
+
+
+def paragraph(folder: Path) -> str:
+    """Say how much of the map each source gets wrong, on which side and where."""
+    words = [_share(line) for _, line in read(folder, "differences").iterrows()]
+    return f"On the map of the {window_of(folder).title}: {'; '.join(words)}."
+
+
+def _share(line: "pd.Series[Any]") -> str:
+    """Return what part of the map, or how many of its cells, a source gets wrong."""
+    if math.isnan(line["cells"]):
+        wrong = [
+            f"{words} {part(line[name])}{_between(line, name)}"
+            for name, words in (("false", "overturns falsely in"), ("missed", "misses"))
+            if line[name]
+        ]
+        return f"{line['source']} {listed(wrong) if wrong else 'gets all of it right'}"
+    right = out_of(line["cells"] - _lost(line), line["cells"])
+    return f"{line['source']} gets {right} cells of a coarse grid right"
+
+
+def _lost(line: "pd.Series[Any]") -> int:
+    """Return how many cells an engine gets wrong, or fails in."""
+    return round(float(line["cells"]) * float(line["false"] + line["missed"])) + int(line["failed"])
+
+
+def _between(line: "pd.Series[Any]", name: str) -> str:
+    low, high = line.get(f"{name}_from", math.nan), line.get(f"{name}_to", math.nan)
+    return "" if math.isnan(low) else f" (nine tenths of that at x = {low:.2g} to {high:.2g})"
 
 
 def window_of(folder: Path) -> Window:
@@ -111,11 +141,11 @@ def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, obj
     """
     exact = dict(iter(areas[areas["model"] == "exact"].groupby("x")))
     rows: list[dict[str, object]] = []
-    for model, part in areas.groupby("model", sort=False):
+    for model, area in areas.groupby("model", sort=False):
         if model == "exact":
             continue
-        x = np.unique(part["x"])
-        shares = np.array([_compare(exact[at], group) for at, group in part.groupby("x")])
+        x = np.unique(area["x"])
+        shares = np.array([_compare(exact[at], group) for at, group in area.groupby("x")])
         false, missed, other = shares.mean(axis=0) / (window.onsets - LEAST_ONSETS)
         counts = {"source": model, "false": false, "missed": missed, "other_mode": other}
         places = {
@@ -201,7 +231,7 @@ def differences_text(differences: pd.DataFrame) -> str:
         return "  no other source"
     shown = differences.copy()
     for name in ("false", "missed", "other_mode"):
-        shown[name] = shown[name].map(lambda part: "-" if math.isnan(part) else f"{part:.4%}")
+        shown[name] = shown[name].map(lambda share: "-" if math.isnan(share) else f"{share:.4%}")
     for name in ("false_from", "false_to", "missed_from", "missed_to"):
         if name in shown:
             shown[name] = shown[name].map(lambda x: "-" if math.isnan(x) else f"{x:.2f}")

@@ -16,26 +16,13 @@ from studies.kit.arguments import BadInputError, Count, Positive, check_sources,
 from studies.kit.executors import Executor, choose
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
+from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
-from studies.overturning.report import headline, pictures, report
+from studies.overturning.report import headline, paragraph, pictures, report
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-PRODUCTS = (
-    "map.csv",
-    "boundaries.csv",
-    "conditioning.csv",
-    "engines.csv",
-    "edges.csv",
-    "thresholds.csv",
-    "differences.csv",
-    "checks.csv",
-    "map.png",
-    "conditioning.png",
-    "differences.png",
-    "findings.txt",
-)
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
 STRIP = 250_000
 """Cases that are held at a time."""
@@ -158,11 +145,12 @@ def overturning(
         folder,
         "overturning",
         [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)],
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"window": asdict(window), "quick": quick},
         growing={"source": engines},
-        products=PRODUCTS,
+        products=STUDY.products,
         tables="table",
     )
     provenance.write_text(folder / "boundaries.csv", boundaries.to_csv(index=False))

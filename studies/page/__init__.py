@@ -10,6 +10,11 @@ REPORT = Study(
 The quick studies take about four minutes on two cores, the full ones about fifty. A report that
 was interrupted goes on where it stopped when the same command is given again.""",
 )
+README = Study(
+    name="readme",
+    module="studies.page.readme",
+    help="Write README.md and the page of the published results from their tables.",
+)
 REDRAW = Study(
     name="redraw",
     module="studies.page.redraw",

@@ -15,6 +15,11 @@ from matplotlib.figure import Figure
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
+from studies.measures.claims import TABLE, Finding, read_findings
+from studies.measures.presets import in_words
+from studies.measures.words import part
+from studies.page.facts import PRESETS_FROM
+from studies.sweep.claims import preset_table, verdict, whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +37,28 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
         made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
+        **first_sight(folder),
     )
     provenance.write_text(path, text)
+
+
+def first_sight(folder: Path) -> dict[str, Any]:
+    """Return the verdict and a tile for each preset and engine, of what the folder holds."""
+    held = [name for name in PRESETS_FROM if (folder / name / "summary.csv").is_file()]
+    lines = pd.concat([preset_table(whole(folder / name)) for name in held], ignore_index=True)
+    if lines.empty:
+        return {"verdict": "", "tiles": []}
+    tiles = [
+        {
+            "source": row["source"],
+            "words": in_words(row["preset"]),
+            "right": f"{row['right']} of {row['cases']}",
+            "median": part(row["median"]),
+            "max": part(row["max"]),
+        }
+        for _, row in lines.iterrows()
+    ]
+    return {"verdict": verdict(lines), "tiles": tiles}
 
 
 def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
@@ -41,7 +66,10 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
     return {
         "folder": chapter.folder,
         "question": chapter.question,
-        "headline": module.headline(folder),
+        "claim": module.headline(folder),
+        "paragraph": module.paragraph(folder),
+        "statements": told_of(folder),
+        "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
         "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
         "pictures": [(name, embedded(drawn)) for name, drawn in module.pictures(folder).items()],
@@ -49,6 +77,13 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "tables": [(name, *table(folder / name)) for name in chapter.tables],
         "failures": failures(folder, study.table),
     }
+
+
+def told_of(folder: Path) -> list[Finding]:
+    """Return the statements that a study tested; what it could not test is no finding."""
+    if not (folder / TABLE).is_file():
+        return []
+    return [item for item in read_findings(folder) if item.holds is not None]
 
 
 def embedded(drawing: Figure) -> str:
@@ -88,7 +123,12 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
 def _provenance(folder: Path) -> list[tuple[str, str]]:
     """Return what the page says of versions and machine."""
     record = json.loads((folder / "provenance.json").read_text())
-    versions = {**record["engines"], "python": record["python"], **record["packages"]}
+    versions = {
+        **record["engines"],
+        "python": record["python"],
+        **record["packages"],
+        **record["tools"],
+    }
     return [
         ("project", f"{record['version']}, commit {(record['git'] or {}).get('commit', '-')}"),
         ("versions", ", ".join(f"{name} {version}" for name, version in versions.items())),

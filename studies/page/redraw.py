@@ -5,6 +5,7 @@ from typing import Literal
 
 from studies.catalogue import STUDIES
 from studies.kit.arguments import BadInputError
+from studies.kit.jobs import one_line
 
 
 def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
@@ -28,8 +29,10 @@ def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") ->
     for study in found:
         try:
             drawn += save_all(study.load().pictures(folder), folder, f".{suffix}")
-        except (KeyError, ValueError, FileNotFoundError) as error:
-            problem = f"its results of `rocking {study.name}` cannot be drawn ({error})"
+        except Exception as error:
+            # whatever a table that was edited holds, or no longer holds
+            problem = f"its results of `rocking {study.name}` cannot be drawn"
+            problem += f" ({one_line(error)})"
             raise BadInputError(f"FOLDER is {str(folder)!r}; {problem}") from error
     print("\n".join(map(str, drawn)))
     return 0

@@ -34,6 +34,8 @@ def command(*, out: Path, full: bool = False) -> int:
     with tqdm(total=minutes, disable=None, bar_format=form) as bar:
         for study, chapter in CHAPTERS:
             bar.set_description(chapter.folder)
+            if bar.disable:  # no terminal: a line for each, so that a log shows where it is
+                print(f"{chapter.folder} …", file=sys.stderr, flush=True)
             code = fill(study, chapter, out, full)
             if code > 1:
                 return code
@@ -41,7 +43,7 @@ def command(*, out: Path, full: bool = False) -> int:
             bar.update(chapter.minutes[full])
     write_page(out / PAGE, out, full)
     for study, chapter in CHAPTERS:
-        print(f"{chapter.folder}: {study.load().headline(out / chapter.folder)}\n")
+        print(f"{chapter.folder}: {study.load().headline(out / chapter.folder)}")
     print(out / PAGE)
     return max(codes)
 

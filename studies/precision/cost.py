@@ -26,11 +26,12 @@ from engines.world import World
 from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
 from studies.kit import provenance
 from studies.kit.runner import own_folder
-from studies.precision.cost_report import headline, pictures, report
+from studies.kit.signals import left_to_this_process
+from studies.precision import COST
+from studies.precision.cost_report import headline, paragraph, pictures, report
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-PRODUCTS = ("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt")
 
 BUDGET_S, QUICK_BUDGET_S = 1.0, 0.15
 """Time [s] spent on timing one scene."""
@@ -77,7 +78,7 @@ def command(*, out: Path, quick: bool = False) -> int:
     quick
         Shorter timing: a few seconds.
     """
-    with own_folder(out, "cost", PRODUCTS, quick=quick):
+    with own_folder(out, COST.name, COST.products, module=__name__, quick=quick):
         measure(out, quick)
         print(report(out))
     return 0
@@ -140,7 +141,9 @@ def scene_table(budget_s: float) -> pd.DataFrame:
 def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
     """Call a function in a process of its own, whose memory nothing has used before."""
     with ProcessPoolExecutor(max_workers=1, mp_context=get_context("spawn")) as pool:
-        return pool.submit(function, *arguments).result()
+        with left_to_this_process():
+            task = pool.submit(function, *arguments)
+        return task.result()
 
 
 def scene_memory(engine: str, put_back: dict[str, Any]) -> float:

@@ -51,6 +51,11 @@ def headline(folder: Path) -> str:
     return f"A step of the stepping loop takes {', '.join(words)}."
 
 
+def paragraph(folder: Path) -> str:
+    """Say the same; the tables say the rest."""
+    return headline(folder)
+
+
 def shares_text(shares: pd.DataFrame) -> str:
     """Return the parts of a step [µs], and the share that is not the engine's."""
     parts = shares.set_index("engine").filter(like="_s") * 1e6

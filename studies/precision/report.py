@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import asdict
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +17,9 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.precision import cost_report
-from studies.precision.methods import METHODS, Method
-from studies.sources.registry import resolve
+from studies.precision.claims import claims, first_claim
+from studies.precision.methods import METHODS
+from studies.precision.orders import observed_order
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,7 +46,7 @@ def report(folder: Path) -> str:
             "\nErrors at the finest setting, where they stop falling, and the observed order:",
             floor_text(typical),
             "",
-            findings(typical),
+            fill(claims(table), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -52,9 +54,13 @@ def report(folder: Path) -> str:
 
 
 def headline(folder: Path) -> str:
-    """Return the findings of a folder's work-precision.csv."""
-    table = pd.read_csv(folder / "work-precision.csv")
-    return findings(table[table["set"] == "typical"])
+    """Return what a folder's work-precision.csv says first."""
+    return first_claim(pd.read_csv(folder / "work-precision.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Return what a folder's work-precision.csv says."""
+    return claims(pd.read_csv(folder / "work-precision.csv"))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
@@ -129,26 +135,6 @@ def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
     return table.drop(columns="pulse_s")
 
 
-def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
-    """Return the order of the median error in the step with its standard error; nan if unclear.
-
-    A line through the logarithms, over the settings whose error is above three times the floor, and
-    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
-    """
-    usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
-    floor = usable["median_error"].min()
-    reached = usable["value"][usable["median_error"] == floor].max()
-    usable = usable[(usable["median_error"] > 3.0 * floor) & (usable["value"] > reached)]
-    usable = usable[usable["median_error"] < 0.3]
-    if not method.stepping or len(usable) < 3:
-        return math.nan, math.nan
-    x, y = np.log(usable["value"]), np.log(usable["median_error"])
-    (slope, _), covariance = np.polyfit(x, y, 1, cov="unscaled")
-    residual = y - np.polyval(np.polyfit(x, y, 1), x)
-    spread = math.sqrt(float((residual**2).sum()) / max(len(x) - 2, 1) * covariance[0, 0])
-    return float(slope), spread
-
-
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
     """Return, for each method and target, the cheapest setting whose largest error is below it.
 
@@ -192,27 +178,3 @@ def floor_text(table: pd.DataFrame) -> str:
             }
         )
     return pd.DataFrame(lines).to_string(index=False)
-
-
-def findings(table: pd.DataFrame) -> str:
-    """Return the findings in a few sentences, from the numbers."""
-    of_engine = [resolve(METHODS[name].source).kind == "engine" for name in table["method"]]
-    engines = table[of_engine]
-    sentences = []
-    for target in TARGETS[:3]:
-        good = engines[(engines["failed"] == 0) & (engines["max_error"] <= target)]
-        if good.empty:
-            sentences.append(f"No engine reaches {target:.0e} on every case.")
-            continue
-        best = good.sort_values("wall_s").iloc[0]
-        sentences.append(
-            f"The cheapest engine below {target:.0e} on every case is {best['method']} at "
-            f"{best['value']:.0e}: {best['wall_s'] * 1e3:.2g} ms a case, "
-            f"{best['real_time_factor']:.0f} times faster than real time."
-        )
-    exact = table[table["method"] == "Taylor series"].iloc[-1]
-    sentences.append(
-        f"The exact solution takes {exact['wall_s'] * 1e6:.0f} µs a case to "
-        f"{scientific(exact['max_error'])}."
-    )
-    return " ".join(sentences)

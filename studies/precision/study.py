@@ -18,20 +18,16 @@ from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.energy import SAMPLES, energy_drift
-from studies.precision import cost, cost_report
+from studies.precision import STUDY, cost, cost_report
 from studies.precision.methods import METHODS, Method
-from studies.precision.report import headline, pictures, report
+from studies.precision.report import headline, paragraph, pictures, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 if TYPE_CHECKING:
     pass
 
-PRODUCTS = (
-    *("precision.csv", "work-precision.csv", "precision.png", "findings.txt"),
-    *cost.PRODUCTS,
-)
 BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 """Time [s] spent on timing one case with one setting."""
 
@@ -61,6 +57,7 @@ def command(
         out,
         "precision",
         precision_jobs(quick),
+        module=__name__,
         executor=Local(
             workers=1,
             time_limit_s=time_limit,
@@ -69,7 +66,7 @@ def command(
         reduce=reduce,
         settings={"quick": quick},
         growing={},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
     if not (out / "scenes.csv").is_file():
         cost.measure(out, quick)

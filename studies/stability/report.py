@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from studies.kit import provenance
+from studies.kit.tables import left_aligned
 from studies.measures.verdicts import Verdict
-from studies.stability.findings import failures, findings, verdicts_sentence
+from studies.stability.findings import failures, findings, first_claim, verdicts_sentence
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
 
@@ -45,7 +46,12 @@ def report(folder: Path) -> str:
 
 
 def headline(folder: Path) -> str:
-    """Return what the matrix of a folder shows first."""
+    """Return how many of the extreme cases the engines get right."""
+    return first_claim(_table(folder, "stability"))
+
+
+def paragraph(folder: Path) -> str:
+    """Return what the matrix of a folder shows of every source."""
     return verdicts_sentence(_table(folder, "stability"))
 
 
@@ -79,15 +85,6 @@ def failures_text(matrix: pd.DataFrame) -> str:
         return "none"
     shown = wrong[["case", "source", "reason", "remedy"]].rename(columns={"remedy": "avoided by"})
     return left_aligned(shown.assign(reason=shown["reason"].str.slice(0, 80)))
-
-
-def left_aligned(table: pd.DataFrame) -> str:
-    """Return a table of words."""
-    width = {name: max(len(str(name)), int(table[name].str.len().max())) for name in table}
-    lines = [{name: str(name) for name in table}, *table.to_dict("records")]
-    return "\n".join(
-        "  ".join(str(line[name]).ljust(width[name]) for name in table).rstrip() for line in lines
-    )
 
 
 def steps_text(steps: pd.DataFrame) -> str:

@@ -18,14 +18,14 @@ from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
 from studies.sources.registry import Source
+from studies.stability import STUDY
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
-from studies.stability.report import headline, pictures, report
+from studies.stability.report import headline, paragraph, pictures, report
 from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-PRODUCTS = ("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt")
 METHODS = (
     "exact",
     "rk4",
@@ -106,11 +106,12 @@ def stability(
             *step_jobs(sources, quick),
             *sensitivity_jobs(sources, quick),
         ],
+        module=__name__,
         executor=executor,
         reduce=reduce,
         settings={"quick": quick, "bands": BANDS},
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
         tables="table",
     )
 
@@ -175,5 +176,6 @@ def judged(case: Extreme, source: str, response: Response) -> Row:
         "invalid": invalidity(case, source, exact),
         "verdict": found.verdict.value,
         "reason": found.reason,
+        "failure": response.reason.name if response.reason else "",
         "remedy": response.remedy if isinstance(response, Remedied) else "",
     }

@@ -14,6 +14,7 @@ once: a run that was interrupted goes on where it stopped when the same command 
     products=(
         "sweep.csv",
         "summary.csv",
+        "findings.csv",
         "findings.txt",
         "figure-6.png",
         "figure-7.png",

@@ -14,21 +14,21 @@ from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
+from studies.measures.claims import findings_text, write_findings
 from studies.measures.differences import (
-    scientific,
     summarize,
     summary_text,
     with_reference,
     worst_cases,
     worst_text,
 )
-from studies.measures.findings import findings, findings_text
+from studies.measures.findings import findings
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sweep import STUDY
+from studies.sweep.claims import claims, first_claim, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PRODUCTS = ("sweep.csv", "summary.csv", "findings.txt", "provenance.json")
 
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
@@ -111,10 +111,11 @@ def sweep(
         folder,
         "sweep",
         sweep_jobs(numbers, sources, effort),
+        module=__name__,
         executor=executor,
         settings=asdict(effort),
         growing={"figure": numbers, "source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -141,7 +142,9 @@ def report(folder: Path) -> str:
     compared = with_reference(rows)
     table = summarize(compared)
     provenance.write_text(folder / "summary.csv", table.to_csv(index=False, na_rep="nan"))
-    conclusions = findings_text(findings(compared))
+    found = findings(compared)
+    write_findings(folder, found)
+    conclusions = findings_text(found)
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
     save_all(pictures(folder), folder)
     return "\n".join(
@@ -166,17 +169,13 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and its largest error."""
-    summary = pd.read_csv(folder / "summary.csv")
-    last = summary[summary["figure"] == summary["figure"].iloc[-1]]
-    words = [
-        f"{line['source']} {line['agree']} of {line['cases']} ({scientific(line['max_error'])})"
-        for _, line in last[last["source"] != "exact"].iterrows()
-    ]
-    return (
-        "Outcomes that agree with the exact solution, and the largest relative error of a peak "
-        f"that survives in both: {', '.join(words)}."
-    )
+    """Say how many outcomes each preset of the engines gets wrong, and how far peaks are off."""
+    return first_claim(whole(folder))
+
+
+def paragraph(folder: Path) -> str:
+    """Say how many outcomes each source gets right, and how far its peaks are off."""
+    return claims(whole(folder))
 
 
 def read(folder: Path) -> pd.DataFrame:

@@ -20,8 +20,8 @@ from studies.cases.window import Window
 from studies.kit import provenance
 from studies.kit.arguments import Count
 from studies.kit.runner import own_folder
+from studies.throughput import STUDY
 
-PRODUCTS = ("throughput.csv", "findings.txt")
 CASES, QUICK_CASES = 1_000_000, 40_000
 PEER_CASES, QUICK_PEER_CASES = 900, 100
 RUNS = 3
@@ -45,7 +45,7 @@ def command(*, out: Path, quick: bool = False, threads: Count | None = None) -> 
         By default the number of cores.
     """
     count, peers = (QUICK_CASES, QUICK_PEER_CASES) if quick else (CASES, PEER_CASES)
-    with own_folder(out, "throughput", PRODUCTS, quick=quick):
+    with own_folder(out, STUDY.name, STUDY.products, module=__name__, quick=quick):
         table = pd.DataFrame(
             [
                 row

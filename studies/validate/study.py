@@ -1,18 +1,16 @@
 """Random cases that no setting was tuned on: sources beside the exact solution and κ."""
 
+import json
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import pandas as pd
 
-from analytic import simulate
-from analytic.block import STANDARD_GRAVITY, RigidBlock
-from analytic.motion import SinePulse
 from studies.kit import provenance
 from studies.kit.arguments import Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -25,67 +23,12 @@ from studies.measures.differences import (
     with_reference,
 )
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.validate import STUDY
+from studies.validate.cases import draw
+from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PRODUCTS = ("validate.csv", "errors.csv", "findings.txt", "provenance.json")
-
-LEAST_NORMAL = 0.2
-"""Cases are kept where the reference's normal force stays above this part of the weight."""
-
-WELL_CONDITIONED = 10.0
-"""Below this κ the error of a peak says more about its source than about the case."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RandomCase:
-    """A block and a pulse drawn at random."""
-
-    case: int
-    aspect: float
-    width_m: float
-    half_cycles: int
-    amplitude_g: float
-    omega_over_p: float
-
-    @property
-    def block(self) -> RigidBlock:
-        """The block."""
-        return RigidBlock(width=self.width_m, height=self.aspect * self.width_m)
-
-    @property
-    def motion(self) -> SinePulse:
-        """The pulse."""
-        return SinePulse(
-            amplitude=self.amplitude_g * STANDARD_GRAVITY,
-            omega=self.omega_over_p * self.block.p,
-            half_cycles=self.half_cycles,
-        )
-
-
-def draw(seed: int) -> Iterator[RandomCase]:
-    """Yield random cases without end, the same ones for the same seed.
-
-    H/B from 1.2 to 12, B from 0.02 to 10 m, 1 to 4 half cycles, amplitudes from 1.02 to 4 onsets
-    and omega/p from 0.3 to 12, width and frequency with uniform logarithms; only where the
-    reference's normal force stays above LEAST_NORMAL weights.
-    """
-    generator = np.random.default_rng(seed)
-    case = 0
-    while True:
-        aspect = float(generator.uniform(1.2, 12.0))
-        drawn = RandomCase(
-            case=case,
-            aspect=aspect,
-            width_m=math.exp(generator.uniform(math.log(0.02), math.log(10.0))),
-            half_cycles=int(generator.integers(1, 5)),
-            amplitude_g=float(generator.uniform(1.02, 4.0)) / aspect,
-            omega_over_p=math.exp(generator.uniform(math.log(0.3), math.log(12.0))),
-        )
-        if simulate(drawn.block, drawn.motion).min_normal > LEAST_NORMAL:
-            yield drawn
-            case += 1
 
 
 def command(
@@ -162,10 +105,11 @@ def validate(
         folder,
         "validate",
         jobs,
+        module=__name__,
         executor=executor,
         settings={"seed": seed, **asdict(effort)},
         growing={"case": range(cases), "source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -193,6 +137,8 @@ def report(folder: Path) -> str:
             summary_text(compared.assign(error=compared["error"] / sensitivity)),
             "\nThe largest errors:",
             worst_text(compared),
+            "",
+            fill(paragraph(folder), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -208,17 +154,14 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def headline(folder: Path) -> str:
     """Say how many outcomes each source gets right, and its largest error over κ."""
+    return first_claim(pd.read_csv(folder / "errors.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
+    record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     compared = pd.read_csv(folder / "errors.csv")
-    scaled = compared["error"].abs() / conditioning_of(compared)
-    words = [
-        f"{source} {int(rows['agrees'].sum())} of {len(rows)} "
-        f"({scientific(float(scaled[rows.index].max()))})"
-        for source, rows in compared.groupby("source", sort=False)
-    ]
-    return (
-        "On random cases, outcomes that agree with the exact solution, and the largest error of a "
-        f"peak over its condition number: {', '.join(words)}."
-    )
+    return claims(compared, census(record["settings"]["seed"], compared["case"].nunique()))
 
 
 def summary_text(compared: pd.DataFrame) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import simulate
-from analytic.response import Response
+from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
@@ -17,8 +17,9 @@ from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.sources.registry import resolve
+from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import compared, findings
+from studies.validity.report import claims, compared, findings, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,10 +40,6 @@ MOST_NEEDED = 8.0
 """... where that is no more: near N = 0 it grows without bound, and PyBullet takes 10 at most."""
 
 DEFAULT_SOURCES = ("pybullet:fixed", "mujoco:fixed")
-PRODUCTS = (
-    *("validity.csv", "map.csv", "compared.csv"),
-    *("validity.png", "findings.txt", "provenance.json"),
-)
 
 
 def command(
@@ -116,6 +113,7 @@ def validity(
         folder,
         "validity",
         jobs,
+        module=__name__,
         executor=executor,
         reduce=_reduce,
         settings={
@@ -124,7 +122,7 @@ def validity(
             "factors": factors,
         },
         growing={"source": sources},
-        products=PRODUCTS,
+        products=STUDY.products,
     )
 
 
@@ -146,16 +144,16 @@ SLID_WIDTHS = 3e-4
 """... and one that moves along the base by this part has slid, five times the creep of a contact
 that holds."""
 
-LEFT = {"slid": "slid away", "thrown": "flew off"}
-"""Word of a failure's message -> verdict."""
+LEFT = {Reason.SLID: "slid away", Reason.THROWN: "flew off"}
+"""Reason of a failure that is an answer of the study -> verdict."""
 
 
 def _reduce(job: Job, response: Response) -> Row:
     row = summary(job, response)
     slip, hop = response.slip_m / job.block.width, response.hop_m / job.block.width
-    gone = [verdict for word, verdict in LEFT.items() if word in response.message]
-    if response.message:
-        verdict = gone[0] if gone else "failed"
+    gone = LEFT.get(response.reason) if response.reason else None
+    if response.outcome is Outcome.FAILED:
+        verdict = gone or "failed"
     elif slip > SLID_WIDTHS:
         verdict = "slid and lifted off" if hop > LIFTED_WIDTHS else "slid"
     else:
@@ -198,14 +196,10 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say in which part of the map the reference holds for a block that survives."""
-    table = pd.read_csv(folder / "map.csv")
-    rocked = table[table["outcome"] == "rocked"]
-    words = [
-        f"H/B {aspect:g}: {(group['min_normal'] < 0.0).mean():.0%}"
-        for aspect, group in rocked.groupby("aspect")
-    ]
-    return (
-        "Of the full-sine pulses that a block survives, the part in which the reference would have "
-        f"to hold its pivot down, so that an engine is right to differ: {', '.join(words)}."
-    )
+    """Say from which amplitude on the reference does not hold, by slenderness."""
+    return first_claim(pd.read_csv(folder / "map.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say where the reference ends, and whether engines agree with it before."""
+    return claims(*(pd.read_csv(folder / name) for name in ("map.csv", "compared.csv")))

@@ -62,6 +62,30 @@ def test_a_drifting_base_keeps_its_velocity():
     assert float(WANDERING.acceleration(later)) == 0
 
 
+def test_a_trend_is_taken_away_by_least_squares():
+    """What is left is orthogonal to the trend, and the trend is added back by hand."""
+    draw = np.random.default_rng(2).normal(size=101)
+    place = np.linspace(-1.0, 1.0, 101)
+    record = Record(dt=0.05, samples=draw + 3.0 - 2.0 * place)
+    for kind, order in (("constant", 0), ("linear", 1)):
+        left = record.detrended(kind)
+        assert left.dt == 0.05
+        for power in range(order + 1):
+            assert left.samples @ place**power == pytest.approx(0.0, abs=1e-11)
+        trend = np.polynomial.Polynomial.fit(place, record.samples, order)(place)
+        assert left.samples + trend == pytest.approx(record.samples, abs=1e-12)
+    # of the velocity at the end only half of the first and of the last sample is left
+    ends = left.samples[[0, -1]].sum()
+    assert left.final_velocity == pytest.approx(-0.5 * 0.05 * ends, abs=1e-12)
+    assert record.final_velocity == pytest.approx(float(record.velocity(99.0)), rel=1e-14)
+
+
+@pytest.mark.parametrize(("kind", "samples"), [("constant", [3.1] * 7), ("linear", range(7))])
+def test_a_record_that_is_its_own_trend_is_no_noise(kind, samples):
+    with pytest.raises(ValueError, match=f"its own {kind} trend; nothing is left"):
+        Record(dt=0.1, samples=samples).detrended(kind)
+
+
 def test_scaling():
     assert WANDERING.peak == 3.0
     assert WANDERING.scaled_to(1.5) == WANDERING.scaled(0.5)
@@ -81,6 +105,10 @@ def test_scaling():
         ({"samples": [[1.0, 2.0]]}, "shape"),
         ({"samples": [0.0, 1.0, math.nan]}, r"samples\[2\] is nan"),
         ({"samples": [math.inf, 1.0]}, r"samples\[0\] is inf"),
+        ({"samples": [1e307, -1e307], "dt": 0.01}, "peak is 1e\\+307 .* overflows"),
+        ({"dt": 1e308, "samples": [0.0, 0.0, 0.0]}, "dt 1e\\+308 s; their motion overflows"),
+        ({"dt": 1e200}, "overflows"),
+        ({"dt": 1e-320}, "overflows"),
     ],
 )
 def test_bad_records(change, words):

@@ -29,7 +29,7 @@ from uses import (
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, FRAMES, Scene, core_engines, run
 from engines.declaration import Stepping
 from engines.drive import build, simulate_world
@@ -272,20 +272,20 @@ class Lost:
 
 
 @pytest.mark.parametrize(
-    ("pose", "message"),
+    ("pose", "message", "reason"),
     [
-        (Pose(0.0, 0.75, math.nan, 0.0), "not finite"),
-        (Pose(0.0, math.inf, 0.0, 0.0), "not finite"),
-        (Pose(0.0, 0.75, math.inf, 0.0), "not finite"),
-        (Pose(0.0, 0.5, 0.0, 0.0), "sank 0.25 m"),
-        (Pose(0.0, 2.75, 0.0, 0.0), "thrown 2 m"),
-        (Pose(0.2, 0.75, 0.0, 0.0), "slid 0.2 m"),
+        (Pose(0.0, 0.75, math.nan, 0.0), "not finite", Reason.DIVERGED),
+        (Pose(0.0, math.inf, 0.0, 0.0), "not finite", Reason.DIVERGED),
+        (Pose(0.0, 0.75, math.inf, 0.0), "not finite", Reason.DIVERGED),
+        (Pose(0.0, 0.5, 0.0, 0.0), "sank 0.25 m", Reason.SANK),
+        (Pose(0.0, 2.75, 0.0, 0.0), "thrown 2 m", Reason.THROWN),
+        (Pose(0.2, 0.75, 0.0, 0.0), "slid 0.2 m", Reason.SLID),
     ],
 )
-def test_poses_that_are_no_rocking_block(pose: Pose, message: str) -> None:
+def test_poses_that_are_no_rocking_block(pose: Pose, message: str, reason: Reason) -> None:
     world: World = Lost(pose)
     response = simulate_world(world, scene(pulse(1.3, 1.0)), 1e-3)
-    assert response.outcome is Outcome.FAILED
+    assert (response.outcome, response.reason) == (Outcome.FAILED, reason)
     assert message in response.message
 
 

@@ -4,10 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from scipy.signal import detrend
 
+from analytic import Record, RigidBlock, simulate
 from studies.__main__ import run
 from studies.cases.accelerograms import UNITS, read_record
-from studies.kit.arguments import BadInputError
+from studies.cases.refusal import BadInputError
 
 SAMPLES = [0.0, 0.1, -0.25, 0.4, 0.05, -0.1, 0.0]
 NEW_HEADER = (
@@ -124,6 +126,8 @@ BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
         (["--record", "FILE", "--units", "ft"], "--units"),
         (["--record", "FILE", "--duration", "0.01"], "length of the motion, 0.03 s"),
         (["--record", "/nowhere/at.all"], "it must be a file that can be read"),
+        (["--record", "FILE", "--baseline", "spline"], "--baseline"),
+        (["--amplitude", "0.4", "--omega", "3", "--baseline", "none"], "only with --record"),
         (["--amplitude", "0.4"], "--omega missing"),
         (["--omega", "3"], "--amplitude missing"),
         (["--amplitude", "0.4", "--omega", "3", "--pga", "1"], "given only with --record"),
@@ -153,3 +157,52 @@ def test_compare_takes_a_record(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "ground  record, 0.4 g, 1.25 m/s, 401 samples every 0.0025 s, 1 s" in text
     assert plot.stat().st_size > 10_000
+
+
+def shaken(tmp_path, offset):
+    """Write 2 s of a sine of 0.25 g at 1 Hz with an offset [g]."""
+    times = np.linspace(0.0, 2.0, 401)
+    samples = "\n".join(f"{a:.10e}" for a in 0.25 * np.sin(2.0 * np.pi * times) + offset)
+    header = NEW_HEADER.replace("    7", "401")
+    return written(tmp_path, f"{header}{samples}\n")
+
+
+def compared(path, capsys, *options):
+    arguments = [*BLOCK, "--record", str(path), "--sources", "exact", "housner", *options]
+    assert run(arguments) == 0
+    return capsys.readouterr().out
+
+
+def test_a_velocity_that_does_not_end_at_zero_is_reported(tmp_path, capsys):
+    """An offset of 0.01 g for 2 s is 0.1962 m/s. It is said, and nothing is changed."""
+    path = shaken(tmp_path, 0.01)
+    said = "the record's velocity ends at 0.196 m/s, 0.21 of its largest, and the base keeps it"
+    assert f"\nbase    {said}; --baseline corrects it\n" in compared(path, capsys)
+    rows = [json.loads(line) for line in compared(path, capsys, "--json").splitlines()]
+    assert [row["message"] for row in rows] == [f"{said}; --baseline corrects it"] * 2
+    assert compared(path, capsys, "--json", "--baseline", "none").count(said) == 2
+    quiet = shaken(tmp_path, 0.0)
+    assert "velocity ends" not in compared(quiet, capsys)
+    rows = [json.loads(line) for line in compared(quiet, capsys, "--json").splitlines()]
+    assert [row["message"] for row in rows] == ["", ""]
+
+
+@pytest.mark.parametrize("baseline", ["constant", "linear"])
+def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
+    """As SciPy's detrend does, before the record is scaled; and the answer says so."""
+    path = shaken(tmp_path, 0.03)
+    left = detrend(read_record(path).samples, type=baseline)
+    record = Record(dt=0.005, samples=left).scaled_to(0.35 * 9.81)
+    expected = simulate(RigidBlock(width=0.5, height=1.5), record).peak_ratio
+    options = ["--baseline", baseline, "--pga", "0.35", "--json"]
+    row = json.loads(compared(path, capsys, *options).splitlines()[0])
+    assert row["peak_ratio"] == pytest.approx(expected, rel=1e-9)
+    assert row["message"].startswith(f"baseline corrected by detrend, {baseline}")
+    text = compared(path, capsys, *options[:-1])
+    assert f"\nbase    baseline corrected by detrend, {baseline}" in text
+
+
+def test_nothing_but_a_trend_is_refused(tmp_path, capsys):
+    path = written(tmp_path, "# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n")
+    assert run([*BLOCK, "--record", str(path), "--baseline", "constant", "--pga", "1"]) == 2
+    assert "--record: the record is its own constant trend" in capsys.readouterr().err

@@ -22,7 +22,8 @@ from studies.ensemble.fragility import (
     share_bounds,
 )
 from studies.ensemble.report import curves, stripes
-from studies.ensemble.study import drawn, ensemble_cases
+from studies.ensemble.study import drawn, ensemble_cases, recorded
+from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
 
@@ -217,12 +218,29 @@ def test_records_of_the_users_own(tmp_path, capsys):
     arguments = ["ensemble", "--quick", "--sources", "housner", "--out", str(tmp_path / "out")]
     assert run([*arguments, "--records", *paths]) == 0
     assert "2 motions of 'records'" in capsys.readouterr().out
+    assert run([*arguments, "--records", *paths, "--baseline", "constant"]) == 2
+    assert "must be new, or hold results of the same" in capsys.readouterr().err
     rows = pd.read_csv(tmp_path / "out" / "ensemble.csv")
     block = RigidBlock(width=0.5, height=1.5)
     first = rows[(rows["source"] == "exact") & (rows["strength"] == 1)].iloc[0]
     motion = FAMILIES["ricker"](1).scaled_to(first["intensity"] * 9.81 / 3)
     # the file holds twelve digits
     assert first["peak_ratio"] == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-6)
+
+
+def test_records_are_corrected_by_a_named_method(tmp_path):
+    path = tmp_path / "motion.csv"
+    path.write_text("t (s),a (m/s2)\n0,1\n0.1,3\n0.2,2\n0.3,4\n")
+    assert recorded([path], None)[0].samples.tolist() == [1.0, 3.0, 2.0, 4.0]
+    assert recorded([path], None, "constant")[0].samples.tolist() == [-1.5, 0.5, -0.5, 1.5]
+    path.write_text("t (s),a (m/s2)\n0,1\n0.1,1\n0.2,1\n")
+    with pytest.raises(BadInputError, match=r"--records is .* its own constant trend"):
+        recorded([path], None, "constant")
+
+
+def test_the_help_names_no_empty_default(capsys):
+    assert run(["ensemble", "--help"]) == 0
+    assert "[default: ]" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -233,7 +251,9 @@ def test_records_of_the_users_own(tmp_path, capsys):
         (["--records", "FILE", "FILE"], "twice"),
         (["--records", "FILE"], "it is zero throughout"),
         (["--records", "/nowhere"], "--records is '/nowhere'; it must be a file"),
+        (["--records"], "--records is empty; it must have at least one value"),
         (["--units", "g"], "--units is g; it may be given only with --records"),
+        (["--baseline", "linear"], "--baseline is linear; it may be given only with --records"),
         (["--family", "wind"], "--family"),
     ],
 )

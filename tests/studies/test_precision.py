@@ -12,7 +12,8 @@ from studies.kit.jobs import Job, ask
 from studies.measures.energy import energy_drift
 from studies.precision.figure import STYLES, pareto
 from studies.precision.methods import METHODS
-from studies.precision.report import cheapest, observed_order, with_errors, work_precision
+from studies.precision.orders import observed_order
+from studies.precision.report import cheapest, with_errors, work_precision
 from studies.precision.study import measure, precision_jobs, quick_values, reduce
 from studies.sources.registry import resolve
 from studies.sources.scipy_peers import solve_ivp_response

@@ -1,13 +1,13 @@
 """The runner and its results folder: failures, resuming, locks, foreign folders."""
 
 import fcntl
-import json
 import math
 import os
 import resource
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -17,17 +17,21 @@ import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
 from studies.__main__ import run
+from studies.kit import signals
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import FolderError, open_journal
 from studies.kit.provenance import identity
 from studies.kit.runner import run_jobs
+from studies.kit.sealed import seal, unseal
 from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import study as sweep
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 HERE = Path(__file__).parent
+PATIENCE_S = 900.0
+"""Guards against a test that hangs; nothing is expected within it."""
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -40,29 +44,45 @@ def segfaults(block, motion, *, duration, times):
 
 
 def hangs(block, motion, *, duration, times):
-    time.sleep(60.0)
+    threading.Event().wait()
 
 
 def raises(block, motion, *, duration, times):
     raise RuntimeError("the engine\nsaid no")
 
 
-def slow(block, motion, *, duration, times):
-    time.sleep(0.005)
+def answers(block, motion, *, duration, times):
     return simulate(block, motion, duration=duration, times=times)
 
 
-def full_sweep(folder, room):
-    """What a run on a full disk runs: no file may grow beyond `room` bytes."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
-    slow_sweep(folder)
+ANSWERED = []
+FREE = 30
+"""Cases that the source `waits` answers before it waits."""
 
 
-def slow_sweep(folder):
-    """What a killed run runs: figure 6 through a source of 5 ms a case."""
-    SOURCES["slow"] = Source("engine", slow)
-    arguments = ["sweep", "--figure", "6", "--sources", "slow", "--out", folder, "--jobs", "1"]
-    raise SystemExit(run(arguments))
+def waits(block, motion, *, duration, times):
+    """Answer FREE cases, then wait until the file that GATE names is there."""
+    ANSWERED.append(motion)
+    while len(ANSWERED) > FREE and not Path(os.environ["GATE"]).exists():
+        time.sleep(0.01)
+    return simulate(block, motion, duration=duration, times=times)
+
+
+def whole_sweep(folder):
+    """What a run in another process runs: figure 6 through the source that waits."""
+    SOURCES["waits"] = Source("engine", waits)
+    arguments = ["sweep", "--figure", "6", "--sources", "waits", "--out", folder, "--jobs", "1"]
+    for number in signals.ENDING:
+        # whoever runs the tests may ignore it
+        signal.signal(number, signal.SIG_DFL)
+    signals.install()
+    raise SystemExit(run([*arguments, "--time-limit", "3600"]))
+
+
+def sweep_on_a_full_disk(folder):
+    """The same where no file may grow beyond 20 kB."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+    whole_sweep(folder)
 
 
 def job(source, **labels):
@@ -70,21 +90,26 @@ def job(source, **labels):
 
 
 def test_whatever_an_engine_does_becomes_a_row(monkeypatch):
-    for misbehaving in (exits, segfaults, hangs, raises, slow):
+    for misbehaving in (exits, segfaults, raises, answers):
         monkeypatch.setitem(SOURCES, misbehaving.__name__, Source("engine", misbehaving))
-    names = ["exits", "segfaults", "hangs", "raises", "slow", "exact"]
-    # the limit also covers a worker's imports, which share the machine with other tests
+    names = ["exits", "segfaults", "raises", "answers", "exact"]
     rows = run_jobs(
         [job(name) for name in names],
-        executor=Local(workers=2, time_limit_s=6.0),
+        executor=Local(workers=2, time_limit_s=PATIENCE_S),
         reduce=summary,
     )
     assert [row["source"] for row in rows] == names
-    assert [row["outcome"] for row in rows] == ["failed"] * 4 + ["rocked"] * 2
-    assert all(math.isnan(row["peak_ratio"]) for row in rows[:4])
-    for row, reason in zip(rows, ("code 3", "SIGSEGV", "limit of 6 s", "said no"), strict=False):
+    assert [row["outcome"] for row in rows] == ["failed"] * 3 + ["rocked"] * 2
+    assert all(math.isnan(row["peak_ratio"]) for row in rows[:3])
+    for row, reason in zip(rows, ("code 3", "SIGSEGV", "said no"), strict=False):
         assert reason in row["message"]
         assert "\n" not in row["message"]
+
+
+def test_an_engine_that_hangs_is_given_up(monkeypatch):
+    monkeypatch.setitem(SOURCES, "hangs", Source("engine", hangs))
+    (row,) = run_jobs([job("hangs")], executor=Local(1, time_limit_s=1.0), reduce=summary)
+    assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit of 1 s")
 
 
 def test_failures_are_tried_again_and_successes_are_not(tmp_path, monkeypatch):
@@ -100,7 +125,7 @@ def test_failures_are_tried_again_and_successes_are_not(tmp_path, monkeypatch):
     monkeypatch.setitem(SOURCES, "sometimes", Source("model", sometimes))
     outcomes = []
     for _ in range(3):
-        with open_journal(tmp_path, identity("test"), ()) as journal:
+        with open_journal(tmp_path, identity("test", sweep.__name__), ()) as journal:
             (row,) = run_jobs(
                 [job("sometimes")], executor=Local(1, 1.0), reduce=summary, journal=journal
             )
@@ -139,9 +164,14 @@ def lines_of(folder):
     return (folder / "journal.jsonl").read_bytes().splitlines()
 
 
-def start_slow_sweep(folder, call="slow_sweep({!r})"):
-    program = f"import test_runner; test_runner.{call.format(str(folder))}"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[1])])}
+def start(folder, function=whole_sweep):
+    """Start a sweep in a process of its own; its gate is a file beside the folder."""
+    program = f"import test_runner; test_runner.{function.__name__}({str(folder)!r})"
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[1])]),
+        "GATE": str(gate_of(folder)),
+    }
     return subprocess.Popen(
         [sys.executable, "-c", program],
         env=environment,
@@ -151,71 +181,114 @@ def start_slow_sweep(folder, call="slow_sweep({!r})"):
     )
 
 
-def wait_for_rows(folder, process, number):
+def gate_of(folder):
+    return folder.with_name(f"{folder.name}.gate")
+
+
+def wait_at_the_gate(folder, process, rows=FREE):
+    """Wait until so many rows are stored; the next one is not answered before the gate opens."""
     journal = folder / "journal.jsonl"
-    deadline = time.monotonic() + 40.0
-    while not journal.exists() or len(lines_of(folder)) < number:
+    deadline = time.monotonic() + PATIENCE_S
+    while not journal.exists() or len(lines_of(folder)) < 1 + rows:
         assert process.poll() is None, process.stderr.read()
         assert time.monotonic() < deadline
         time.sleep(0.005)
 
 
+def keys_of(lines):
+    return [unseal(line)["key"] for line in lines[1:]]
+
+
+def finish(folder):
+    """Run the sweep to its end; return what it says."""
+    gate_of(folder).touch()
+    with start(folder) as process:
+        output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, errors) == (0, "")
+    return output
+
+
 def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
-    with start_slow_sweep(tmp_path) as first:
-        wait_for_rows(tmp_path, first, 30)
+    folder = tmp_path / "out"
+    with start(folder) as first:
+        wait_at_the_gate(folder, first)
         first.kill()
-    finished = lines_of(tmp_path)
-    assert 30 <= len(finished) < 241
-    with (tmp_path / "journal.jsonl").open("ab") as journal:
-        journal.write(b'{"key": "torn in the mid')
-    with start_slow_sweep(tmp_path) as second:
-        output, errors = second.communicate(timeout=60.0)
-    assert (second.returncode, errors) == (0, "")
-    assert "not tested" in output
-    lines = lines_of(tmp_path)
+    finished = lines_of(folder)
+    assert len(finished) == 1 + FREE
+    with (folder / "journal.jsonl").open("ab") as journal:
+        journal.write(b'{"crc": "00000000", "key": "torn in the mid')
+    assert "not tested" in finish(folder)
+    lines = lines_of(folder)
     assert lines[: len(finished)] == finished
-    keys = [json.loads(line)["key"] for line in lines[1:]]
-    assert len(keys) == len(set(keys)) == 240
-    assert len(pd.read_csv(tmp_path / "sweep.csv")) == 240
+    assert len(keys_of(lines)) == len(set(keys_of(lines))) == 240
+    assert len(pd.read_csv(folder / "sweep.csv")) == 240
 
 
-def test_an_interrupted_run_says_how_to_go_on(tmp_path):
-    with start_slow_sweep(tmp_path) as process:
-        wait_for_rows(tmp_path, process, 30)
-        process.send_signal(signal.SIGINT)
-        output, errors = process.communicate(timeout=30.0)
-    assert process.returncode == 130
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interrupted_run_says_how_to_go_on(number, tmp_path):
+    folder = tmp_path / "out"
+    with start(folder) as process:
+        wait_at_the_gate(folder, process)
+        process.send_signal(number)
+        output, errors = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 128 + number
     assert output == ""
     assert len(errors.splitlines()) == 1
+    assert "of 240 rows are kept" in errors
     assert "the same command goes on" in errors
-    assert len(lines_of(tmp_path)) >= 30
+    assert len(lines_of(folder)) == 1 + FREE
 
 
-def test_a_full_disk_and_another_run_lose_nothing_that_finished(tmp_path):
-    with start_slow_sweep(tmp_path, "full_sweep({!r}, 20_000)") as first:
-        output, errors = first.communicate(timeout=60.0)
+def test_a_full_disk_loses_nothing_that_finished(tmp_path):
+    folder = tmp_path / "out"
+    gate_of(folder).touch()
+    with start(folder, sweep_on_a_full_disk) as first:
+        output, errors = first.communicate(timeout=PATIENCE_S)
     assert (first.returncode, output) == (2, "")
     assert len(errors.splitlines()) == 1
     assert "the disk is full" in errors
     assert "the same command goes on" in errors
     # the last line may be torn; the ones before are whole
-    finished = lines_of(tmp_path)[:-1]
+    finished = lines_of(folder)[:-1]
     assert 30 <= len(finished) < 241
-    assert not (tmp_path / "sweep.csv").exists()
-    # there is room again; a third run is refused, and the second goes on
-    with start_slow_sweep(tmp_path) as second:
-        wait_for_rows(tmp_path, second, len(finished) + 5)
-        with start_slow_sweep(tmp_path) as third:
-            _, errors = third.communicate(timeout=30.0)
-        assert third.returncode == 2
+    assert not (folder / "sweep.csv").exists()
+    # there is room again
+    finish(folder)
+    lines = lines_of(folder)
+    assert lines[: len(finished)] == finished
+    assert len(keys_of(lines)) == len(set(keys_of(lines))) == 240
+
+
+def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
+    folder = tmp_path / "out"
+    with start(folder) as first:
+        wait_at_the_gate(folder, first)
+        with start(folder) as second:
+            output, errors = second.communicate(timeout=PATIENCE_S)
+        assert (second.returncode, output) == (2, "")
         assert len(errors.splitlines()) == 1
         assert "in use by another run" in errors
-        _, errors = second.communicate(timeout=60.0)
-    assert (second.returncode, errors) == (0, "")
-    lines = lines_of(tmp_path)
-    assert lines[: len(finished)] == finished
-    keys = [json.loads(line)["key"] for line in lines[1:]]
-    assert len(keys) == len(set(keys)) == 240
+        gate_of(folder).touch()
+        _, errors = first.communicate(timeout=PATIENCE_S)
+    assert (first.returncode, errors) == (0, "")
+    assert len(pd.read_csv(folder / "sweep.csv")) == 240
+
+
+@pytest.mark.parametrize("what", ["the folder", "its files"])
+def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
+    folder = tmp_path / "out"
+    with start(folder) as process:
+        wait_at_the_gate(folder, process)
+        for path in folder.iterdir():
+            path.unlink()
+        if what == "the folder":
+            folder.rmdir()
+        gate_of(folder).touch()
+        output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (2, "")
+    assert len(errors.splitlines()) == 1
+    assert "removed during the run" in errors
+    assert "kept" not in errors
 
 
 def test_two_runs_never_share_a_folder(tmp_path):
@@ -228,13 +301,19 @@ def test_two_runs_never_share_a_folder(tmp_path):
 
 @pytest.mark.parametrize(
     ("change", "named"),
-    [({"version": "0.0.9"}, "0.0.9"), ({"journal": 0}, "journal"), ({"code": "old"}, "old")],
+    [
+        ({"version": "0.0.9"}, 'version: "0.0.9" there, "'),
+        ({"journal": 0}, "journal: 0 there"),
+        ({"code": "old"}, 'code: "old" there'),
+        ({"python": "3.11.0rc1"}, 'python: "3.11.0rc1" there, "3.11'),
+        ({"packages": {"numpy": "1.0"}}, f'packages numpy: "1.0" there, "{np.__version__}" here'),
+    ],
 )
 def test_a_folder_of_another_version_is_left_alone(tmp_path, change, named):
     sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
     path = tmp_path / "journal.jsonl"
     header, rest = path.read_bytes().split(b"\n", 1)
-    path.write_bytes(json.dumps(json.loads(header) | change).encode() + b"\n" + rest)
+    path.write_bytes(seal(unseal(header) | change) + rest)
     before = {item.name: item.read_bytes() for item in tmp_path.iterdir()}
     with pytest.raises(FolderError, match=named):
         sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
@@ -259,13 +338,6 @@ def test_a_folder_grows_and_never_shrinks(tmp_path):
     assert len(pd.read_csv(tmp_path / "sweep.csv")) == 960
 
 
-def test_a_strangers_results_are_left_alone(tmp_path):
-    (tmp_path / "sweep.csv").write_text("mine\n")
-    with pytest.raises(FolderError, match="unknown origin"):
-        sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
-    assert (tmp_path / "sweep.csv").read_text() == "mine\n"
-
-
 def test_another_provenance_is_left_alone(tmp_path):
     sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
     path = tmp_path / "provenance.json"
@@ -274,16 +346,6 @@ def test_another_provenance_is_left_alone(tmp_path):
         with pytest.raises(FolderError, match="provenance"):
             sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
         assert path.read_text() == text
-
-
-def test_a_damaged_journal_is_named(tmp_path):
-    sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
-    path = tmp_path / "journal.jsonl"
-    lines = path.read_bytes().splitlines(keepends=True)
-    lines[5] = b"?\n"
-    path.write_bytes(b"".join(lines))
-    with pytest.raises(FolderError, match="line 6"):
-        sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
 
 
 def test_a_long_solve_has_a_time_limit_too():

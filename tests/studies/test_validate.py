@@ -11,7 +11,8 @@ from analytic import peak_ratios, simulate
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
 from studies.measures.differences import with_conditioning
-from studies.validate.study import LEAST_NORMAL, draw, report, validate
+from studies.validate.cases import LEAST_NORMAL, draw
+from studies.validate.study import report, validate
 
 LOCAL = Local(workers=1, time_limit_s=60.0)
 

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
-from analytic.response import Response
+from analytic.response import Reason, Response
 from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
@@ -102,9 +102,9 @@ def rocked(slip_m, hop_m):
         (rocked(0, 1), "lifted off", "rocked"),
         (rocked(1, 0), "slid", "rocked"),
         (rocked(1, 1), "slid and lifted off", "rocked"),
-        (Response.failure("the pivot slid 0.1 m along the base"), "slid away", "left"),
-        (Response.failure("the block was thrown 2 m off the base"), "flew off", "left"),
-        (Response.failure("the engine's state is not finite"), "failed", "failed"),
+        (Response.failure("no more words", reason=Reason.SLID), "slid away", "left"),
+        (Response.failure("no more words", reason=Reason.THROWN), "flew off", "left"),
+        (Response.failure("thrown and slid, it says", reason=Reason.DIVERGED), "failed", "failed"),
     ],
 )
 def test_verdicts(response, verdict, outcome):

@@ -4,7 +4,7 @@ Independent of the package: equations (1) and (2) of the paper as printed, in se
 by mpmath's own Taylor method, impacts and turning points by bisection and the secant method on its
 dense output, and the free rocking after the pulse by conservation of energy.
 
-Run: python tests/reference/make_exact_table.py
+Run: python tests/analytic/reference/make_exact_table.py
 """
 
 import csv
@@ -44,12 +44,18 @@ CASES = [
 ]
 
 
-def solve(width, height, amplitude, omega, half_cycles):
-    """Return (peak/alpha or inf, impact times during the pulse) with 30 digits."""
+def solve(width, height, amplitude, omega, half_cycles, restitution=None):
+    """Return (peak/alpha or inf, impact times during the pulse) with 30 digits.
+
+    The velocity ratio at impacts is Housner's unless another one is given.
+    """
     B, H, a, w = (mp.mpf(x) for x in (width, height, amplitude, omega))
     alpha, R = mp.atan(B / H), mp.sqrt(B * B + H * H) / 2
-    p2, eta = 3 * G / (4 * R), 1 - mp.mpf(3) / 2 * mp.sin(alpha) ** 2
+    p2 = 3 * G / (4 * R)
+    eta = 1 - mp.mpf(3) / 2 * mp.sin(alpha) ** 2 if restitution is None else mp.mpf(restitution)
     end = half_cycles * mp.pi / w
+    if abs(a) <= G * B / H:
+        return mp.mpf(0), []
     t = mp.asin(G * B / H / abs(a)) / w
     side = -1 if a > 0 else 1
     theta, rate, peak, impacts = mp.mpf(0), mp.mpf(0), mp.mpf(0), []

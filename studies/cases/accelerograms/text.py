@@ -1,0 +1,117 @@
+"""The file of a record as lines of text and their numbers, or the reason why it is none."""
+
+import math
+import re
+import reprlib
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+MOST_SAMPLES = 1_000_000
+"""Longest record that is read: 83 minutes at 200 Hz."""
+
+SECONDS_A_SAMPLE, BYTES_A_SAMPLE = 2e-5, 400
+"""What a sample takes, measured: time of an exact solution that rocks, memory of a table."""
+
+BYTES_PRINTED = 16
+"""Bytes of a file for each sample: the width of a column in most of them."""
+
+MOST_BYTES = 4 * BYTES_PRINTED * MOST_SAMPLES
+"""Largest file that is read; the factor is for two columns of 17 digits."""
+
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+"""A number as programs print it; Python itself also takes 1_000, Arabic digits and NaN."""
+
+NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
+CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
+
+KINDS: tuple[tuple[Callable[[int], bool], str], ...] = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a named pipe"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+    (stat.S_ISSOCK, "a socket"),
+)
+
+
+def lines_of(path: Path) -> list[str]:
+    """Return the lines of a text file, without their ends.
+
+    Raises
+    ------
+    ValueError
+        If it is no file that can be read, too large for a record, or holds bytes that are no text.
+    """
+    return _text(_content(path)).split("\n")
+
+
+def _content(path: Path) -> bytes:
+    """Return the bytes of a regular file of bearable size; nothing else is opened."""
+    try:
+        found = path.stat()
+        for is_kind, kind in KINDS:
+            if is_kind(found.st_mode):
+                raise ValueError(f"it is {kind}")
+        with path.open("rb") as file:
+            content = file.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ValueError(f"it must be a file that can be read ({reason})") from error
+    if len(content) > MOST_BYTES:
+        raise too_long(max(found.st_size, len(content)) // BYTES_PRINTED, "some ")
+    dark = np.frombuffer(content, dtype=np.uint8) > ord(" ")
+    words = int(np.count_nonzero(dark[1:] & ~dark[:-1]))
+    if words > 2 * MOST_SAMPLES + 10_000:
+        raise too_long(words // 2, "at least ")
+    return content
+
+
+def _text(content: bytes) -> str:
+    content = content.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        problem = f"the byte 0x{content[error.start]:02x} is not text in UTF-8"
+        raise ValueError(f"line {line}: {problem}") from error
+    if found := CONTROL.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise ValueError(f"line {line}: {found[0]!r} is not text")
+    return text
+
+
+def too_long(count: int, about: str = "") -> ValueError:
+    """Return the refusal of a record of so many samples, with what it would take."""
+    minutes, gigabytes = count * SECONDS_A_SAMPLE / 60.0, count * BYTES_A_SAMPLE * 1e-9
+    return ValueError(
+        f"it holds {about}{count} samples, for which one exact solution would take some "
+        f"{minutes:.2g} min and {gigabytes:.2g} GB; it must hold {MOST_SAMPLES} at most"
+    )
+
+
+def shown(word: str) -> str:
+    """Return a word of a file in quotes, shortened where it is long."""
+    return reprlib.repr(word)
+
+
+def is_number(word: str) -> bool:
+    """Whether a word is a number, or one that is not finite."""
+    return bool(NUMBER.fullmatch(word) or NOT_FINITE.fullmatch(word))
+
+
+def number(word: str, line: int) -> float:
+    """Return the number that a word of a line is.
+
+    Raises
+    ------
+    ValueError
+        If it is no finite number in plain digits.
+    """
+    if NUMBER.fullmatch(word) and math.isfinite(value := float(word)):
+        return value
+    if is_number(word):
+        raise ValueError(f"line {line}: {shown(word)[1:-1]} must be a finite number")
+    comma = " with a decimal point" if "," in word else ""
+    raise ValueError(f"line {line}: {shown(word)} must be a number{comma}")

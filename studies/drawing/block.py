@@ -1,0 +1,101 @@
+"""The block with the names of its parts, and blocks as outlines."""
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
+
+from analytic.motion import FloatArray
+
+INK, SOFT, BLOCK, GROUND = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4"
+
+
+def outline(width: float, height: float, theta: float) -> FloatArray:
+    """Return the corners of a block turned by `theta` [rad] about the corner that it stands on.
+
+    The first row is that corner, at ±width/2 on the base. Positive rotations are clockwise.
+    """
+    side = 1.0 if theta >= 0.0 else -1.0
+    pivot = np.array([side * 0.5 * width, 0.0])
+    corners = np.array([[0.0, 0.0], [-side * width, 0.0], [-side * width, height], [0.0, height]])
+    sine, cosine = math.sin(theta), math.cos(theta)
+    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]]) + pivot
+    return turned
+
+
+def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:
+    """Draw a block that rocks, with the names of its parts."""
+    drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
+    axes = drawing.subplots()
+    axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6), aspect="equal")
+    axes.set_axis_off()
+    axes.add_patch(Rectangle((-1.2, -0.16), 2.95, 0.16, color=GROUND, linewidth=0))
+    at_rest = outline(width, height, 1e-12)
+    axes.add_patch(Polygon(at_rest, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
+    corners = outline(width, height, theta)
+    axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
+    _dimensions(axes, corners)
+    _angles(axes, corners, width, height, theta)
+    _shaking(axes)
+    return drawing
+
+
+def _dimensions(axes: Axes, corners: FloatArray) -> None:
+    """Name B along the block's foot and H along the side away from its pivot."""
+    pivot, foot, far, _ = corners
+    centre = 0.5 * (pivot + far)
+    for start, end, name in ((pivot, foot, "B"), (foot, far, "H")):
+        middle = 0.5 * (start + end)
+        outward = (middle - centre) / np.linalg.norm(middle - centre)
+        shift = 0.12 * outward
+        axes.add_patch(_arrow(start + shift, end + shift, "<|-|>", SOFT))
+        axes.text(*(middle + 0.3 * outward), name, ha="center", va="center", fontsize=15)
+
+
+def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta: float) -> None:
+    """Name R and α from the pivot to the centre of mass, and θ at the foot."""
+    pivot, _, far, top = corners
+    centre = 0.5 * (pivot + far)
+    axes.plot(*np.array([pivot, centre]).T, color=INK, linewidth=1.4)
+    axes.plot(*centre, "o", color=INK, markersize=5)
+    axes.text(*(0.62 * centre + 0.38 * pivot + [-0.15, 0.0]), "R", fontsize=15, va="center")
+    along = math.degrees(math.atan2(*(top - pivot)[::-1]))
+    alpha = math.degrees(math.atan2(width, height))
+    axes.add_patch(Arc(tuple(pivot), 1.3, 1.3, theta1=along, theta2=along + alpha, color=INK))
+    _at(axes, pivot, 0.78, along + 0.5 * alpha, "α")
+    degrees = math.degrees(theta)
+    axes.add_patch(Arc(tuple(pivot), 2.3, 2.3, theta1=180.0 - degrees, theta2=180.0, color=INK))
+    _at(axes, pivot, 1.3, 180.0 - 0.5 * degrees, "θ")
+
+
+def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: str) -> None:
+    angle = math.radians(degrees)
+    place = origin + distance * np.array([math.cos(angle), math.sin(angle)])
+    axes.text(*place, name, ha="center", va="center", fontsize=15)
+
+
+def _shaking(axes: Axes) -> None:
+    """Name the acceleration of the ground, which drives the block the other way."""
+    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
+    axes.text(0.45, -0.36, "ü$_g$  acceleration of the ground", va="center", fontsize=11)
+
+
+def _arrow(
+    start: FloatArray | tuple[float, float],
+    end: FloatArray | tuple[float, float],
+    style: str,
+    colour: str,
+    width: float = 1.0,
+) -> FancyArrowPatch:
+    return FancyArrowPatch(
+        tuple(start),
+        tuple(end),
+        arrowstyle=style,
+        mutation_scale=12,
+        color=colour,
+        linewidth=width,
+        shrinkA=0,
+        shrinkB=0,
+    )

@@ -1,0 +1,112 @@
+"""Are statistics predicted where single responses are not? What the tests say, as they say it."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.ensemble.agreement import CLOSE
+from studies.measures.words import listed, out_of, part
+
+LEVEL = 0.05
+"""Level of the tests."""
+
+SINGLES = 0.9
+"""Share of single responses within CLOSE from which on they are called predicted."""
+
+
+def claims(agreed: pd.DataFrame) -> list[str]:
+    """Return a line about each source, and what became of the claim.
+
+    Parameters
+    ----------
+    agreed : DataFrame
+        From `agreement`, without the lines of the exact solution itself.
+    """
+    groups = agreed.groupby("source", sort=False)
+    return [*(_line(str(source), rows) for source, rows in groups), verdict(agreed)]
+
+
+def first_claim(agreed: pd.DataFrame) -> str:
+    """Say whose statistics tests tell from the exact ones, and whose they do not."""
+    words: dict[bool, list[str]] = {True: [], False: []}
+    for source, rows in agreed.groupby("source", sort=False):
+        words[bool(rejections(rows))].append(f"{source} ({part(share_predicted(rows))})")
+    return (
+        f"Tests tell the statistics from the exact ones for {listed(words[True])}, and for "
+        f"{listed(words[False])} they do not (in brackets the single responses predicted)."
+    )
+
+
+def verdict(agreed: pd.DataFrame) -> str:
+    """Say for which sources the claim holds, and what rejects it for the others."""
+    spared, refuted, predicted = [], [], []
+    for source, rows in agreed.groupby("source", sort=False):
+        name = f"{source} ({part(share_predicted(rows))})"
+        if share_predicted(rows) >= SINGLES:
+            predicted.append(name)
+        elif against := rejections(rows):
+            refuted.append(f"{name}: {', '.join(against)}")
+        else:
+            spared.append(name)
+    sentences = [
+        f"At least {SINGLES:.0%} of single responses come within {CLOSE:.0%} of the exact ones "
+        f"with {listed(predicted)}."
+    ]
+    if spared:
+        sentences.append(
+            "With fewer single responses predicted, no test tells the statistics from the exact "
+            f"ones for {listed(spared)}: there the claim that statistics are predicted where "
+            "responses are not holds."
+        )
+    if refuted:
+        sentences.append(f"At least one test rejects it for {'; '.join(refuted)}.")
+    return " ".join(sentences)
+
+
+def share_predicted(rows: pd.DataFrame) -> float:
+    """Return the share of single responses that a source predicts, over all blocks."""
+    return float(np.average(rows["predicted"], weights=rows["cases"]))
+
+
+def rejections(rows: pd.DataFrame) -> list[str]:
+    """Return what tells a source's statistics from the exact ones, each test with its number."""
+    words = []
+    for _, row in rows.iterrows():
+        block = f"at {row['width_m']:g} m x {row['height_m']:g} m"
+        if is_off(row["ratio_low"], row["ratio_high"]):
+            words.append(f"capacity ratio {_interval(row)} {block}")
+        if row["mcnemar_p"] < LEVEL:
+            words.append(f"McNemar p = {row['mcnemar_p']:.2g} {block}")
+    if rows["ks_rejected"].sum():
+        words.append(_distributions(rows))
+    return words
+
+
+def is_off(low: float, high: float) -> bool:
+    """Say whether an interval leaves out 1."""
+    return low > 1.0 or high < 1.0
+
+
+def _interval(row: "pd.Series[Any]") -> str:
+    return f"{row['capacity_ratio']:.3f} [{row['ratio_low']:.3f}, {row['ratio_high']:.3f}]"
+
+
+def _distributions(rows: pd.DataFrame) -> str:
+    tests = rows["ks_tests"].sum()
+    return (
+        f"Kolmogorov and Smirnov's test rejects {out_of(rows['ks_rejected'].sum(), tests)} "
+        f"distributions of the peak ({LEVEL * tests:.1f} expected by chance)"
+    )
+
+
+def _line(source: str, rows: pd.DataFrame) -> str:
+    ratios = listed([_interval(row) for _, row in rows.iterrows()])
+    off = sum(is_off(row["ratio_low"], row["ratio_high"]) for _, row in rows.iterrows())
+    few = int((rows["mcnemar_p"] < LEVEL).sum())
+    return (
+        f"{source}: {part(share_predicted(rows))} of single responses predicted within "
+        f"{CLOSE:.0%}; fitted capacity over the exact one {ratios}, off by more than resampling "
+        f"explains for {out_of(off, len(rows))} blocks; as many overturnings too many as too few "
+        f"(McNemar) rejected for {out_of(few, len(rows))}; {_distributions(rows)}."
+    )

@@ -1,0 +1,95 @@
+"""What a worker of a cluster does: it says whether it is fit, and does to a job what Local would.
+
+Models and solvers run in the worker's own process, engines and long solves in a process of their
+own, so that a crash or the time limit is a failed row and costs no worker.
+"""
+
+import atexit
+import multiprocessing
+import platform
+from collections.abc import Callable
+from functools import cache
+
+from pebble import ProcessPool
+
+from analytic.response import Response
+from studies.kit import provenance
+from studies.kit.fingerprint import fingerprint
+from studies.kit.jobs import Job
+from studies.kit.processes import ask_loaded, outcome_of
+from studies.sources.registry import Source
+
+START = "dask worker ADDRESS --no-nanny --nthreads 1"
+
+
+class RefusedError(Exception):
+    """Raised on a worker that must not run a job."""
+
+
+@cache
+def fitness() -> dict[str, str]:
+    """Return what must be the same on a worker for its results to be the same.
+
+    The code is that of every study: a worker that is another version is not asked which it knows.
+    """
+    packages = (*provenance.engine_packages(), *provenance.NUMERICAL_PACKAGES)
+    return {
+        "code": fingerprint("studies."),
+        "python": platform.python_version(),
+        **{name: provenance.version_of(name) for name in packages},
+    }
+
+
+def unfit(expected: dict[str, str]) -> str:
+    """Say why this worker must not run jobs; an empty string if it may."""
+    here = fitness()
+    different = [
+        f"{name} {here.get(name)} there, {value} here"
+        for name, value in expected.items()
+        if here.get(name) != value
+    ]
+    if different:
+        return "; ".join(different)
+    if multiprocessing.current_process().daemon:
+        return f"it has a nanny, under which no engine can have its own process; use {START}"
+    return ""
+
+
+def work(
+    expected: dict[str, str],
+    job: Job,
+    source: Source,
+    ask: Callable[[Job, Source], Response],
+    time_limit_s: float,
+) -> Response:
+    """Run a job on this worker.
+
+    Raises
+    ------
+    RefusedError
+        If this worker is not fit.
+    """
+    if problem := unfit(expected):
+        raise RefusedError(f"a worker cannot be used: {problem}")
+    if source.kind == "engine" or job.is_long:
+        task = _processes().schedule(ask_loaded, args=(ask, job, source), timeout=time_limit_s)
+        return outcome_of(task.result, time_limit_s)
+    if job.source not in _loaded:
+        # loading the compiled kernels is no part of the first case's run time
+        _loaded.add(job.source)
+        ask(job, source)
+    return ask(job, source)
+
+
+_loaded: set[str] = set()
+
+
+@cache
+def _processes() -> ProcessPool:
+    """Return this worker's processes, one for each of its threads."""
+    from distributed import get_worker
+
+    threads = get_worker().state.nthreads
+    pool = ProcessPool(max_workers=threads, context=multiprocessing.get_context("spawn"))
+    atexit.register(pool.stop)
+    return pool

@@ -1,0 +1,24 @@
+"""Printed numbers that no one here wrote, held against the models and the engines."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="literature",
+    module="studies.literature.study",
+    help="""Printed numbers on rocking blocks against the models and the engines.
+
+Steady states under harmonic shaking, least accelerations that overturn a block, the end of a mode:
+each with its source, the printed value and its digits. Writes literature.csv, literature.png and
+findings.txt; resumable. Less than a minute.""",
+    table="literature.csv",
+    products=("literature.csv", "agreement.csv", "literature.png", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="literature",
+            question="Do the numbers printed in the literature come out?",
+            tables=("agreement.csv",),
+            quick=(),
+            minutes=(0.5, 0.5),
+        ),
+    ),
+)

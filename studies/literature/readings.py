@@ -1,0 +1,138 @@
+"""How the printed quantity is read from a source's answers."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import singledispatch
+
+import numpy as np
+
+from analytic.maps import overturning_modes
+from analytic.motion import FloatArray
+from analytic.response import Outcome, Response
+from studies.kit.jobs import Job, ask
+from studies.kit.journal import Row
+from studies.literature.problems import (
+    PROBLEMS,
+    Cascade,
+    ModeEnd,
+    Problem,
+    SteadyState,
+    Threshold,
+)
+from studies.measures.orbits import orbit_of, sample_times
+from studies.sources.registry import Source
+
+Put = Callable[[Job], Response]
+
+REACH = 0.02
+"""Relative distance from the print within which a threshold is looked for."""
+FINE, COARSE = 1e-11, 1e-6
+"""Relative width to which it is bisected for a model, and for an engine."""
+AMPLITUDES = np.geomspace(1.0001, 60.0, 6000)
+"""Amplitudes, over g tan alpha, among which overturning after one impact is looked for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading(Response):
+    """The last response that was needed, and the quantity; nan where there is none."""
+
+    values: tuple[float, ...] = ()
+
+
+def times_of(problem: Problem) -> FloatArray | None:
+    """Return the times [s] at which a problem's response is sampled."""
+    return sample_times(problem.pulse) if isinstance(problem, SteadyState | Cascade) else None
+
+
+NAMED = {problem.name: problem for problem in PROBLEMS}
+
+
+def put(job: Job, source: Source) -> Response:
+    """Put a problem to a source, and read its quantity."""
+    problem = NAMED[str(job.labels["problem"])]
+
+    def once(asked: Job) -> Response:
+        return ask(asked, source)
+
+    try:
+        if isinstance(problem, Threshold):
+            return _threshold(problem, job, once, FINE if source.kind != "engine" else COARSE)
+        response = once(job)
+        if response.outcome is Outcome.FAILED:
+            return response
+        return _with(response, *read(problem, response, job.source))
+    except ValueError as error:
+        return Response.failure(str(error))
+
+
+@singledispatch
+def read(problem: Problem, response: Response, source: str) -> tuple[float, ...]:
+    """Return the quantity of a problem from a source's response."""
+    raise TypeError(f"{problem!r} has no quantity")
+
+
+@read.register
+def _(problem: SteadyState, response: Response, source: str) -> tuple[float, ...]:
+    orbit = orbit_of(problem.block, problem.pulse, response)
+    if not orbit.period:
+        raise ValueError("the response does not settle")
+    return math.degrees(orbit.right), math.degrees(orbit.left)
+
+
+@read.register
+def _(problem: Cascade, response: Response, source: str) -> tuple[float, ...]:
+    orbit = orbit_of(problem.block, problem.pulse, response)
+    if not orbit.period:
+        raise ValueError("the response does not repeat")
+    return (float(orbit.period),)
+
+
+@read.register
+def _(problem: ModeEnd, response: Response, source: str) -> tuple[float, ...]:
+    alpha, eta = problem.block.alpha, problem.block.restitution
+    below, above = 0.8 * problem.printed[0].bounds[0], 1.2 * problem.printed[0].bounds[1]
+    while above - below > 1e-4 * below:
+        middle = 0.5 * (below + above)
+        modes = overturning_modes(alpha, AMPLITUDES * math.tan(alpha), middle, 2, source, eta).mode
+        below, above = (middle, above) if (modes == 1).any() else (below, middle)
+    return (0.5 * (below + above),)
+
+
+def _threshold(problem: Threshold, job: Job, once: Put, width: float) -> Response:
+    low, high = (
+        bound * (1.0 + sign * REACH)
+        for bound, sign in zip(problem.printed[0].bounds, (-1.0, 1.0), strict=True)
+    )
+
+    def at(amplitude: float) -> Response:
+        response = once(replace(job, motion=problem.at(amplitude)))
+        if response.outcome is Outcome.FAILED:
+            raise ValueError(response.message)
+        return response
+
+    first, last = at(low).outcome, at(high)
+    if (first is Outcome.OVERTURNED) == (last.outcome is Outcome.OVERTURNED):
+        raise ValueError(f"{first.value} from {low:.4g} to {high:.4g}: no threshold there")
+    while high - low > width * low:
+        middle = 0.5 * (low + high)
+        same = (at(middle).outcome is Outcome.OVERTURNED) == (first is Outcome.OVERTURNED)
+        low, high = (middle, high) if same else (low, middle)
+    return _with(last, 0.5 * (low + high))
+
+
+def _with(response: Response, *values: float) -> Reading:
+    kept = {name: getattr(response, name) for name in Response.__slots__}
+    return Reading(**{**kept, "history": None}, values=values)
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the columns that follow a problem's labels and source."""
+    values = response.values if isinstance(response, Reading) else ()
+    one, other = (*values, math.nan, math.nan)[:2]
+    return {
+        "outcome": response.outcome.value,
+        "value": one,
+        "other_side": other,
+        "message": response.message,
+    }

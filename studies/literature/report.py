@@ -1,0 +1,143 @@
+"""What the printed numbers say: which come out to their digits, and by how much the others miss."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from studies.kit import provenance
+from studies.kit.tables import left_aligned
+from studies.literature.problems import Problem
+from studies.literature.readings import NAMED
+from studies.measures.differences import scientific
+from studies.measures.words import out_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's literature.csv; write and return the text."""
+    from studies.drawing.figures import save_all
+
+    table = agreement(_read(folder / "literature.csv"))
+    text = table.to_csv(index=False, na_rep="nan")
+    provenance.write_text(folder / "agreement.csv", text)
+    save_all(pictures(folder), folder)
+    text = "\n\n".join([table_text(table), *works(table), paragraph(folder)])
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def headline(folder: Path) -> str:
+    """Say how many printed numbers come out to their digits."""
+    table = _read(folder / "agreement.csv")
+    mine = table[table["source"] == table["model"]]
+    right = int((mine["agrees"] == "True").sum())
+    return f"Of the printed numbers of the literature {out_of(right, len(mine))} come out."
+
+
+def paragraph(folder: Path) -> str:
+    """Say how many printed numbers come out to their digits, and the largest miss."""
+    table = _read(folder / "agreement.csv")
+    mine = table[table["source"] == table["model"]]
+    missed = mine[mine["agrees"] != "True"]
+    sentence = (
+        f"Of {len(mine)} printed numbers {len(mine) - len(missed)} come out to every printed digit"
+    )
+    if len(missed):
+        sentence += (
+            f"; the others miss the print by {missed['miss'].min():.1e} to "
+            f"{missed['miss'].max():.1e}"
+        )
+    others = table[~table["source"].isin(["exact", "housner", "modified"])]
+    words = [
+        f"{source} {scientific(float(rows['from_exact'].abs().max()))} over {len(rows)}"
+        for source, rows in others.groupby("source", sort=False)
+    ]
+    if words:
+        sentence += f". Engines beside the exact thresholds, largest difference: {', '.join(words)}"
+    return sentence + "."
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
+    from studies.literature.figure import draw_literature
+
+    return {"literature": draw_literature(_read(folder / "agreement.csv"))}
+
+
+def _read(path: Path) -> pd.DataFrame:
+    """Read a table back with empty words as such."""
+    words = dict.fromkeys(("message", "measured", "agrees", "printed"), str)
+    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+
+
+def agreement(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each printed number and source: the print, the answer, its miss."""
+    lines: list[dict[str, Any]] = []
+    for row in rows.to_dict("records"):
+        lines += _lines(NAMED[str(row["problem"])], {str(k): v for k, v in row.items()})
+    table = pd.DataFrame(lines)
+    exact = table[table["source"] == "exact"].set_index(["problem", "side"])["value"]
+    places = pd.MultiIndex.from_frame(table[["problem", "side"]])
+    return table.assign(from_exact=table["value"] / exact.reindex(places).to_numpy() - 1.0)
+
+
+def _lines(problem: Problem, row: dict[str, Any]) -> list[dict[str, Any]]:
+    lines = []
+    for side, printed in enumerate(problem.printed):
+        value = float(row[("value", "other_side")[side]])
+        low, high = printed.bounds
+        lines.append(
+            {
+                "problem": problem.name,
+                "side": side,
+                "work": problem.work,
+                "where": problem.where,
+                "quantity": problem.quantity,
+                "printed": str(printed),
+                "measured": problem.measured[side] if problem.measured else "",
+                "model": problem.model,
+                "source": row["source"],
+                "outcome": row["outcome"],
+                "value": value,
+                "low": low,
+                "high": high,
+                "miss": printed.miss(value),
+                "agrees": str(bool(low <= value <= high)),
+                "message": row["message"],
+            }
+        )
+    return lines
+
+
+def table_text(table: pd.DataFrame) -> str:
+    """Return a line for each printed number, with the answers of all sources beside it."""
+    sources = list(dict.fromkeys(table["source"]))
+    lines = []
+    for (_, _), group in table.groupby(["problem", "side"], sort=False):
+        first = group.iloc[0]
+        answers = group.set_index("source")["value"].reindex(sources)
+        mine = group[group["source"] == first["model"]].iloc[0]
+        lines.append(
+            {
+                "problem": first["problem"],
+                "quantity": first["quantity"],
+                "printed": first["printed"],
+                "measured": first["measured"],
+                **{name: _digits(value) for name, value in answers.items()},
+                "to the digit": "yes" if mine["agrees"] == "True" else f"off {mine['miss']:.1e}",
+            }
+        )
+    return left_aligned(pd.DataFrame(lines).astype(str))
+
+
+def _digits(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.6g}"
+
+
+def works(table: pd.DataFrame) -> list[str]:
+    """Return the works that the numbers come from, a line each."""
+    return ["\n".join(dict.fromkeys(table["work"]))]

@@ -1,0 +1,72 @@
+"""Printed numbers against the models and the engines: who printed what, and does it come out?"""
+
+from pathlib import Path
+from typing import Annotated
+
+from studies.kit.arguments import check_sources, several
+from studies.kit.jobs import Job
+from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
+from studies.literature import STUDY
+from studies.literature.problems import PROBLEMS, ModeEnd, Problem
+from studies.literature.readings import put, reduce, times_of
+from studies.literature.report import headline, paragraph, pictures, report
+from studies.sources.registry import resolve
+
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+
+DEFAULT_SOURCES = ("pybullet", "mujoco")
+
+
+def command(
+    *,
+    out: Path,
+    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Hold printed numbers against the models that they are about, and the engines beside.
+
+    An engine joins where the printed block has ideally inelastic impacts, as the engine's has, and
+    the print is a threshold.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    sources
+        Beside the printed model and the exact one: engines, pybullet mujoco by default; an engine
+        takes a preset after a colon, as in mujoco:fixed.
+    """
+    check_sources(sources)
+    jobs = [
+        literature_job(problem, source)
+        for problem in PROBLEMS
+        for source in dict.fromkeys((problem.model, "exact", *sources))
+        if can_answer(problem, source)
+    ]
+    plan = Plan(jobs=jobs, growing={"source": _asked(jobs)}, ask=put, reduce=reduce)
+    return carry_out(STUDY, plan, out, running, report)
+
+
+def _asked(jobs: list[Job]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(job.source for job in jobs))
+
+
+def can_answer(problem: Problem, source: str) -> bool:
+    """Tell whether a source can be asked for a problem's quantity."""
+    kind = resolve(source).kind
+    if isinstance(problem, ModeEnd):
+        return kind == "model"
+    return kind != "engine" or problem.ideal
+
+
+def literature_job(problem: Problem, source: str) -> Job:
+    """Return the job that puts a problem to a source."""
+    return Job(
+        labels={"problem": problem.name, "model": problem.model},
+        block=problem.block,
+        motion=problem.pulse,
+        source=source,
+        duration=problem.pulse.duration if times_of(problem) is not None else None,
+        times=times_of(problem),
+        options={"start": problem.start} if problem.start != (0.0, 0.0) else {},
+    )

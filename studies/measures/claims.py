@@ -1,0 +1,99 @@
+"""Statements that a table decides, reported whichever way they fall."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from textwrap import fill
+
+import pandas as pd
+
+from studies.kit import provenance
+from studies.measures.words import out_of
+
+TABLE = "findings.csv"
+"""Where a study keeps its findings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A statement, whether it holds (None: a source that it needs was not asked), the numbers."""
+
+    statement: str
+    holds: bool | None
+    numbers: str
+
+    @property
+    def text(self) -> str:
+        """The finding as a reader sees it."""
+        lines = fill(self.numbers, 99, initial_indent="    ", subsequent_indent="    ")
+        return f"{self.verdict}: {self.statement}\n{lines}"
+
+    @property
+    def verdict(self) -> str:
+        """What became of the statement, in words."""
+        return {True: "holds", False: "does not hold", None: "not tested"}[self.holds]
+
+
+Check = Callable[[pd.DataFrame], tuple[bool, str]]
+"""Says of a table whether a statement holds, and the numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A statement with what tests it.
+
+    Attributes
+    ----------
+    statement : str
+    check : callable
+    needs : tuple of str
+        Sources without which it cannot be tested.
+    """
+
+    statement: str
+    check: Check
+    needs: tuple[str, ...] = ()
+
+    def finding(self, table: pd.DataFrame) -> Finding:
+        """Test the statement on a table, whose column source names who was asked."""
+        if self.needs and not set(table["source"]).issuperset(self.needs):
+            return Finding(self.statement, None, f"needs the sources {', '.join(self.needs)}")
+        return Finding(self.statement, *self.check(table))
+
+
+def findings_text(items: Iterable[Finding]) -> str:
+    """Return the findings, one after the other."""
+    return "\n".join(item.text for item in items)
+
+
+def tally(items: Sequence[Finding], whose: str) -> str:
+    """Say how many of somebody's statements hold, and name those that do not."""
+    tested = [item for item in items if item.holds is not None]
+    failing = [item.statement for item in tested if not item.holds]
+    words = f"Of {whose} {out_of(len(tested) - len(failing), len(tested))} hold"
+    return f"{words}; not: {'; '.join(failing)}." if failing else f"{words}."
+
+
+def sentences(items: Iterable[Finding]) -> str:
+    """Return the findings as a paragraph, the numbers in brackets."""
+    return " ".join(f"{item.statement}: {item.verdict} ({item.numbers})." for item in items)
+
+
+def write_findings(folder: Path, items: Sequence[Finding]) -> None:
+    """Write a folder's findings as a table."""
+    table = pd.DataFrame([asdict(item) for item in items])
+    provenance.write_text(folder / TABLE, table.to_csv(index=False, na_rep="nan"))
+
+
+def read_findings(folder: Path) -> list[Finding]:
+    """Read a folder's findings back."""
+    table = pd.read_csv(folder / TABLE, keep_default_na=False, na_values=["nan"])
+    return [
+        Finding(str(statement), None if _unknown(holds) else str(holds) == "True", str(numbers))
+        for statement, holds, numbers in table.to_numpy(object)
+    ]
+
+
+def _unknown(holds: object) -> bool:
+    return isinstance(holds, float) and math.isnan(holds)

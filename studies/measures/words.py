@@ -1,0 +1,68 @@
+"""Words of a claim made from its counts and numbers, so that no sentence says more than a table."""
+
+import math
+from collections.abc import Sequence
+
+from studies.measures.differences import scientific
+
+WHOLE = 0.1
+"""From this part on a number is given in whole per cent."""
+
+
+def out_of(count: float, total: float) -> str:
+    """Return "all 960", "none of 960" or "949 of 960"."""
+    if count == total > 1:
+        return f"all {total:.0f}"
+    return f"none of {total:.0f}" if count == 0 else f"{count:.0f} of {total:.0f}"
+
+
+def each_out_of(counts: Sequence[float], totals: Sequence[float]) -> str:
+    """Return several counts: "all 960", "949 and 955 of 960", "3 of 31 and all 27"."""
+    words = [out_of(*pair) for pair in zip(counts, totals, strict=True)]
+    if len(set(words)) > 1 and len(set(totals)) == 1:
+        return f"{listed([f'{count:.0f}' for count in counts])} of {totals[0]:.0f}"
+    return alike(words)
+
+
+def listed(words: Sequence[str], joint: str = "and") -> str:
+    """Return words as a list in a sentence: "a", "a and b", "a, b and c"; "none" without any."""
+    *first, last = words or ("none",)
+    return f"{', '.join(first)} {joint} {last}" if first else last
+
+
+def alike(words: Sequence[str], joint: str = "and") -> str:
+    """Return a list of words, or the one word that they all are."""
+    return words[0] if len(set(words)) == 1 else listed(words, joint)
+
+
+def part(value: float) -> str:
+    """Return a part of a whole: in per cent from a thousandth on, as a power of ten below."""
+    if math.isnan(value):
+        return "-"
+    if math.isinf(value):
+        return "without bound"
+    if abs(value) < 1e-3:
+        return scientific(value)
+    if 0.99 < value < 1.0:
+        return f"{math.floor(1e3 * value) / 10.0:.1f} %"  # not all of it
+    return f"{value:.0%}".replace("%", " %") if abs(value) >= WHOLE else f"{100.0 * value:.2g} %"
+
+
+def times(value: float) -> str:
+    """Return a factor that something follows: "0.62 of", "1.1 times", "192 times"."""
+    if value < 1.0:
+        return f"{value:.2g} of"
+    return f"{value:.2g} times" if value < 10.0 else f"{value:.0f} times"
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit in which it is between 1 and 1000."""
+    for scale, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if seconds >= scale:
+            return f"{seconds / scale:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"
+
+
+def capital(sentence: str) -> str:
+    """Return a sentence with its first letter large."""
+    return sentence[:1].upper() + sentence[1:]

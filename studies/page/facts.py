@@ -1,0 +1,205 @@
+"""What README.md and the page of the published results say, from the published tables alone."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from engines import ENGINES
+from studies.catalogue import CHAPTERS
+from studies.kit.study import Chapter, Study
+from studies.measures.claims import TABLE, Finding, read_findings
+from studies.measures.columns import GROUPS
+from studies.measures.differences import scientific
+from studies.measures.presets import in_words, preset_of
+from studies.measures.words import duration, listed, out_of, part
+from studies.page import hero
+from studies.page.markdown import table
+from studies.precision.choices import NEAR, TYPICAL, Choice, choices
+from studies.sweep.claims import preset_table, whole
+
+PRESETS_FROM = ("presets", "sweep")
+"""Folders whose summaries hold the presets of the engines."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A chapter in words: where it stands, its question, claim, paragraph and command."""
+
+    folder: str
+    question: str
+    claim: str
+    paragraph: str
+    command: str
+    pictures: tuple[str, ...]
+    texts: tuple[str, ...]
+    statements: tuple[Finding, ...]
+
+
+def told(published: Path, study: Study, chapter: Chapter) -> Told:
+    """Return a chapter in words, and the names of what it left in its folder."""
+    folder, module = published / chapter.folder, study.load()
+    return Told(
+        folder=chapter.folder,
+        question=chapter.question,
+        claim=module.headline(folder),
+        paragraph=module.paragraph(folder),
+        command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
+        pictures=tuple(sorted(path.name for path in folder.glob("*.png"))),
+        texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
+        statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
+    )
+
+
+def chapters(published: Path) -> list[Told]:
+    """Return every published chapter in words."""
+    return [told(published, *place) for place in CHAPTERS if is_published(published, place[1])]
+
+
+def is_published(published: Path, chapter: Chapter) -> bool:
+    """Say whether a chapter has published results."""
+    return (published / chapter.folder / "provenance.json").is_file()
+
+
+def missing(published: Path) -> list[str]:
+    """Return the folders of the chapters without published results."""
+    return [each.folder for _, each in CHAPTERS if not is_published(published, each)]
+
+
+def presets(published: Path) -> pd.DataFrame:
+    """Return a line for each preset and engine over the paper's cases."""
+    lines = [preset_table(whole(published / name)) for name in PRESETS_FROM]
+    return pd.concat(lines, ignore_index=True)
+
+
+def presets_text(lines: pd.DataFrame) -> str:
+    """Return the presets as a table of Markdown."""
+    heads = ("engine", "how it is used", "outcomes right", "median", "p90", "max", "a case")
+    rows = [
+        (
+            f"`{row['source']}`",
+            in_words(row["preset"]),
+            f"{row['right']} of {row['cases']}",
+            *(part(row[name]) for name in ("median", "p90", "max")),
+            duration(1e-3 * row["ms"]),
+        )
+        for _, row in lines.iterrows()
+    ]
+    return table(heads, rows)
+
+
+def choices_text(lines: pd.DataFrame) -> str:
+    """Return which setting for which accuracy as a table of Markdown.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of work-precision.csv.
+    """
+    heads = (
+        *("largest error", "cheapest on typical cases", "a case", "its largest error"),
+        *("near overturning", "cheapest on all cases", "a case"),
+    )
+    rows = [
+        (
+            f"{chosen.target:g}",
+            *_typical(chosen.typical),
+            *(
+                (chosen.everywhere.setting, duration(chosen.everywhere.wall_s))
+                if chosen.everywhere
+                else ("none tried", "-")
+            ),
+        )
+        for chosen in choices(lines)
+    ]
+    return table(heads, rows)
+
+
+def _typical(chosen: Choice | None) -> tuple[str, str, str, str]:
+    if chosen is None:
+        return "none tried", "-", "-", "-"
+    near = chosen.near_error
+    return (
+        chosen.setting,
+        duration(chosen.wall_s),
+        part(chosen.typical_error),
+        "an outcome wrong" if near == float("inf") else part(near),
+    )
+
+
+def hero_lines(published: Path) -> dict[str, str]:
+    """Return what each source of the first picture does: its outcome, or the error of its peak."""
+    lines = hero.summary(pd.read_csv(published / "hero" / "hero.csv"))
+    return {
+        str(row["source"]): _of_peak(float(row["error"]))
+        if row["outcome"] == "rocked"
+        else f"the block {row['outcome']}"
+        for _, row in lines.iterrows()
+    }
+
+
+def _of_peak(error: float) -> str:
+    """Return the error of a peak with its sign where it can be seen."""
+    if abs(error) < 1e-3:
+        return f"its peak is right to {scientific(abs(error))}"
+    return f"its peak is off by {error:+.0%}".replace("%", " %").replace("-", "−")
+
+
+def counts(published: Path) -> dict[str, int]:
+    """Return how many cases the tables on the first screen are about."""
+    lines = pd.read_csv(published / "precision" / "work-precision.csv")
+    each = lines.groupby("set")["cases"].max()
+    return {
+        "paper": int(presets(published)["cases"].max()),
+        "typical": int(each[TYPICAL]),
+        "near": int(each[NEAR]),
+    }
+
+
+def made(published: Path) -> dict[str, str]:
+    """Return on what machine, with what versions and when the paper's cases were run."""
+    record = json.loads((published / "sweep" / "provenance.json").read_text(encoding="utf-8"))
+    machine = record["machine"]
+    return {
+        "engines": listed([f"{name} {version}" for name, version in record["engines"].items()]),
+        "machine": f"{machine['cpu']}, {machine['cores']} cores",
+        "date": record["runs"][-1]["start"][:10],
+        "sweep": f"{record['runs'][-1]['duration_s']:.0f} s",
+    }
+
+
+def glossary() -> list[tuple[str, str]]:
+    """Return every column's name, unit and meaning: a heading and a table for each group."""
+    heads = ("column", "unit", "meaning")
+    return [
+        (name, table(heads, [(f"`{key}`", *column) for key, column in columns.items()]))
+        for name, columns in GROUPS.items()
+    ]
+
+
+def helps(core: bool = True) -> str:
+    """Return what each engine's adapter does for landing, as the engines declare it."""
+    words = [
+        f"in {engine.title} {'; '.join(help_.value for help_ in preset.helped_by)}"
+        for engine in ENGINES.values()
+        for preset in engine.presets
+        if preset.name == "landing" and engine.core == core
+    ]
+    return "; and ".join(words)
+
+
+def random_fixed(published: Path) -> str:
+    """Return which presets with a fixed step get random cases wrong; empty if none does."""
+    compared = pd.read_csv(published / "validate" / "errors.csv")
+    words = [
+        f"`{source}` gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right"
+        for source, rows in compared.groupby("source", sort=False)
+        if preset_of(str(source)) == "fixed" and not rows["agrees"].all()
+    ]
+    return listed(words) if words else ""
+
+
+def minutes(full: bool) -> int:
+    """Return about how many minutes a report takes on two cores."""
+    return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))

@@ -1,0 +1,74 @@
+"""README.md and the page of the published results, written from the published tables."""
+
+from pathlib import Path
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError
+from studies.page import facts, hero
+from studies.sweep.claims import verdict
+
+PUBLISHED = Path("studies", "published")
+
+
+def command(*, root: Path = Path()) -> int:
+    """Write README.md and studies/published/README.md, with their pictures, from the tables.
+
+    Every number in them is computed from studies/published, and so are words such as "all".
+
+    Parameters
+    ----------
+    root
+        The project's folder.
+    """
+    from studies.drawing.block import draw_block
+    from studies.drawing.figures import save_all
+    from studies.drawing.hero import draw_hero
+
+    folder = root / PUBLISHED / "hero"
+    if not (root / PUBLISHED).is_dir():
+        raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
+    folder.mkdir(exist_ok=True)
+    hero.measure(folder / "hero.csv")
+    samples = pd.read_csv(folder / "hero.csv")
+    drawn = {"block": draw_block(), "hero": draw_hero(hero.BLOCK, samples, hero.summary(samples))}
+    save_all(drawn, folder)
+    for path, text in pages(root).items():
+        provenance.write_text(path, text)
+        print(path)
+    return 0
+
+
+def pages(root: Path) -> dict[Path, str]:
+    """Return the text of each page that is made from the published tables."""
+    published = root / PUBLISHED
+    environment = Environment(
+        loader=PackageLoader("studies.page", "."),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    known = {
+        "chapters": facts.chapters(published),
+        "verdict": verdict(facts.presets(published)),
+        "missing": facts.missing(published),
+        "presets": facts.presets_text(facts.presets(published)),
+        "choices": facts.choices_text(pd.read_csv(published / "precision" / "work-precision.csv")),
+        "counts": facts.counts(published),
+        "hero": facts.hero_lines(published),
+        "made": facts.made(published),
+        "helps": facts.helps(),
+        "random_fixed": facts.random_fixed(published),
+        "glossary": facts.glossary(),
+        "minutes": facts.minutes,
+    }
+    return {
+        path: environment.get_template(name).render(known)
+        for path, name in (
+            (root / "README.md", "readme.md.jinja"),
+            (published / "README.md", "published.md.jinja"),
+        )
+    }

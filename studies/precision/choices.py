@@ -1,0 +1,138 @@
+"""Which setting of an engine for which accuracy: the cheapest, and what it does elsewhere."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.precision.methods import METHODS
+from studies.sources.registry import resolve
+
+TYPICAL, NEAR = "typical", "near overturning"
+"""The sets of cases."""
+
+TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
+"""Errors that somebody may ask for."""
+
+EXACT = "Taylor series"
+"""The method to whose time the others are compared."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """The cheapest setting of an engine below a target.
+
+    Attributes
+    ----------
+    method : str
+    value : float
+    setting : str
+        Both in words.
+    wall_s : float
+        Mean time of a case [s], over the cases among which it was chosen.
+    over_exact : float
+        That over the exact solution's.
+    typical_error, near_error : float
+        Its largest error on typical cases and near overturning; inf where an outcome is wrong.
+    """
+
+    method: str
+    value: float
+    setting: str
+    wall_s: float
+    over_exact: float
+    typical_error: float
+    near_error: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choices:
+    """What to choose for a target on typical cases, and on all; None where nothing reaches it."""
+
+    target: float
+    typical: Choice | None
+    everywhere: Choice | None
+
+
+def choices(table: pd.DataFrame) -> tuple[Choices, ...]:
+    """Return what to choose for each target.
+
+    Parameters
+    ----------
+    table : DataFrame
+        The columns of work-precision.csv.
+    """
+    typical, engines = table[table["set"] == TYPICAL], engines_of(table)
+    return tuple(
+        Choices(
+            target=target,
+            typical=_choice(engines, engines[engines["set"] == TYPICAL], target, typical),
+            everywhere=_choice(engines, joint(engines), target, table),
+        )
+        for target in TARGETS
+    )
+
+
+def _choice(
+    engines: pd.DataFrame, among: pd.DataFrame, target: float, timed: pd.DataFrame
+) -> Choice | None:
+    best = cheapest_below(among, target)
+    if best is None:
+        return None
+    same = (engines["method"] == best["method"]) & (engines["value"] == best["value"])
+    errors = dict(zip(engines.loc[same, "set"], engines.loc[same, "max_error"], strict=True))
+    return Choice(
+        method=str(best["method"]),
+        value=float(best["value"]),
+        setting=setting_of(best),
+        wall_s=float(best["wall_s"]),
+        over_exact=float(best["wall_s"]) / exact_cost(timed),
+        typical_error=float(errors.get(TYPICAL, math.nan)),
+        near_error=float(errors.get(NEAR, math.nan)),
+    )
+
+
+def cheapest_below(lines: pd.DataFrame, target: float) -> "pd.Series[Any] | None":
+    """Return the cheapest line whose largest error is below a target, if there is one."""
+    good = lines[(lines["failed"] == 0) & (lines["max_error"] <= target)]
+    return None if good.empty else good.sort_values("wall_s").iloc[0]
+
+
+def engines_of(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the engines along their steps."""
+    stepping = {
+        name
+        for name, method in METHODS.items()
+        if method.stepping and resolve(method.source).kind == "engine"
+    }
+    return table[table["method"].isin(stepping)]
+
+
+def joint(table: pd.DataFrame) -> pd.DataFrame:
+    """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
+    total = table.assign(wall_s=table["wall_s"] * table["cases"])
+    found = total.groupby(["method", "value"], sort=False).agg(
+        cases=("cases", "sum"),
+        failed=("failed", "sum"),
+        max_error=("max_error", "max"),
+        wall_s=("wall_s", "sum"),
+    )
+    return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()
+
+
+def exact_cost(lines: pd.DataFrame) -> float:
+    """Return the mean time [s] of a case by the exact solution at its tightest tolerance."""
+    exact = lines[lines["method"] == EXACT]
+    tight = exact[exact["value"] == exact["value"].min()]
+    return float(np.average(tight["wall_s"], weights=tight["cases"]))
+
+
+def setting_of(line: "pd.Series[Any]") -> str:
+    """Return a method and its setting in words."""
+    method = METHODS[str(line["method"])]
+    if not method.setting:
+        return str(line["method"])
+    name = "p dt" if method.setting == "step" else method.setting
+    return f"{line['method']} at {name} = {line['value']:g}"

@@ -1,0 +1,265 @@
+"""Files that leave a doubt are refused with one line, which names the file and the place."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_accelerogram_forms import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
+
+from studies.__main__ import run
+from studies.cases.accelerograms import read_record
+from studies.cases.accelerograms.text import MOST_BYTES, MOST_SAMPLES
+from studies.cases.refusal import BadInputError
+
+ROOT = Path(__file__).parent.parent
+GOOD = AT2["series"]
+ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
+UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"
+
+
+def at2(line):
+    return f"{TITLE}{line}\nNPTS= 7, DT= .005 SEC\n{COLUMNS}"
+
+
+def asc(old, new):
+    assert old in ASC_HEADER
+    return ASC_HEADER.replace(old, new) + ASC_COLUMN
+
+
+# (what is the matter, text or bytes, --units, words of the refusal)
+DOUBTS = [
+    ("velocity", at2(UNLIKE), None, "line 3 speaks of velocity"),
+    ("velocity, given units", at2(UNLIKE), "g", "line 3 speaks of velocity"),
+    ("displacement", at2("DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "g", "displacement"),
+    ("displacement, no unit", at2("DISPLACEMENT TIME HISTORY"), "m/s2", "displacement"),
+    (
+        "a title, velocity",
+        at2("ACCELEROGRAM 12\nVELOCITY TIME SERIES"),
+        "g",
+        "line 4 speaks of vel",
+    ),
+    ("units of velocity", at2("ACCELERATION TIME SERIES IN UNITS OF CM/S"), "g", "'cm/s'"),
+    ("a column of velocity", f"t (s), v (m/s)\n{ROWS.replace(' ', ',')}", "g", "'v'"),
+    ("a column of velocity, blanks", f"Time Velocity\n{ROWS}", "g", "'Velocity'"),
+    ("a remark of velocity", f"# velocity of the ground\n{ROWS}", "g", "speaks of velocity"),
+    ("a column in m/s", f"t [s], x [m/s]\n{ROWS.replace(' ', ',')}", "g", "'m/s'"),
+    ("mg and g", at2("ACCELERATION IN UNITS OF MG"), "g", "states mg; --units must not be g"),
+    ("mm/s2 and m/s2", at2("ACCELERATION IN MM/S2"), "m/s2", "mm/s2; --units must not be m/s2"),
+    ("mg in a table", f"t (s)  a (mg)\n{ROWS}", "g", "states mg; --units must not be g"),
+    ("mm/s2 in a table", f"t,a_mm/s^2\n{ROWS.replace(' ', ',')}", "g", "mm/s2; --units must not"),
+    ("feet", at2("ACCELERATION IN UNITS OF FT/S2"), "g", "line 3 states 'ft/s2'; it must be among"),
+    ("volts", at2("ACCELERATION IN UNITS OF V"), "g", "line 3 states 'v'; it must be among"),
+    ("parts of g", at2("ACCELERATION IN UNITS OF G/10"), "g", "line 3 states 'g/10'"),
+    ("decimal commas", "1,5\n2,7\n3,1\n", "g", "its commas may be decimal ones"),
+    ("decimal commas, semicolons", "0,00;1,5\n0,01;2,7\n", "g", "'0,00' must be a number with a d"),
+    ("decimal commas, blanks", "0,00 1,5\n0,01 2,7\n", "g", "has 3 columns"),
+    ("decimal commas in AT2", GOOD.replace(".1\n", ",1\n"), None, "line 6: '-,1' must be a number"),
+    ("Arabic digits", "٠ ٠\n١ ٢\n٢ ٤\n", "g", "0 rows of numbers"),
+    ("Arabic digits inside", ROWS.replace("0.2\n", "0.٢\n"), "g", "line 2: '0.٢' must be a num"),
+    ("Arabic digits in AT2", GOOD.replace("-.1", "-.١"), None, "'-.١' must be a number"),
+    ("an Arabic count", GOOD.replace("NPTS=      7", "NPTS=      ٧"), None, "columns"),
+    ("digits in groups", ROWS.replace("0.2\n", "1_000\n"), "g", "'1_000' must be a number"),
+    ("NaN among samples", GOOD.replace("-.1\n", "NaN\n"), None, "line 6: NaN must be a finite"),
+    ("NaN first", GOOD.replace("0.0000000E+00", "NaN"), None, "line 5: NaN must be a finite"),
+    ("NaN after the last", f"{GOOD}NaN\n", None, "line 8: NaN must be a finite number"),
+    ("NaN, no count", AT2["no count"].replace("-.1\n", "NaN\n"), None, "line 6: NaN must be"),
+    ("too large", ROWS.replace("0.2\n", "1e999\n"), "g", "line 2: 1e999 must be a finite number"),
+    (
+        "too large in SI",
+        GOOD.replace("-.1", "1.7e308"),
+        None,
+        "samples[5] is inf; it must be a",
+    ),
+    ("too large to integrate", GOOD.replace("-.1", "1e307"), None, "their motion overflows"),
+    ("too fine", GOOD.replace(".0050", "1e-320"), None, "their motion overflows"),
+    ("too long", GOOD.replace(".0050", "1e300"), None, "their motion overflows"),
+    ("a long word", ROWS.replace("0.2\n", "9x" * 3000 + "\n"), "g", "must be a number"),
+    ("Latin-1", b"# caf\xe9, units: g\n0 0.1\n1 0.2\n", None, "line 1: the byte 0xe9 is not text"),
+    ("no text", b"\x80\x81\xfe\xff\n" + ROWS.encode(), "g", "line 1: the byte 0x80 is not text"),
+    ("UTF-16", ROWS.encode("utf-16"), "g", "line 1: the byte 0xff is not text"),
+    ("zeros", b"# a\x00b\n" + ROWS.encode(), "g", r"line 1: '\x00' is not text"),
+    ("a film", b"\x89PNG\r\n\x1a\n\x00\x00", "g", "line 1: the byte 0x89 is not text"),
+    (
+        "a unit of time",
+        f"t (min), a (g)\n{ROWS.replace(' ', ',')}",
+        None,
+        "line 1: its times are in 'min'",
+    ),
+    ("a unit of time in a remark", f"# ms\n{ROWS}", "g", "line 1 speaks of ms"),
+    ("a step in ms", GOOD.replace("SEC,", "MSEC,"), None, "line 4: the step is in MSEC"),
+    ("swapped names", f"a (g), t (s)\n{ROWS.replace(' ', ',')}", None, "'a' and 't'; they must be"),
+    ("swapped names, blanks", f"acc time\n{ROWS}", "g", "'acc' and 'time'; they must be time and"),
+    ("swapped numbers", "0.1 0.00\n0.2 0.01\n0.3 0.02\n", "g", "both columns increase in equal"),
+    ("counted rows", f"sample,a (g)\n{ROWS.replace(' ', ',')}", None, "'sample' and 'a'"),
+    (
+        "two counts",
+        AT2["said twice"].replace("7 points", "8 points"),
+        None,
+        "says 8 and 7 as number",
+    ),
+    ("two steps", AT2["said twice"].replace("DT= .005", "DT= .006"), None, "says 0.005 and 0.006"),
+    ("no step", GOOD.replace(", DT=   .0050 SEC,", ""), None, "says NPTS; it must say DT, too"),
+    ("no end", AT2["no count"].replace("*** End Data ***", ""), None, "columns"),
+    ("after the end", f"{AT2['begin and end']}0.1\n", None, "line 10: '***' must be a number"),
+    ("VT2", GOOD, None, "it must be a file of acceleration, as AT2 files are"),
+    ("ASC, velocity", asc("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY"), "g", "'VELOCITY'"),
+    (
+        "ASC, a spectrum",
+        asc(": ACCELERATION", ": ACCELERATION RESPONSE SPECTRUM"),
+        None,
+        "SPECTRUM",
+    ),
+    ("ASC, cm/s", asc("UNITS: cm/s^2", "UNITS: cm/s"), None, "line 14 states 'cm/s'"),
+    ("ASC, no units", asc("UNITS: cm/s^2\n", ""), None, "does not state its units"),
+    ("ASC, other units", asc("UNITS: cm/s^2", "UNITS: mg"), "g", "it states mg; --units must not"),
+    ("ASC, no count", asc("NDATA: 7\n", ""), None, "it does not say NDATA, and must"),
+    ("ASC, no type", asc("DATA_TYPE: ACCELERATION\n", ""), None, "does not say DATA_TYPE"),
+    ("ASC, empty step", asc("_S: 0.005000", "_S:"), None, "does not say SAMPLING_INTERVAL_S"),
+    (
+        "ASC, odd count",
+        asc("NDATA: 7", "NDATA: 7.5"),
+        None,
+        "line 11: NDATA is '7.5'; it must be w",
+    ),
+    (
+        "ASC, twice",
+        asc("USER1:\nUSER1:", "NDATA: 7"),
+        None,
+        "line 19: NDATA must not be said twice",
+    ),
+    ("ASC, short", ASC_HEADER + ASC_COLUMN[:30], None, "holds 4 samples; it must hold the 7"),
+    (
+        "ASC, NaN",
+        ASC_HEADER + ASC_COLUMN.replace("0.4", "NaN"),
+        None,
+        "line 24: 'NaN00000' must be",
+    ),
+    (
+        "ASC, two columns",
+        ASC_HEADER + ASC_COLUMN.replace("\n", " 1\n"),
+        None,
+        "line 21: '0.000000 1'",
+    ),
+    ("COSMOS", "Corrected acceleration   (Format v01.20 with 13 text lines)\n", "g", "COSMOS file"),
+    ("SMC", "2 CORRECTED ACCELEROGRAM\n*\n", "g", "it is a SMC file, which is not read"),
+    ("CSMIP", "Corrected Accelerogram Caltech Vol II\n", "g", "it is a CSMIP file"),
+    ("K-NET", "Origin Time       1999/01/02 03:04:05\n", "g", "it is a K-NET file"),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "units", "words"), DOUBTS, ids=[doubt[0] for doubt in DOUBTS]
+)
+def test_a_doubt_is_refused_with_one_line(name, content, units, words, tmp_path):
+    path = tmp_path / ("motion.VT2" if name == "VT2" else "motion.txt")
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(BadInputError) as refusal:
+        read_record(path, units)
+    message = str(refusal.value)
+    assert message.startswith(f"--record is {str(path)!r}; ")
+    assert words in message
+    assert "\n" not in message
+    assert len(message) < len(str(path)) + 300
+
+
+MARKS = "0123456789.,;:eE+-= \t\r\n#%()[]_/*gmscANPTSDT\x00\x1a\u0663\u00e9\ufeff"
+EDITS = st.lists(st.tuples(st.integers(0, 600), st.integers(0, 9), st.text(MARKS, max_size=9)))
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    content=st.binary(max_size=60)
+    | st.text(MARKS, max_size=60).map(str.encode)
+    | st.sampled_from([*AT2.values(), ASC_HEADER + ASC_COLUMN, f"t (s), a (g)\n{ROWS}"]),
+    edits=EDITS,
+    units=st.sampled_from([None, "g", "cm/s2"]),
+)
+def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, tmp_path_factory):
+    """A file of any bytes, or a good one with some of its characters changed."""
+    if isinstance(content, str):
+        for begin, length, text in edits:
+            content = content[:begin] + text + content[begin + length :]
+        content = content.encode()
+    path = tmp_path_factory.getbasetemp() / "any.txt"
+    path.write_bytes(content)
+    try:
+        record = read_record(path, units)
+    except BadInputError as refusal:
+        assert len(str(refusal).splitlines()) == 1
+    else:
+        assert np.isfinite(record.samples).all()
+
+
+BLOCK = ["compare", "--width", "0.5", "--height", "1.5", "--units", "g", "--record"]
+
+
+def refused(path, capsys):
+    assert run([*BLOCK, str(path)]) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert len(output.err.splitlines()) == 1
+    assert output.err.startswith("rocking: --record is ")
+    return output.err
+
+
+def test_a_named_pipe_is_not_waited_for(tmp_path):
+    """In a process of its own, for one that waits would wait for ever."""
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    command = [sys.executable, "-m", "studies", *BLOCK, str(path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "it must be a file that can be read (it is a named pipe)" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("/dev/null", "it is a device"),
+        (".", "it is a folder"),
+        ("a\0b", "embedded null byte"),
+        ("a" * 300, "File name too long"),
+        ("no.file", "No such file or directory"),
+    ],
+)
+def test_what_is_no_file_is_not_opened(path, words, capsys):
+    assert f"it must be a file that can be read ({words})" in refused(path, capsys)
+
+
+def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
+    """By what its header says, before its samples are looked at."""
+    path = tmp_path / "long.AT2"
+    for text in (GOOD.replace("7,", "10000000,"), asc("NDATA: 7", "NDATA: 10000000")):
+        path.write_text(text)
+        message = refused(path, capsys)
+        assert "it holds 10000000 samples, for which one exact solution would take" in message
+        assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
+
+
+def test_a_large_file_is_refused_by_its_size(tmp_path, capsys):
+    path = tmp_path / "long.AT2"
+    path.touch()
+    os.truncate(path, MOST_BYTES + 1)
+    assert "it holds some 4000000 samples" in refused(path, capsys)
+
+
+def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
+    path = tmp_path / "long.txt"
+    path.write_text("0 0\n" * (MOST_SAMPLES + 5001))
+    assert "it holds at least 100" in refused(path, capsys)
+
+
+@pytest.mark.parametrize("form", ["no count", "table"])
+def test_samples_are_counted_as_they_are_read(form, tmp_path, capsys, monkeypatch):
+    for module in ("at2", "table"):
+        monkeypatch.setattr(f"studies.cases.accelerograms.{module}.MOST_SAMPLES", 6)
+    rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
+    path = tmp_path / "long.txt"
+    path.write_text({**AT2, "table": rows}[form])
+    assert "it holds more than 6 samples" in refused(path, capsys)

@@ -1,0 +1,208 @@
+"""Files of records in every form that their archives write: each is read as its header says.
+
+The samples are made up here; the headers are worded as those of the archives, with other facts.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from studies.cases.accelerograms import UNITS, read_record
+
+SAMPLES = np.array([0.0, 0.1, -0.25, 0.4, 0.05, -0.1, 0.0])
+COLUMNS = "  0.0000000E+00  1.0000000E-01 -2.5000000E-01\n   .4000000E+00  .5000000E-01 -.1\n 0\n"
+TITLE = "PEER STRONG MOTION DATABASE RECORD. PROCESSING BY SOMEBODY.\nSOMEWHERE 01/02/99, ABC, N\n"
+
+AT2 = {
+    "filter points": (
+        f"{TITLE}ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.02 Hz LP=20.0 Hz\n"
+        f"NPTS= 7, DT= .00500 SEC\n{COLUMNS}"
+    ),
+    "lower case": (
+        f"{TITLE}ACCELERATION TIME HISTORY IN UNITS OF G. \nNPTS= 7, dt= .005\n{COLUMNS}"
+    ),
+    "series": (
+        f"{TITLE}ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=      7, DT=   .0050 SEC,\n{COLUMNS}"
+    ),
+    "poles": (
+        f"{TITLE}ACCELERATION TIME SERIES IN UNITS OF G\n"
+        f"NPTS=   7, DT=   .0050 SEC, 0 POLE @ 30.00000 HZ, 4 POLE @ .1 HZ\n{COLUMNS}"
+    ),
+    "rotated": (
+        "Orig PEER filename = SOME/WHERE_233_FN.acc, Scale factor = 2.5 \n"
+        "  rotation angle - clockwise   -37.0\n  FN component, azimuth =   233.0\n"
+        f"  Acceleration in g\n7 0.0050 NPTS, DT \n{COLUMNS}"
+    ),
+    "capitals, CRLF": (
+        f"{TITLE}ACCELERATION IN G\n  7    0.0050   NPTS, DT\n{COLUMNS}".replace("\n", "\r\n")
+    ),
+    "trailing blanks": (
+        f"{TITLE}ACCELERATION TIME SERIES IN UNITS OF G   \nNPTS= 7, DT= .0050 SEC   \n"
+        f"{COLUMNS}".replace("\n", "  \n")
+        + "\n \n"
+    ),
+    "begin and end": (
+        "Data for somewhere, North South Component\n7 points at equal spacing of 0.005 sec\n"
+        "Points are listed in the format of 8F10.5, i.e., 8 points across in\na row\n"
+        f"The units are (g)\n*** Begin data ***\n{COLUMNS}*** End Data ***\n\n"
+    ),
+    "said twice": (
+        "7 points at equal spacing of 0.005 sec\nThe units are (g)\n*** Begin data ***\n"
+        f"NPTS=  7, DT= .00500 SEC\n{COLUMNS}*** End Data ***\n"
+    ),
+    "step first": f"{TITLE}ACCELERATION IN G\nDT=.005 NPTS=7\n{COLUMNS}",
+    "no count": (
+        f"{TITLE}ACCELERATION TIME HISTORY IN UNITS OF G\nDT= .005 SEC\n{COLUMNS}*** End Data ***\n"
+    ),
+}
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return what writes a text into a file, its line ends as they are."""
+
+    def write(text, name="motion.txt"):
+        path = tmp_path / name
+        path.write_bytes(text.encode())
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("form", AT2)
+def test_an_at2_file_needs_no_units(form, written):
+    record = read_record(written(AT2[form], "motion.AT2"))
+    assert record.dt == 0.005
+    assert record.samples == pytest.approx(9.81 * SAMPLES, rel=1e-15)
+    assert record == read_record(written(AT2[form], "motion.AT2"), "g")
+
+
+@pytest.mark.parametrize(
+    ("stated", "unit"),
+    [
+        ("IN UNITS OF CM/SEC/SEC", "cm/s2"),
+        ("IN UNITS OF CM/S**2", "cm/s2"),
+        ("IN UNITS OF CM/SEC2.", "cm/s2"),
+        ("IN UNITS OF M / S^2", "m/s2"),
+        ("(M/S/S)", "m/s2"),
+        ("IN MM/S2", "mm/s2"),
+        ("UNITS: mm/s^2", "mm/s2"),
+        ("in mg", "mg"),
+        ("[milli-g], UNITS=MG", "mg"),
+        ("(Gal)", "gal"),
+        ("UNITS ARE GALS", "gal"),
+        ("IN cm s-2", "cm/s2"),
+        ("(m s^-2)", "m/s2"),
+    ],
+)
+def test_units_are_read_as_the_header_states_them(stated, unit, written):
+    head = f"{TITLE}ACCELERATION TIME HISTORY {stated}\nNPTS= 7, DT= .005 SEC\n"
+    record = read_record(written(head + COLUMNS))
+    assert record.samples == pytest.approx(UNITS[unit] * SAMPLES, rel=1e-15)
+
+
+ASC_HEADER = """\
+EVENT_NAME: SOMEWHERE: A TEST
+EVENT_ID: XX-1999-0001
+EVENT_DATE_YYYYMMDD: 19990102
+MAGNITUDE_L:
+NETWORK: XX
+STATION_NAME: ABC
+STATION_ELEVATION_M: 12
+SITE_CLASSIFICATION_EC8: B*
+DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS: 19990102_030405.000
+SAMPLING_INTERVAL_S: 0.005000
+NDATA: 7
+DURATION_S: 0.030
+STREAM: HNE
+UNITS: cm/s^2
+FULL_SCALE_G:
+PGA_CM/S^2: 0.4
+BASELINE_CORRECTION: BASELINE REMOVED
+DATA_TYPE: ACCELERATION
+USER1:
+USER1:
+"""
+ASC_COLUMN = "".join(f"{sample:.6f}\n" for sample in SAMPLES)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_an_asc_file_of_esm_or_itaca(end, written):
+    text = (ASC_HEADER + ASC_COLUMN).replace("\n", end)
+    record = read_record(written(text, "XX.ABC..HNE.D.19990102.030405.C.ACC.ASC"))
+    assert record.dt == 0.005
+    assert record.samples == pytest.approx(0.01 * SAMPLES, rel=1e-15)
+    raw = ASC_HEADER.replace("ACCELERATION\n", "UNPROCESSED ACCELERATION\n")
+    assert read_record(written(raw + ASC_COLUMN), "gal") == record
+
+
+@pytest.mark.parametrize(
+    ("names", "step"),
+    [
+        ("t (ms),a (g)", 5e-3),
+        ("# Time [msec], Acceleration [g]", 5e-3),
+        ("t_ms,acc_g", 5e-3),
+        ("Time in milliseconds, acc in g", 5e-3),
+        ("t / ms,a / g", 5e-3),
+        ("t,a (g)", 5.0),
+        ("t/s,a/g", 5.0),
+        ("Elapsed time (sec),Ground acceleration N-S (g)", 5.0),
+        ("Zeit [s],a [g]", 5.0),
+        ('"Time (sec.)","Acceleration (g)"', 5.0),
+        ("% t (s)   acc (g)", 5.0),
+    ],
+)
+def test_times_are_read_in_the_unit_that_stands_above_them(names, step, written):
+    rows = "".join(f"{5 * i},{a}\n" for i, a in enumerate(SAMPLES))
+    record = read_record(written(f"{names}\n{rows}"))
+    assert record.dt == pytest.approx(step, rel=1e-15)
+    assert record.samples == pytest.approx(9.81 * SAMPLES, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,a (g)\n0,1\n1,2\n2,4\n",
+        "t,a (g)\n0,1\n1,2\n2,3\n",
+        "# units: g\n0, 1\n1, 2\n2, 4\n",
+        "# units: g\n0;1\n1;2\n2;4\n",
+        "# units: g\n0 1\n1 2\n2 4\n",
+        "El Centro, NS, units: g\n0 1\n1 2\n# a remark\n\n2 4\n",
+        "# integrated from: velocity\nTime Acceleration(g)\n0 1\n1 2\n2 4\n",
+        "\ufefft [s];a [g];\n0;1;\n1;2;\n2;4;\n",
+    ],
+)
+def test_tables_that_leave_no_doubt(text, written):
+    record = read_record(written(text))
+    assert record.dt == 1.0
+    assert record.samples[:2].tolist() == [9.81, 19.62]
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    samples=st.lists(st.floats(-1e3, 1e3), min_size=3, max_size=40),
+    unit=st.sampled_from(list(UNITS)),
+    columns=st.integers(1, 9),
+    end=st.sampled_from(["\n", "\r\n", "  \n"]),
+    form=st.sampled_from(["at2", "asc", "comma", "semicolon", "blank"]),
+)
+def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_factory):
+    """Any samples in any form, unit and layout, to the last digit that is printed."""
+    words = [repr(sample) for sample in samples]
+    count = len(samples)
+    if form == "at2":
+        rows = [" ".join(words[at : at + columns]) for at in range(0, count, columns)]
+        said = [f"ACCELERATION IN UNITS OF {unit.upper()}", f"NPTS= {count}, DT= .0050 SEC"]
+    elif form == "asc":
+        kind, step = "DATA_TYPE: ACCELERATION", "SAMPLING_INTERVAL_S: 0.005"
+        said, rows = [kind, f"NDATA: {count}", f"UNITS: {unit}", step], words
+    else:
+        mark = {"comma": ",", "semicolon": ";", "blank": " "}[form]
+        said = [f"t (s){mark}a ({unit})"]
+        rows = [f"{at * 0.005:.4f}{mark}{word}" for at, word in enumerate(words)]
+    path = tmp_path_factory.getbasetemp() / "form.txt"
+    path.write_bytes("".join(f"{line}{end}" for line in (*said, *rows)).encode())
+    record = read_record(path)
+    assert record.dt == pytest.approx(0.005, rel=1e-12)
+    assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()

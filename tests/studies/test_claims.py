@@ -1,0 +1,332 @@
+"""Claims on small tables: a sentence changes when its table no longer says so."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.contact import claims as contact
+from studies.ensemble import claims as ensemble
+from studies.histories.study import CLAIMS
+from studies.measures import words
+from studies.measures.claims import Claim, Finding, read_findings, sentences, tally, write_findings
+from studies.overturning import report as overturning
+from studies.precision import claims as precision
+from studies.precision.choices import choices
+from studies.stability import findings as stability
+from studies.sweep import claims as sweep
+from studies.validate import claims as validate
+from studies.validate.cases import LEAST_NORMAL, everything
+from studies.validity import report as validity
+
+
+@pytest.mark.parametrize(
+    ("count", "text"), [(960, "all 960"), (0, "none of 960"), (949, "949 of 960")]
+)
+def test_all_and_none_are_counted(count, text):
+    assert words.out_of(count, 960) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.9958, "99.5 %"),
+        (1.0, "100 %"),
+        (0.0846, "8.5 %"),
+        (0.39, "39 %"),
+        (7.8e-5, "7.8e-05"),
+        (math.inf, "without bound"),
+        (math.nan, "-"),
+    ],
+)
+def test_a_part_is_never_rounded_to_the_whole(value, text):
+    assert words.part(value) == text
+
+
+def test_lists_and_times():
+    assert words.listed([]) == "none"
+    assert words.listed(["a", "b", "c"]) == "a, b and c"
+    assert words.alike(["1 %", "1 %"]) == "1 %"
+    assert words.each_out_of([949, 955], [960, 960]) == "949 and 955 of 960"
+    assert words.each_out_of([960, 960], [960, 960]) == "all 960"
+    assert words.each_out_of([3, 27], [31, 27]) == "3 of 31 and all 27"
+    assert words.times(0.62) == "0.62 of" and words.times(192.4) == "192 times"
+    assert words.duration(1.78e-3) == "1.78 ms" and words.duration(19.2e-6) == "19.2 µs"
+
+
+def summary(source, agree, median, largest, false=0, missed=0):
+    return {
+        "source": source,
+        "cases": 10,
+        "agree": agree,
+        "median_error": median,
+        "max_error": largest,
+        "p90_error": largest,
+        "false_overturnings": false,
+        "missed_overturnings": missed,
+        "wall_s": 1.0,
+    }
+
+
+def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
+    lines = pd.DataFrame(
+        [
+            summary("exact", 10, 0.0, 0.0),
+            summary("housner", 8, 0.5, 2.0, false=2),
+            summary("pybullet:naive", 9, 0.01, 0.4),
+            summary("mujoco:naive", 10, 0.08, 0.9),
+            summary("pybullet", 10, 2e-6, 3e-5),
+        ]
+    )
+    text = sweep.claims(lines)
+    assert "With the libraries' defaults, pybullet and mujoco get 9 and 10 of 10" in text
+    assert "With steps that land on impacts, pybullet gets all 10 outcomes right" in text
+    assert "housner 8 of 10 (2 falsely overturned)" in text
+    table = sweep.preset_table(lines)
+    assert list(table["source"]) == ["pybullet:naive", "mujoco:naive", "pybullet"]
+    assert table["ms"].iloc[0] == pytest.approx(100.0)
+
+
+def work(method, value, kind, median, largest, wall_s):
+    return {
+        "set": kind,
+        "method": method,
+        "value": value,
+        "cases": 12,
+        "failed": 0,
+        "median_error": median,
+        "max_error": largest,
+        "wall_s": wall_s,
+    }
+
+
+def precision_table(near=1e-3):
+    return pd.DataFrame(
+        [
+            *(work("Taylor series", 1e-16, kind, 0.0, 1e-15, 2e-5) for kind in KINDS),
+            work("RK4", 0.1, "typical", 1e-6, 5e-5, 1e-5),
+            work("RK4", 0.1, "near overturning", 1e-6, 5e-4, 1e-5),
+            work("mujoco landing", 0.02, "typical", 5e-5, 9e-5, 4e-3),
+            work("mujoco landing", 0.02, "near overturning", 9e-5, near, 6e-3),
+            work("mujoco landing", 0.005, "typical", 1e-6, 2e-6, 1e-2),
+            work("mujoco landing", 0.005, "near overturning", 1e-6, 5e-5, 2e-2),
+            work("mujoco landing", 0.001, "typical", 1e-7, 9e-6, 6e-2),
+            work("mujoco landing", 0.001, "near overturning", 1e-7, 6e-5, 9e-2),
+        ]
+    )
+
+
+KINDS = ("typical", "near overturning")
+
+
+def test_a_target_on_typical_cases_is_not_one_on_all():
+    last = choices(precision_table())[-1]
+    assert last.target == 1e-4
+    assert (last.typical.value, last.everywhere.value) == (0.02, 0.005)
+    assert last.typical.over_exact == pytest.approx(200.0)
+    # both sets of the cheapest setting for all, over the exact solution on both
+    assert last.everywhere.over_exact == pytest.approx(750.0)
+    text = precision.claims(precision_table())
+    assert "near overturning it errs by 0.1 %, and all cases need mujoco landing at" in text
+    assert "750 times" in text
+    assert "5.0e-05 in 0.5 of the exact solution's time" in text
+    assert "errs by 5.0e-05, too" in precision.claims(precision_table(near=5e-5))
+    assert "gets an outcome wrong" in precision.claims(precision_table(near=math.inf))
+
+
+def test_an_error_that_rises_again_is_said_to():
+    text = precision.claims(precision_table())
+    assert "the median error falls to 1.0e-07 at p dt = 0.001" in text
+    assert "the largest to 2.0e-06 at p dt = 0.005 and rises again to 9.0e-06 below" in text
+
+
+def test_orders_stand_with_their_uncertainty():
+    steps = (0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3)
+    rows = [work("mujoco fixed", h, "typical", h**1.44, h, 1e-3) for h in steps]
+    exact = [work("Taylor series", 1e-16, kind, 0.0, 0.0, 2e-5) for kind in KINDS]
+    near = [work("mujoco fixed", h, "near overturning", h, h, 1e-3) for h in steps]
+    text = precision.claims(pd.DataFrame([*exact, *rows, *near]))
+    assert "mujoco fixed 1.44 ± 0.00" in text
+
+
+def agreed(source, predicted, low, high, ks=0, mcnemar=0.5):
+    return {
+        "width_m": 1.0,
+        "height_m": 4.0,
+        "source": source,
+        "cases": 240,
+        "predicted": predicted,
+        "capacity_ratio": 0.5 * (low + high),
+        "ratio_low": low,
+        "ratio_high": high,
+        "ks_tests": 6,
+        "ks_rejected": ks,
+        "mcnemar_p": mcnemar,
+    }
+
+
+@pytest.mark.parametrize(
+    ("row", "evidence"),
+    [
+        (agreed("a", 0.6, 1.03, 1.16), "capacity ratio 1.095 [1.030, 1.160] at 1 m x 4 m"),
+        (agreed("a", 0.6, 0.95, 1.05, mcnemar=0.004), "McNemar p = 0.004"),
+        (agreed("a", 0.6, 0.95, 1.05, ks=2), "rejects 2 of 6"),
+    ],
+)
+def test_a_claim_that_any_test_rejects_does_not_hold(row, evidence):
+    text = ensemble.verdict(pd.DataFrame([row]))
+    assert "holds" not in text
+    assert evidence in text and "At least one test rejects it for a (60 %)" in text
+
+
+def test_a_claim_that_no_test_rejects_holds_where_responses_are_not_predicted():
+    table = pd.DataFrame([agreed("a", 0.6, 0.95, 1.05), agreed("b", 0.99, 0.99, 1.01)])
+    text = ensemble.verdict(table)
+    assert "for a (60 %): there the claim" in text and "holds" in text
+    assert "rejects" not in text
+    assert "with b (99 %)" in text
+
+
+def variant(preset, factor, level, moved, largest, *, wrong=0, turned=0.0, trap=""):
+    return {
+        "engine": "mujoco",
+        "preset": preset,
+        "factor": factor,
+        "level": level,
+        "trap": trap,
+        "cases": 12,
+        "failed": 0,
+        "wrong": wrong,
+        "max_error": largest,
+        "moved": moved,
+        "ratio_moved": turned,
+        "message": "",
+        "worse": wrong > 0,
+    }
+
+
+def contact_table():
+    return pd.DataFrame(
+        [
+            variant("landing", "", "steps that land on impacts", 0.0, 5e-6),
+            variant("fixed", "", "best at a fixed step", 0.0, 1.3e-2),
+            variant("fixed", "inertia", "default", 1.09, 0.71, wrong=5),
+            variant("fixed", "geometry", "default", 0.14, 1.3e-2, turned=0.07),
+            variant("fixed", "ERP", "default", 1e-9, 1.3e-2),
+            variant("naive", "", "the library's defaults", 0.0, 2.8e-2),
+            variant("naive", "ERP", "as in the best", 2.6e-2, 2.8e-2, turned=0.046),
+        ]
+    )
+
+
+def test_what_moves_a_peak_and_what_errs_are_two_orders_from_two_starts():
+    lines = contact_table()
+    text = contact.findings(lines)
+    assert "moved by more than 0.1 % by inertia: default (109 %, 5 of 12 outcomes wrong)" in text
+    assert "geometry: default (14 %); a larger error than the preset's own" in text
+    # the geometry moves a peak, and leaves no larger error
+    assert "left by inertia: default (71 %, 5 of 12 outcomes wrong)." in text
+    still = [line for line in text.splitlines() if "without visible effect" in line]
+    assert [("ERP" in line) for line in still] == [True, False]
+    assert "from the defaults. By how far it moves a peak: ERP: as in the best (2.6 %)" in text
+    assert "inertia in mujoco (71 %)" in contact.first_claim(lines)
+
+
+def extreme(source, verdict, outcome="rocked", peak=0.5):
+    return {
+        "source": source,
+        "verdict": verdict,
+        "outcome": outcome,
+        "exact_outcome": "rocked",
+        "peak_ratio": peak,
+        "exact_peak": 0.5,
+        "error": peak / 0.5 - 1.0,
+    }
+
+
+def test_unseen_and_invalid_cases_are_not_right_ones():
+    rows = [extreme("mujoco", word) for word in ("good", "good", "unseen", "off", "invalid")]
+    text = stability.verdicts_sentence(pd.DataFrame([extreme("exact", "good"), *rows]))
+    assert "mujoco 2 of 4 (1 too small to be seen, 1 more beyond the reference)" in text
+    assert "exact 1" not in text and "independent" not in text
+    assert "2 of 4" in stability.first_claim(pd.DataFrame(rows))
+
+
+def test_the_reference_stands_beside_independent_integrators():
+    rows = [
+        extreme("radau", "good", peak=0.5 + 1e-7),
+        extreme("dop853", "outcome", "overturned", math.inf),
+    ]
+    text = stability.reference_sentence(pd.DataFrame(rows).assign(error=[2e-7, math.nan]))
+    assert "radau and dop853 have the same outcome in 1 of 2 runs, and peaks within 1.0e-07" in text
+
+
+def test_the_census_counts_what_was_left_out():
+    counted = validate.census(7, 5)
+    forces = [normal for (_, normal), _ in zip(everything(7), range(counted.drawn), strict=False)]
+    assert forces[-1] > LEAST_NORMAL
+    assert sum(normal > LEAST_NORMAL for normal in forces) == counted.kept == 5
+    assert counted.near == sum(0.0 < normal <= LEAST_NORMAL for normal in forces)
+    assert counted.drawn == counted.kept + counted.near + counted.lifted
+
+
+def test_random_cases_say_how_many_were_drawn_and_left_out():
+    rows = pd.DataFrame(
+        {
+            "source": ["mujoco:fixed"] * 3,
+            "agrees": [True, True, False],
+            "error": [1e-3, 0.2, math.nan],
+            "kappa": [2.0, 50.0, math.nan],
+            "kappa_eta": [1.0, 1.0, math.nan],
+        }
+    )
+    text = validate.claims(rows, validate.Census(20, 3, 4, 13))
+    assert "mujoco:fixed gets 2 of 3 outcomes right" in text
+    assert "0.1 % at most where κ < 10 (1 peaks)" in text
+    assert "what is left of 20 drawn" in text and "in 4 others" in text and "in 13 below" in text
+
+
+def test_a_map_is_not_all_right_with_one_wrong_cell():
+    line = {"source": "mujoco", "false": 1.0 / 1024, "missed": 0.0, "cells": 1024.0, "failed": 0}
+    assert "1023 of 1024" in overturning._share(pd.Series(line))
+    assert "all 1024" in overturning._share(pd.Series({**line, "false": 0.0}))
+
+
+def test_the_reference_never_ends_only_where_no_pivot_lifts():
+    table = pd.DataFrame(
+        {
+            "outcome": "rocked",
+            "aspect": [1.0, 1.0, 3.0],
+            "onsets": [1.2, 1.5, 8.0],
+            "min_normal": [0.1, -0.2, 0.3],
+        }
+    )
+    text = validity.first_claim(table)
+    assert "from 1.5 onsets at H/B 1" in text and "never at H/B 3" in text
+
+
+def test_a_claim_needs_its_sources_and_is_told_whichever_way_it_falls(tmp_path):
+    table = pd.DataFrame({"source": ["exact"], "value": [2.0]})
+    claim = Claim("two is less than one", lambda t: (bool((t["value"] < 1).all()), "2"), ("exact",))
+    lost = Claim("nobody asked", lambda t: (True, ""), ("rk4",))
+    found = [claim.finding(table), lost.finding(table), Finding("it is so", True, "1")]
+    assert [item.holds for item in found] == [False, None, True]
+    assert tally(found, "them") == "Of them 1 of 2 hold; not: two is less than one."
+    assert "nobody asked: not tested" in sentences(found)
+    write_findings(tmp_path, found)
+    assert read_findings(tmp_path) == found
+
+
+def test_the_papers_histories_are_judged_by_their_peaks():
+    rows = pd.DataFrame(
+        [
+            {"panel": panel, "source": source, "outcome": "rocked", "peak_ratio": peak}
+            for panel, far in (("a", 1.1), ("b", 1.2), ("c", 1.5))
+            for source, peak in (("exact", 1.0), ("housner", far), ("modified", 1.0))
+        ]
+    )
+    assert CLAIMS[4].finding(rows).holds is True
+    worse = rows.assign(peak_ratio=np.where(rows["panel"] == "c", 1.0, rows["peak_ratio"]))
+    assert CLAIMS[4].finding(worse).holds is False
+    assert CLAIMS[5].finding(rows).holds is False

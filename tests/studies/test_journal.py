@@ -1,0 +1,180 @@
+"""The journal of a results folder: damage, strangers, links, pipes."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from studies.catalogue import CHAPTERS, STUDIES
+from studies.kit.drafts import draft
+from studies.kit.journal import FolderError, open_journal
+from studies.kit.sealed import seal, unseal
+
+IDENTITY = {"study": "test", "settings": {"seed": 1}}
+ROWS = {f"key {n}": {"outcome": "rocked", "peak_ratio": 0.1 * n, "message": "θ"} for n in range(3)}
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+WRITING = [study for study in STUDIES if study.products]
+OF_FOLDER = {chapter.folder: study for study, chapter in CHAPTERS}
+
+
+def fill(folder, rows=ROWS):
+    with open_journal(folder, IDENTITY, ()) as journal:
+        for key, row in rows.items():
+            journal.append(key, row)
+    return folder / "journal.jsonl"
+
+
+def kept(folder):
+    with open_journal(folder, IDENTITY, ()) as journal:
+        return dict(journal.rows)
+
+
+def test_what_was_stored_is_read_back(tmp_path):
+    fill(tmp_path)
+    assert kept(tmp_path) == ROWS
+
+
+def test_no_flipped_bit_gives_another_row(tmp_path):
+    path = fill(tmp_path)
+    content = path.read_bytes()
+    refused = 0
+    for place in range(len(content)):
+        for bit in range(8):
+            damaged = bytearray(content)
+            damaged[place] ^= 1 << bit
+            path.write_bytes(damaged)
+            try:
+                rows = kept(tmp_path)
+            except FolderError:
+                refused += 1
+                continue
+            # the end of the last line is gone: it counts as not completed
+            assert place == len(content) - 1
+            assert rows == dict(list(ROWS.items())[:-1])
+    assert refused == 8 * (len(content) - 1)
+
+
+def test_a_journal_that_ends_anywhere_goes_on_with_its_whole_lines(tmp_path):
+    path = fill(tmp_path)
+    content = path.read_bytes()
+    for length in range(len(content) + 1):
+        path.write_bytes(content[:length])
+        whole = max(content[:length].count(b"\n") - 1, 0)
+        assert kept(tmp_path) == dict(list(ROWS.items())[:whole])
+
+
+@pytest.mark.parametrize("place", [1, 3, 4])
+def test_a_damaged_line_is_named(place, tmp_path):
+    path = fill(tmp_path)
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[place - 1] = lines[place - 1].replace(b"test", b"rest").replace(b"rocked", b"failed")
+    path.write_bytes(b"".join(lines))
+    with pytest.raises(FolderError, match=f"damaged in line {place}$"):
+        kept(tmp_path)
+    assert path.read_bytes() == b"".join(lines)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"",
+        b"?",
+        b"[" * 100_000,
+        seal({}).strip(),
+        seal({"key": "a"}).strip(),
+        seal({"key": 1, "row": {"outcome": "rocked"}}).strip(),
+        seal({"key": "a", "row": ["outcome"]}).strip(),
+        seal({"key": "a", "row": {}}).strip(),
+        b'{"key": "a", "row": {"outcome": "rocked"}}',
+    ],
+    ids=range(9),
+)
+def test_a_line_without_its_fields_is_damaged(line, tmp_path):
+    with fill(tmp_path).open("ab") as journal:
+        journal.write(line + b"\n")
+    with pytest.raises(FolderError, match="damaged in line 5"):
+        kept(tmp_path)
+
+
+@pytest.mark.parametrize("line", [b"?", b"[]", b"[" * 100_000, b'{"other": 1}', b"\xff", b"{}"])
+def test_another_first_line_is_no_journal(line, tmp_path):
+    path = tmp_path / "journal.jsonl"
+    for end in (b"", b"\n"):
+        path.write_bytes(line + end)
+        with pytest.raises(FolderError, match="not a journal"):
+            kept(tmp_path)
+        assert path.read_bytes() == line + end
+
+
+def test_a_sealed_line_is_json():
+    entry = {"key": "θ", "row": {"a": float("inf"), "b": None}}
+    assert json.loads(seal(entry)) | entry == json.loads(seal(entry))
+    assert unseal(seal(entry)[:-1]) == entry
+
+
+@pytest.mark.parametrize("study", WRITING, ids=lambda study: study.name)
+def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study, tmp_path):
+    products = study.products
+    for name in (*products, "provenance.json", ".lock"):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / name).write_text("mine")
+        with (
+            pytest.raises(FolderError, match=f"{name} of unknown origin"),
+            open_journal(folder, IDENTITY, products),
+        ):
+            pass
+        assert {path.name for path in folder.iterdir()} <= {name, ".lock"}
+        assert (folder / name).read_text() == "mine"
+
+
+@pytest.mark.parametrize("folder", [name for name in OF_FOLDER if (PUBLISHED / name).is_dir()])
+def test_whatever_a_study_writes_is_among_its_products(folder):
+    products = {*OF_FOLDER[folder].products, "provenance.json"}
+    assert {path.name for path in (PUBLISHED / folder).iterdir()} <= products
+
+
+@pytest.mark.parametrize("name", ["journal.jsonl", ".lock", "provenance.json"])
+@pytest.mark.parametrize("kind", ["a link", "a link to nothing", "a pipe", "a folder", "/dev/full"])
+def test_what_is_no_file_is_refused_and_never_waited_for(name, kind, tmp_path):
+    target, folder = tmp_path / "target", tmp_path / "out"
+    folder.mkdir()
+    path = folder / name
+    if kind == "a pipe":
+        os.mkfifo(path)
+    elif kind == "a folder":
+        path.mkdir()
+    else:
+        path.symlink_to(kind if kind == "/dev/full" else target)
+        if kind == "a link":
+            target.touch()
+    with pytest.raises(FolderError, match=f"its {name} must be a file"):
+        kept(folder)
+    assert target.exists() == (kind == "a link")
+    assert not target.exists() or target.read_bytes() == b""
+
+
+def test_a_draft_follows_no_link(tmp_path):
+    target, path = tmp_path / "target", tmp_path / "table.csv"
+    target.write_text("mine")
+    (tmp_path / ".table.csv.part").symlink_to(target)
+    with draft(path) as file:
+        file.write(b"a,b\n")
+    assert path.read_text() == "a,b\n"
+    assert target.read_text() == "mine"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["table.csv", "target"]
+
+
+def test_a_draft_that_fails_leaves_what_was_there_and_names_it(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("before")
+    with pytest.raises(OSError, match=r"No space left on device.*table\.csv"), draft(path) as file:
+        with Path("/dev/full").open("wb", buffering=0) as full:
+            full.write(b"a")
+        file.write(b"after")
+    with pytest.raises(RuntimeError), draft(path) as file:
+        file.write(b"after")
+        raise RuntimeError
+    assert path.read_text() == "before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["table.csv"]

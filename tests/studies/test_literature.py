@@ -1,0 +1,103 @@
+"""Printed numbers: how they are read, and what an independent solution made of each."""
+
+import math
+
+import pandas as pd
+import pytest
+
+from studies.__main__ import run
+from studies.literature.problems import PROBLEMS, ModeEnd, Threshold, number
+from studies.literature.readings import put, reduce
+from studies.literature.study import can_answer, literature_job
+from studies.sources.registry import resolve
+
+RECOMPUTED = {
+    "steady state A": (3.1510, 3.1510),
+    "steady state B": (8.2258, 6.0155),
+    "steady state C": (3.7911, 3.7911),
+    "steady state D": (5.6254, 3.9649),
+    "one sine, housner, overturning begins": (3.01864,),
+    "one sine, housner, overturning ends": (6.3179,),
+    "one sine, housner, overturning begins again": (7.16813,),
+    "one sine, exact, with one impact": (2.2232,),
+    "one sine, housner, without impact": (3.2301,),
+    "half-sine of 0.5 s, housner": (0.554586,),
+    "one sine of 1 s, housner": (0.451540,),
+    "one cosine of 1 s, exact": (0.625845,),
+    "one cosine of 2 s, p = 1 rad/s": (0.530710,),
+}
+"""By an adaptive Runge-Kutta solution that shares no code with this project, to these digits."""
+
+NAMED = {problem.name: problem for problem in PROBLEMS}
+
+
+def asked(problem, source):
+    return reduce(
+        literature_job(problem, source), put(literature_job(problem, source), resolve(source))
+    )
+
+
+def values(row):
+    return tuple(value for value in (row["value"], row["other_side"]) if not math.isnan(value))
+
+
+@pytest.mark.parametrize("name", RECOMPUTED)
+def test_an_independent_solution_finds_the_same(name):
+    problem = NAMED[name]
+    row = asked(problem, problem.model)
+    # half of the last digit to which the independent solution was noted
+    assert values(row) == pytest.approx(RECOMPUTED[name], rel=3e-5), row["message"]
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
+def test_the_model_of_the_print_is_within_two_percent_of_it(problem):
+    row = asked(problem, problem.model)
+    for value, printed in zip(values(row), problem.printed, strict=False):
+        assert printed.miss(value) < 0.02
+    assert len(values(row)) >= len(problem.printed), row["message"]
+
+
+def test_the_steady_states_tell_the_models_apart():
+    linear = values(asked(NAMED["steady state B"], "housner"))
+    assert linear == pytest.approx((9.11, 4.98), rel=1e-3)
+
+
+def test_printed_digits_are_what_rounds_to_them():
+    assert number("3.2").bounds == pytest.approx((3.15, 3.25))
+    assert number("3.00", "3.01").bounds == (3.0, 3.01)
+    assert number("2").bounds == (1.5, 2.5)
+    assert number("3.2").miss(3.2) == 0.0
+    assert number("3.00", "3.01").miss(3.04) == pytest.approx(3.04 / 3.01 - 1.0)
+    assert number("3.00", "3.01").miss(2.97) == pytest.approx(3.0 / 2.97 - 1.0)
+    assert math.isnan(number("3.2").miss(math.nan))
+
+
+def test_an_engine_is_asked_only_where_its_impacts_are_those_of_the_print():
+    for problem in PROBLEMS:
+        ideal = problem.block.restitution == pytest.approx(
+            1.0 - 1.5 * math.sin(problem.block.alpha) ** 2
+        )
+        assert can_answer(problem, "mujoco") == (ideal and not isinstance(problem, ModeEnd))
+
+
+def test_a_threshold_that_is_not_there_is_a_failure_with_its_reason():
+    problem = next(problem for problem in PROBLEMS if isinstance(problem, Threshold))
+    far = type(problem)(
+        **{name: getattr(problem, name) for name in problem.__dataclass_fields__}
+        | {"printed": (number("0.50", "0.51"),)}
+    )
+    from studies.literature import readings
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(readings.NAMED, far.name, far)
+        row = asked(far, "exact")
+    assert row["outcome"] == "failed"
+    assert "no threshold" in row["message"]
+
+
+def test_the_command_writes_what_it_says(tmp_path, capsys):
+    assert run(["literature", "--out", str(tmp_path), "--sources", "modified"]) in (0, 1)
+    table = pd.read_csv(tmp_path / "agreement.csv")
+    assert set(table["problem"]) == set(NAMED)
+    assert (tmp_path / "literature.png").stat().st_size > 10_000
+    assert "printed numbers" in capsys.readouterr().out
