@@ -24,10 +24,11 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
+from analytic.kernels.law import Law
 from analytic.kernels.polynomial import ORDER, slope, value
 from analytic.kernels.rest import acceleration, ground
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
-from analytic.models import Law, Model, find_model
+from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.simulate import pulse_law, scaled_segments, stack_cases
 

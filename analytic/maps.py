@@ -12,6 +12,7 @@ from analytic.block import housner_restitution
 from analytic.kernels.closed_form import work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import MAX_STEPS
+from analytic.kernels.law import Law
 from analytic.kernels.rest import ANGLE_TOLERANCE, comes_to_rest, time_to_rest
 from analytic.kernels.swings import (
     LANDED,
@@ -22,7 +23,7 @@ from analytic.kernels.swings import (
     swing_exact,
     swing_linear,
 )
-from analytic.models import Law, find_model
+from analytic.models import find_model
 from analytic.motion import FloatArray
 from analytic.simulate import check_cases
 

@@ -15,28 +15,10 @@ the onset, which is c/q for the linear models.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from analytic.motion import FloatArray
-
-
-class Law(NamedTuple):
-    """A model at one slenderness, as the compiled kernels take it.
-
-    linear, k, saddle and factor are those of the module's equations, factor being q; alpha is the
-    slenderness [rad], onset the acceleration [g] that lifts the block, eta the velocity ratio at
-    impacts.
-    """
-
-    linear: bool
-    k: float
-    saddle: float
-    factor: float
-    alpha: float
-    onset: float
-    eta: float
+from analytic.kernels.law import FloatArray, Law
 
 
 def _one(alpha: FloatArray) -> FloatArray:

@@ -25,8 +25,9 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
+from analytic.kernels.law import Law
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
-from analytic.models import Law, Model, find_model
+from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 

@@ -27,8 +27,9 @@ from analytic.kernels.excursions import (
     Notes,
     note,
 )
+from analytic.kernels.law import Law
 from analytic.kernels.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
-from analytic.models import Law, Model, find_model
+from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.simulate import check_window, respond, scaled_segments

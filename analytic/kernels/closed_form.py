@@ -7,8 +7,7 @@ acceleration in g. The public functions take radians and the units they name.
 import math
 
 from analytic.kernels.compiled import kernel
-from analytic.models import Law
-from analytic.motion import FloatArray
+from analytic.kernels.law import FloatArray, Law
 
 SERIES_BELOW = 1.0
 """Below this argument the two differences of functions are summed from their series."""

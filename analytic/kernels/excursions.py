@@ -13,6 +13,7 @@ import numpy as np
 from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.compiled import kernel
 from analytic.kernels.forces import POINTS, watch, watch_free
+from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import MAX_DEPTH, ORDER, next_root, slope, value
 from analytic.kernels.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
 from analytic.kernels.taylor import (
@@ -22,8 +23,6 @@ from analytic.kernels.taylor import (
     expand_linear,
     trusted_step,
 )
-from analytic.models import Law
-from analytic.motion import FloatArray
 
 AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0

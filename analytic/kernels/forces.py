@@ -8,9 +8,8 @@ import math
 
 from analytic.kernels.closed_form import turning_rotation, work_to
 from analytic.kernels.compiled import kernel
+from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.rest import acceleration
-from analytic.models import Law
-from analytic.motion import FloatArray
 
 POINTS = 16
 """Points at which the forces are looked at in a step."""

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from analytic.kernels.compiled import kernel
-from analytic.motion import FloatArray
+from analytic.kernels.law import FloatArray
 
 ORDER = 24
 """Degree of the Taylor polynomials of a step."""

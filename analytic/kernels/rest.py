@@ -3,8 +3,7 @@
 import math
 
 from analytic.kernels.compiled import kernel
-from analytic.models import Law
-from analytic.motion import FloatArray
+from analytic.kernels.law import FloatArray, Law
 
 ANGLE_TOLERANCE = 1e-14
 

@@ -14,11 +14,10 @@ from typing import NamedTuple
 from analytic.kernels.closed_form import linear_state
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import LYING, MAX_STEPS
+from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import slope, value
 from analytic.kernels.rest import ANGLE_TOLERANCE
 from analytic.kernels.taylor import expand_exact
-from analytic.models import Law
-from analytic.motion import FloatArray
 
 LANDED, OVERTURNED, LEFT_OVER, STUCK = 0, 1, 2, 3
 """How a swing ends: an impact, overturned, still up when the pulse ends, too many steps."""

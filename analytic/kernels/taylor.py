@@ -7,9 +7,8 @@ import math
 from typing import NamedTuple
 
 from analytic.kernels.compiled import kernel
+from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import ORDER
-from analytic.models import Law
-from analytic.motion import FloatArray
 
 LEAST_ORDER = 6
 LONGEST_STEP = 4.0

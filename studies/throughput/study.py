@@ -119,7 +119,7 @@ def peer_solvers() -> dict[str, Overturns]:
     """Return the general-purpose integrators that are installed."""
     solvers: dict[str, Overturns] = {"dop853 (SciPy)": by_scipy}
     try:
-        from studies.sources.heyoka_peer import HeyokaSolver
+        from studies.throughput.heyoka_peer import HeyokaSolver
     except ImportError:
         return solvers
     return {**solvers, "heyoka.py": HeyokaSolver()}
