@@ -11,10 +11,17 @@ from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
 from studies.histories import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
+from studies.kit.arguments import (
+    Count,
+    Positive,
+    check_sources,
+    figures,
+    refuse_repeats,
+)
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import sources_option
 from studies.kit.runner import exit_code, own_folder, run_jobs
 from studies.measures.claims import (
     TABLE,
@@ -37,6 +44,11 @@ DEFAULT_SOURCES = {
 }
 """What the paper draws; its numerical solution is the exact model's."""
 
+PAPERS = sources_option(
+    "By default what the paper draws, exact, rk4 and average-acceleration in figure 2, exact, "
+    "housner and modified in 4 and 5: "
+)
+
 TITLES = {
     2: "Figure 2: fourth-order Runge–Kutta and average acceleration",
     4: "Figure 4: half-sine pulse",
@@ -48,7 +60,7 @@ def command(
     *,
     out: Path,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
-    sources: Annotated[tuple[str, ...] | None, several] = None,
+    sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,

@@ -12,18 +12,21 @@ from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Axis, Window
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
+from studies.kit.arguments import BadInputError, Count, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.journal import Row
+from studies.kit.naming import sources_option
 from studies.kit.runner import exit_code, fill_folder
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
 from studies.overturning.report import headline, paragraph, pictures, report
+from studies.sources.groups import core_sources
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
+MAPPED = sources_option("exact must be among them: ")
+DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 STRIP = 250_000
 """Cases that are held at a time."""
 RESOLUTION, QUICK_RESOLUTION = 1000, 200
@@ -46,7 +49,7 @@ def command(
     onsets: Positive = 10.0,
     columns: Count | None = None,
     rows: Count | None = None,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 120.0,
@@ -75,8 +78,7 @@ def command(
     columns, rows
         Number of frequencies and of amplitudes; 1000 each, 200 in a quick study.
     sources
-        exact and any of housner modified onset-matched pybullet mujoco; an engine takes a preset
-        after a colon, as in mujoco:naive.
+        exact, and linear models or engines.
     quick
         A coarser map and fewer runs of the engines: less than a minute on 2 cores.
     jobs
