@@ -106,9 +106,9 @@ def test_scaling():
         ({"samples": [0.0, 1.0, math.nan]}, r"samples\[2\] is nan"),
         ({"samples": [math.inf, 1.0]}, r"samples\[0\] is inf"),
         ({"samples": [1e307, -1e307], "dt": 0.01}, "a sample 1e\\+307; .* must be finite"),
-        ({"dt": 1e308, "samples": [0.0, 0.0, 0.0]}, "dt is 1e\\+308 .* must be finite"),
-        ({"dt": 1e200}, "must be finite"),
-        ({"dt": 1e-320}, "must be finite"),
+        ({"dt": 1e308, "samples": [0.0, 0.0, 0.0]}, "dt is 1e\\+308; it must be from"),
+        ({"dt": 1e200}, "must be from"),
+        ({"dt": 1e-320}, "must be from"),
     ],
 )
 def test_bad_records(change, words):
