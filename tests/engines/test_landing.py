@@ -14,29 +14,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from uses import BLOCK, pulse
 
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
-from engines import ENGINES, FRAMES, Scene, run
+from engines import FRAMES, Scene, core_engines, run
 from engines.scene import ACCURACIES
 from engines.stepping.timetable import loads_of
 from engines.world import Step
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
-
-
-def pulse(
-    onset_ratio: float, omega_over_p: float, half_cycles: int = 1, block: RigidBlock = BLOCK
-) -> SinePulse:
-    """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
-    return SinePulse(
-        amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
-        omega=omega_over_p * block.p,
-        half_cycles=half_cycles,
-    )
 
 
 def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
@@ -89,7 +77,7 @@ def errors_of_sweep(engine: str, every: int, **options: Any) -> list[float]:
     return errors
 
 
-@pytest.fixture(params=ENGINES)
+@pytest.fixture(params=core_engines())
 def engine(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

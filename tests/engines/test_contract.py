@@ -1,0 +1,185 @@
+"""What the contract promises: what is missing, what is coarse, and who chooses the steps."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic import simulate
+from analytic.response import Outcome
+from engines import ENGINES, Scene, run
+from engines.adapters.bullet import BulletWorld
+from engines.declaration import Engine, Precision, Preset, Stepping
+from engines.world import Moment, Pose
+
+
+def use(monkeypatch: pytest.MonkeyPatch, engine: Engine) -> None:
+    """Let `run` find an engine under any name."""
+    monkeypatch.setattr("engines.drive.find", lambda name: engine)
+
+
+def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object) -> Any:
+        raise ModuleNotFoundError("No module named 'nothing'")
+
+    use(monkeypatch, replace(ENGINES["pybullet"], build=missing, install="rocking[nothing]"))
+    response = run("any", scene(pulse(1.3, 1.0)))
+    assert response.outcome is Outcome.FAILED
+    assert response.message == (
+        "not available: No module named 'nothing'; pip install 'rocking[nothing]'"
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"frames": ("base",)}, "not available: PyBullet has no frame 'world'"),
+        ({"geometries": ("box",)}, "not available: PyBullet has no geometry 'corners'"),
+    ],
+)
+def test_what_an_engine_cannot_do_is_a_row_that_says_so(
+    change: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use(monkeypatch, replace(ENGINES["pybullet"], **change))
+    response = run("any", scene(pulse(1.3, 1.0), frame="world"))
+    assert (response.outcome, response.message) == (Outcome.FAILED, message)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_declaration_is_whole(name: str) -> None:
+    engine = ENGINES[name]
+    assert engine.name == name
+    assert engine.presets[0].name == "naive"
+    assert engine.presets[0].step_source
+    assert not engine.presets[0].helped_by
+    assert type(engine.presets[0].settings)() == engine.presets[0].settings  # the library's own
+    for preset in engine.presets:
+        assert isinstance(preset.settings.friction, float)
+        for left_out in filter(None, preset.helped_by.values()):
+            assert replace(preset.settings, **left_out) != preset.settings
+    for item in engine.factors:
+        assert all(hasattr(engine.best.settings, setting) for setting in item.settings)
+
+
+def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A setting that was not taken ends a run long before its hour of rest is over."""
+    monkeypatch.setattr(BulletWorld, "fault", lambda self: "the moon is full")
+    response = run("pybullet", scene(pulse(0.5, 1.0), preset="fixed", duration=3600.0))
+    assert response.message == "the moon is full"
+    assert response.steps < 1000
+
+
+class RoundedWorld(BulletWorld):
+    """PyBullet, told in the numbers of single precision."""
+
+    def pose(self) -> Pose:
+        return Pose(*np.array(super().pose(), dtype=np.float32).tolist())
+
+
+def rounded(precision: Precision, shortest_step: float) -> Engine:
+    return replace(
+        HERE["pybullet"], build=RoundedWorld, precision=precision, shortest_step=shortest_step
+    )
+
+
+def test_single_precision_is_judged_by_what_it_tells_apart(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A block at rest, whose corners are 6e-8 of its height off in single precision."""
+    motion = pulse(0.9, 1.0)
+    leaning = Scene(block=BLOCK, motion=motion, duration=5.0)
+    monkeypatch.setattr(RoundedWorld, "pose", trembling)
+    use(monkeypatch, rounded(Precision.DOUBLE, 1e-12))
+    assert run("any", leaning).outcome is not Outcome.AT_REST
+    use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
+    assert run("any", leaning).outcome is Outcome.AT_REST
+
+
+def trembling(world: RoundedWorld) -> Pose:
+    """Return the pose with the noise of single precision, which is different at every look."""
+    x, z, theta, rate = BulletWorld.pose(world)
+    world._looks = getattr(world, "_looks", 0) + 1  # type: ignore[attr-defined]
+    return Pose(x, z * (1.0 + 6e-8 * math.sin(world._looks)), theta, rate)  # type: ignore[attr-defined]
+
+
+def test_single_precision_rocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rotations rounded to 6e-8 of themselves, heights to 6e-8 of the block's: an impact is seen
+    1e-7 of a width too early or late."""
+    motion = pulse(1.3, 3.0, 2)
+    use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
+    response = run("any", Scene(block=BLOCK, motion=motion))
+    assert response.peak_ratio == pytest.approx(simulate(BLOCK, motion).peak_ratio, rel=1e-4)
+
+
+@dataclass(frozen=True)
+class SpringSettings:
+    friction: float = 1.0
+    tolerance: float = 1e-7
+
+
+class SpringWorld:
+    """Two corners on springs whose damping goes with their depth, in steps chosen by RK23."""
+
+    moment = Moment.END
+
+    def __init__(self, scene: Scene, settings: SpringSettings, dt_s: float) -> None:
+        at, block = scene.beginning, scene.block
+        self._scene, self._tolerance, self._time = scene, settings.tolerance, 0.0
+        self._state = [at.x, at.z, at.theta, at.velocity_x, at.velocity_z, at.rate]
+        self._half = (0.5 * block.width, 0.5 * block.height)
+        self._spring = 1e6 * scene.mass * block.p**2
+        self._damping = 300.0 / (block.p * block.width)
+
+    def _rates(self, time: float, state: Any) -> list[float]:
+        _, z, theta, vx, vz, rate = state
+        scene, sine, cosine = self._scene, math.sin(theta), math.cos(theta)
+        along = -scene.mass * float(scene.motion.acceleration(time))
+        up = -scene.mass * scene.block.gravity
+        moment = 0.0
+        for side in (-self._half[0], self._half[0]):
+            arm, level = side * cosine - self._half[1] * sine, -side * sine - self._half[1] * cosine
+            depth = -(z + level)
+            if depth > 0.0:
+                force = self._spring * depth
+                push = force * max(1.0 - self._damping * (vz - rate * arm), 0.0)
+                drag = -force * self._damping * (vx + rate * level)
+                along, up = along + drag, up + push
+                moment += drag * level - push * arm
+        return [vx, vz, rate, along / scene.mass, up / scene.mass, moment / scene.inertia[1]]
+
+    def advance(self, end_s: float) -> int:
+        path = solve_ivp(
+            self._rates, (self._time, end_s), self._state, "RK23",
+            rtol=self._tolerance, atol=self._tolerance,
+        )  # fmt: skip
+        self._state, self._time = path.y[:, -1].tolist(), end_s
+        return len(path.t) - 1
+
+    def pose(self) -> Pose:
+        x, z, theta, _, _, rate = self._state
+        return Pose(x, z, theta, rate)
+
+    def fault(self) -> str:
+        return ""
+
+    def close(self) -> None:
+        pass
+
+
+def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told times to go to, on the corners of the motion among them; contact is yielding."""
+    own = Preset(name="own", title="", settings=SpringSettings(), stepping=Stepping.OWN)
+    use(monkeypatch, replace(ENGINES["pybullet"], build=SpringWorld, presets=(own,)))
+    motion = pulse(1.3, 3.0, 2)
+    exact = simulate(BLOCK, motion)
+    response = run("any", Scene(block=BLOCK, motion=motion, accuracy="loose"))
+    assert response.outcome is Outcome.ROCKED, response.message
+    assert len(response.impacts) == 1
+    # an impact on a spring of 1e6 m p^2 takes some 1e-3/p
+    assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=1e-2)
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-2)
+    assert response.steps > 40.0 * BLOCK.p * motion.duration

@@ -1,0 +1,61 @@
+"""Every engine under every preset, and what may be asked of it by what it declares."""
+
+import math
+
+import pytest
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines import ENGINES, FRAMES, Scene
+from engines.declaration import Stepping
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+
+STEPS_ADD_UP = 1e4
+"""Steps over whose roundings the errors of two runs may add up that should be equal."""
+
+HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
+USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
+TUNED = [(name, preset) for name, preset in USES if preset != "naive"]
+FIXED = [
+    name
+    for name, engine in HERE.items()
+    if any(use.name == "fixed" and use.stepping is Stepping.FIXED for use in engine.presets)
+]
+LANDING = [
+    (name, use.name)
+    for name, engine in HERE.items()
+    for use in engine.presets
+    if use.stepping is Stepping.LANDING
+]
+TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in HERE[use[0]].frames]
+
+every_use = pytest.mark.parametrize(("engine", "preset"), USES)
+every_tuned_use = pytest.mark.parametrize(("engine", "preset"), TUNED)
+every_fixed_use = pytest.mark.parametrize("engine", FIXED)
+every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
+
+
+def in_both_frames(uses: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the uses of engines whose base can also move in the world."""
+    return [use for use in uses if set(FRAMES) <= set(HERE[use[0]].frames)]
+
+
+def equal_to(engine: str, exactly: float = 1e-9) -> float:
+    """Return within what two numbers agree that only the engine's rounding may tell apart."""
+    return max(exactly, STEPS_ADD_UP * HERE[engine].precision.value)
+
+
+def pulse(
+    onset_ratio: float, omega_over_p: float, half_cycles: int = 1, block: RigidBlock = BLOCK
+) -> SinePulse:
+    """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
+    return SinePulse(
+        amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
+        omega=omega_over_p * block.p,
+        half_cycles=half_cycles,
+    )
+
+
+def scene(motion: SinePulse, **options: object) -> Scene:
+    return Scene(block=BLOCK, motion=motion, **options)  # type: ignore[arg-type]
