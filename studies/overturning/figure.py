@@ -14,7 +14,7 @@ from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.figures import style_of
 from studies.measures.differences import conditioning_of
-from studies.overturning.report import modes_at, no_impact_line, with_exact
+from studies.overturning.beside import modes_at, no_impact_line, with_exact
 
 PIXELS = 900
 # the palette of Okabe and Ito, lightened where a whole area is filled

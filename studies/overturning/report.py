@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from analytic.criteria import overturning_amplitude
-from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.measures.words import listed, out_of, part
+from studies.overturning.beside import with_exact
 from studies.overturning.checks import checks
 
 if TYPE_CHECKING:
@@ -122,18 +121,6 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(path) if path.is_file() else pd.DataFrame()
 
 
-def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArray:
-    """Return the modes at every pair of a column's abscissa and an amplitude, (len(x), n)."""
-    groups = {float(str(at)): group for at, group in areas.groupby("x")}
-    known = np.array(sorted(groups))
-    found = np.empty((len(x), len(onsets)))
-    for i, at in enumerate(x):
-        group = groups[float(known[np.argmin(abs(known - at))])]
-        place = np.searchsorted(group["low"].to_numpy(), onsets, side="right") - 1
-        found[i] = group["mode"].to_numpy()[np.maximum(place, 0)]
-    return found
-
-
 def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, object]]:
     """Return the parts of the area in which each model differs from the exact one.
 
@@ -175,16 +162,6 @@ def _compare(exact: pd.DataFrame, model: pd.DataFrame) -> tuple[float, float, fl
     missed = (right >= 0) & (found < 0)
     other = (right >= 0) & (found >= 0) & (right != found)
     return tuple(float(length[where].sum()) for where in (false, missed, other))  # type: ignore[return-value]
-
-
-def with_exact(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
-    """Return the engines' cells with the exact mode, the verdict and the impacts."""
-    mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
-    over = engines["outcome"] == "overturned"
-    right = mode >= 0
-    wrong = [engines["outcome"] == "failed", over & ~right, ~over & right]
-    verdict = np.select(wrong, ["failed", "false", "missed"], default="right")
-    return engines.assign(exact_mode=mode, verdict=verdict)
 
 
 def engine_differences(engines: pd.DataFrame, window: Window) -> list[dict[str, object]]:
@@ -290,16 +267,3 @@ def checks_text(checked: pd.DataFrame) -> str:
         several = f"{len(group)} thresholds, within {worst}" if len(group) > 4 else parts
         lines.append(f"  {against}: {several}")
     return "\n".join(lines)
-
-
-def no_impact_line(x: FloatArray, window: Window, model: str) -> FloatArray:
-    """Return the closed-form amplitude of overturning without impact over g tan(alpha)."""
-    line = np.full(len(x), math.nan)
-    for i, (alpha, ratio) in enumerate(zip(window.alpha(x), window.ratio(x), strict=True)):
-        law = MODELS[model].law(float(alpha), 0.9)
-        try:
-            amplitude = overturning_amplitude(float(ratio) / law.k, window.half_cycles)
-        except ValueError:
-            continue
-        line[i] = amplitude * law.onset / math.tan(alpha)
-    return line

@@ -12,10 +12,11 @@ from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
 from studies.cases.window import AXES, Window
+from studies.overturning.beside import modes_at
 from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
-from studies.overturning.report import model_differences, modes_at, read
+from studies.overturning.report import model_differences, read
 from studies.overturning.study import mapped
 from studies.sources.registry import resolve
 

@@ -1,0 +1,46 @@
+"""What stands beside a map: exact modes at its points, verdicts on cells, closed-form lines."""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from analytic.criteria import overturning_amplitude
+from analytic.models import MODELS
+from analytic.motion import FloatArray
+from studies.cases.window import Window
+
+
+def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArray:
+    """Return the modes at every pair of a column's abscissa and an amplitude, (len(x), n)."""
+    groups = {float(str(at)): group for at, group in areas.groupby("x")}
+    known = np.array(sorted(groups))
+    found = np.empty((len(x), len(onsets)))
+    for i, at in enumerate(x):
+        group = groups[float(known[np.argmin(abs(known - at))])]
+        place = np.searchsorted(group["low"].to_numpy(), onsets, side="right") - 1
+        found[i] = group["mode"].to_numpy()[np.maximum(place, 0)]
+    return found
+
+
+def with_exact(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
+    """Return the engines' cells with the exact mode, the verdict and the impacts."""
+    mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
+    over = engines["outcome"] == "overturned"
+    right = mode >= 0
+    wrong = [engines["outcome"] == "failed", over & ~right, ~over & right]
+    verdict = np.select(wrong, ["failed", "false", "missed"], default="right")
+    return engines.assign(exact_mode=mode, verdict=verdict)
+
+
+def no_impact_line(x: FloatArray, window: Window, model: str) -> FloatArray:
+    """Return the closed-form amplitude of overturning without impact over g tan(alpha)."""
+    line = np.full(len(x), math.nan)
+    for i, (alpha, ratio) in enumerate(zip(window.alpha(x), window.ratio(x), strict=True)):
+        law = MODELS[model].law(float(alpha), 0.9)
+        try:
+            amplitude = overturning_amplitude(float(ratio) / law.k, window.half_cycles)
+        except ValueError:
+            continue
+        line[i] = amplitude * law.onset / math.tan(alpha)
+    return line
