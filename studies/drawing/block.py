@@ -81,7 +81,7 @@ def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: s
 def _shaking(axes: Axes) -> None:
     """Name the acceleration of the ground, which drives the block the other way."""
     axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
-    axes.text(0.45, -0.36, "ü$_g$  acceleration of the ground", va="center", fontsize=11)
+    axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
 
 
 def _arrow(
