@@ -248,7 +248,7 @@ def test_condition_numbers_are_the_slopes_of_the_peaks(model, start):
             (found[0], lambda part: peak(1.0 + part)),
             (found[1], lambda part: peak(1.0, BLOCK.restitution * (1.0 + part))),
         ):
-            nudge = 1e-4 / (1.0 + abs(number))
+            nudge = 1e-5 / math.sqrt(1.0 + abs(number))
             near, far = (math.log(function(x) / function(-x)) for x in (nudge, 2.0 * nudge))
             # a difference of fourth order, and the rounding of peaks over its nudge
             slope = (8.0 * near - far) / (12.0 * nudge)

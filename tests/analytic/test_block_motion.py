@@ -16,6 +16,7 @@ from analytic import (
     Response,
     RigidBlock,
     SinePulse,
+    Still,
     conditioning,
     housner_restitution,
     simulate,
@@ -120,6 +121,7 @@ def test_bad_restitution(value):
         ("omega", 0),
         ("omega", -2),
         ("half_cycles", 0),
+        ("phase", math.inf),
         ("half_cycles", 1.5),
     ],
 )
@@ -128,9 +130,10 @@ def test_bad_pulse(name, value):
         SinePulse(**{"amplitude": 1.0, "omega": 2.0, "half_cycles": 1, name: value})
 
 
+@pytest.mark.parametrize("phase", [0.0, 0.5 * math.pi, -1.0, 4.0])
 @pytest.mark.parametrize("half_cycles", [1, 2, 3, 6])
-def test_velocity_and_displacement_integrate_the_acceleration(half_cycles):
-    pulse = SinePulse(amplitude=-3.0, omega=5.0, half_cycles=half_cycles)
+def test_velocity_and_displacement_integrate_the_acceleration(half_cycles, phase):
+    pulse = SinePulse(amplitude=-3.0, omega=5.0, half_cycles=half_cycles, phase=phase)
     for t in np.linspace(0, 1.5 * pulse.duration, 7)[1:]:
         split = [pulse.duration] if pulse.duration < t else None
         velocity, _ = quad(pulse.acceleration, 0, t, points=split, limit=200, epsabs=1e-13)
@@ -142,6 +145,17 @@ def test_velocity_and_displacement_integrate_the_acceleration(half_cycles):
 def test_velocity_keeps_its_digits_early_in_the_pulse():
     pulse = SinePulse(amplitude=1.0, omega=1.0)
     assert float(pulse.velocity(1e-7)) == pytest.approx(0.5e-14, rel=1e-12)
+    cosine = SinePulse(amplitude=1.0, omega=1.0, phase=0.5 * math.pi)
+    assert float(cosine.velocity(1e-7)) == pytest.approx(1e-7, rel=1e-12)
+    assert float(cosine.displacement(1e-7)) == pytest.approx(0.5e-14, rel=1e-6)
+
+
+def test_still_ground_does_not_move():
+    still = Still()
+    for moved in (still.acceleration, still.velocity, still.displacement):
+        assert np.array_equal(moved([-1.0, 0.0, 2.0]), np.zeros(3))
+    assert still.duration == 0.0
+    assert still == Still()
 
 
 def test_impact_ratio_and_failure():
