@@ -9,7 +9,7 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
 from analytic.conditioning import condition_numbers, conditioning
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
-from analytic.motion import Motion, SinePulse
+from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
@@ -28,6 +28,7 @@ __all__ = [
     "Response",
     "RigidBlock",
     "SinePulse",
+    "Still",
     "condition_numbers",
     "conditioning",
     "housner_restitution",

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analytic.checks import positive
+from analytic.checks import LEAST, measurable
 
 STANDARD_GRAVITY = 9.81
 """Gravity [m/s2] used throughout the study."""
@@ -27,7 +27,8 @@ class RigidBlock:
     Raises
     ------
     ValueError
-        If a dimension or gravity is not positive and finite, or the restitution is outside [0, 1].
+        If a dimension or gravity is not positive and finite, or the restitution is outside [0, 1];
+        also if a dimension, gravity or alpha is not of a size whose square floating point holds.
     """
 
     width: float
@@ -37,7 +38,12 @@ class RigidBlock:
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "gravity"):
-            object.__setattr__(self, name, positive(name, getattr(self, name)))
+            object.__setattr__(self, name, measurable(name, getattr(self, name)))
+        if not LEAST <= self.alpha < 0.5 * math.pi:
+            raise ValueError(
+                f"width is {self.width!r} and height {self.height!r}; alpha, which follows as"
+                f" {self.alpha!r}, must be from {LEAST:g} to below pi/2"
+            )
         if math.isnan(self.restitution):
             object.__setattr__(self, "restitution", max(housner_restitution(self.alpha), 0.0))
         elif not 0.0 <= self.restitution <= 1.0:

@@ -1,8 +1,8 @@
 """How far small errors move a peak: condition numbers, carried along with the solution.
 
 The derivatives of a response by ln(a_p) and by ln(eta) obey the equation of motion linearized
-about it. They start from zero at each uplift, where the block is at rest, jump with the velocity
-at each impact, whose time moves too, and end in the derivative of the peak.
+about it. They start from zero, and again at each uplift, where the block is at rest, jump with the
+velocity at each impact, whose time moves too, and end in the derivative of the peak.
 """
 
 import math
@@ -15,29 +15,28 @@ from analytic.block import RigidBlock
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import (
-    REST,
+    RESTED,
     ROCKED,
+    START,
     UPLIFT,
     Notes,
     expand,
-    highest,
     march,
     workspace,
 )
-from analytic.kernels.law import Law
-from analytic.kernels.polynomial import ORDER, slope, value
+from analytic.kernels.law import UPRIGHT, Law, Start
+from analytic.kernels.polynomial import ORDER, highest, slope, value
 from analytic.kernels.rest import acceleration, ground
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.simulate import pulse_law, scaled_segments, stack_cases
+from analytic.start import REST, folded
 
 AMPLITUDE, RESTITUTION = 0, 1
 """Rows of the derivatives: by ln(a_p), by ln(eta)."""
 RATE = 1
 """Column of the derivative of the velocity, beside that of the rotation."""
-SMOOTH = 1e-9
-"""An acceleration smaller than this is that of an uplift where the ground passes the onset."""
 
 
 class Conditioning(NamedTuple):
@@ -72,12 +71,18 @@ def condition_numbers(
 
 
 def conditioning(
-    block: RigidBlock, motion: Motion, model: str | Model = "exact"
+    block: RigidBlock,
+    motion: Motion,
+    model: str | Model = "exact",
+    start: tuple[float, float] = REST,
 ) -> tuple[float, float]:
-    """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta."""
+    """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta.
+
+    The start, as for `simulate`, is the same for all scales.
+    """
     law = find_model(model).law(block.alpha, block.restitution)
-    segments = scaled_segments(block, motion)
-    found = condition(law, accuracy(TOLERANCE), segments, workspace())
+    begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
+    found = condition(law, accuracy(TOLERANCE), segments, begin, workspace())
     return float(found[AMPLITUDE]), float(found[RESTITUTION])
 
 
@@ -94,19 +99,21 @@ def condition_pulses(
     segments = np.zeros((1, 7))
     for i in range(cases.shape[1]):
         law = pulse_law(linear, constants[:, i], cases[:, i], segments)
-        found[AMPLITUDE, i], found[RESTITUTION, i] = condition(law, exactly, segments, work)
+        found[AMPLITUDE, i], found[RESTITUTION, i] = condition(
+            law, exactly, segments, UPRIGHT, work
+        )
 
 
 @kernel
 def condition(
-    law: Law, accuracy: Accuracy, segments: FloatArray, work: FloatArray
+    law: Law, accuracy: Accuracy, segments: FloatArray, start: Start, work: FloatArray
 ) -> tuple[float, float]:
     """Return both condition numbers of one response; nan unless it rocks and survives."""
     log = np.empty((64, 4))
     nothing = np.empty(0)
     while True:
         notes = Notes(nothing, np.empty((2, 0)), log, nothing)
-        end = march(law, accuracy, segments, 0.0, notes, work)
+        end = march(law, accuracy, segments, start, 0.0, notes, work)
         if end.events <= log.shape[0]:
             break
         log = np.empty((end.events, 4))
@@ -127,15 +134,18 @@ def follow(
     j = 0
     for n in range(log.shape[0]):
         kind, tau, before, after = log[n]
-        if kind == REST:
+        if kind == RESTED:
             continue
         while j < segments.shape[0] and tau >= segments[j, 1]:
             j += 1
-        a = ground(segments, j, tau)
-        if kind == UPLIFT:
+        a, y = ground(segments, j, tau), 0.0
+        if kind == START:
+            side = math.copysign(1.0, before if before != 0.0 else after)
+            y, v = abs(before), side * after
+            lead, peak = 0 if y > 0.0 else 1, y
+        elif kind == UPLIFT:
             side = -math.copysign(1.0, a)
-            lead = 3 if abs(acceleration(law, side, a, 0.0)) < SMOOTH else 2
-            v = 0.0
+            lead, v = int(before), 0.0
             state[:] = 0.0
         else:
             side, v, lead = math.copysign(1.0, after), abs(after), 1
@@ -144,9 +154,9 @@ def follow(
                 side, lead = -math.copysign(1.0, a), 2
         until = log[n + 1, 1] if n + 1 < log.shape[0] else last
         y, v, peak = fly(
-            law, accuracy, segments, j, side, tau, until, lead, v, state, peak, moved, work
+            law, accuracy, segments, j, side, tau, until, lead, y, v, state, peak, moved, work
         )
-    if log[-1, 0] != REST:
+    if log[-1, 0] != RESTED:
         peak = come_down(law, y, v, state, peak, moved)
     return moved[AMPLITUDE] / peak, moved[RESTITUTION] / peak
 
@@ -173,19 +183,20 @@ def fly(
     tau: float,
     until: float,
     lead: int,
+    y: float,
     v: float,
     state: FloatArray,
     peak: float,
     moved: FloatArray,
     work: FloatArray,
 ) -> tuple[float, float, float]:
-    """Follow one excursion and its derivatives from the base at `tau` to `until`.
+    """Follow one excursion and its derivatives from (y, v) at `tau` to `until`.
 
     Returns y, its velocity, and the largest rotation so far, whose derivatives are in `moved`.
     """
     series, d, spare = work[0], work[4], work[5:]
     delta = np.empty((3, ORDER + 1))
-    order, y = accuracy.order, 0.0
+    order = accuracy.order
     while tau < until:
         while tau >= segments[j, 1]:
             j += 1

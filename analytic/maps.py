@@ -20,8 +20,10 @@ from analytic.kernels.swings import (
     MAP_ORDER,
     OVERTURNED,
     Pulse,
+    parity,
     swing_exact,
     swing_linear,
+    whole_half_cycles,
 )
 from analytic.models import find_model
 from analytic.motion import FloatArray
@@ -61,17 +63,14 @@ class Modes(NamedTuple):
 
 
 @kernel
-def next_lift(phase: float, level: float, end: float) -> float:
-    """Return the phase from which the ground lifts a block at rest; inf if it does not.
+def next_lift(angle: float, level: float) -> tuple[int, float]:
+    """Return how many half cycles on, and at which angle, the ground lifts a block at rest.
 
-    `level` is the phase at which a half cycle reaches the onset.
+    `level` is the angle at which a half cycle reaches the onset.
     """
-    base = math.pi * math.floor(phase / math.pi)
-    within = phase - base
-    if within > math.pi - level - ANGLE_TOLERANCE:
-        base, within = base + math.pi, 0.0
-    start = max(within, level) + base
-    return start if start < end else math.inf
+    if angle > math.pi - level - ANGLE_TOLERANCE:
+        return 1, level
+    return 0, max(angle, level)
 
 
 @kernel
@@ -101,6 +100,22 @@ def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
 
 
 @kernel
+def later(pulse: Pulse, half_cycles: int) -> Pulse:
+    """Return what is left of a pulse so many half cycles later."""
+    return Pulse(pulse.amplitude, pulse.omega, pulse.half_cycles - half_cycles)
+
+
+@kernel
+def ground_after(pulse: Pulse, angle: float, wait: float) -> float:
+    """Return the ground acceleration [g] a time after an angle; zero after the pulse."""
+    phase = angle + pulse.omega * wait
+    if not phase < pulse.half_cycles * math.pi:
+        return 0.0
+    turned, rest = whole_half_cycles(phase)
+    return parity(turned) * pulse.amplitude * math.sin(rest)
+
+
+@kernel
 def pulse_mode(
     law: Law, pulse: Pulse, work: FloatArray, segment: FloatArray
 ) -> tuple[int, float, int]:
@@ -108,20 +123,20 @@ def pulse_mode(
     if pulse.amplitude <= law.onset:
         return AT_REST, -1.0, 0
     level = math.asin(law.onset / pulse.amplitude)
-    phase = v = side = lifted = 0.0
+    angle = v = side = lifted = 0.0
     impacts = steps = 0
     series, f, sine, cosine = work[0], work[1], work[2], work[3]
     while True:
         if side == 0.0:
-            phase = next_lift(phase, level, pulse.end)
-            if phase == math.inf:
+            turned, angle = next_lift(angle, level)
+            pulse = later(pulse, turned)
+            if pulse.half_cycles <= 0:
                 return SURVIVES, -1.0, steps
-            side = 1.0 if math.floor(phase / math.pi) % 2.0 == 1.0 else -1.0
-            lifted = math.pi * (math.floor(phase / math.pi) + 1.0) - level
+            side, lifted = -1.0, (math.pi - level - angle) / pulse.omega
         if law.linear:
-            swing = swing_linear(law, pulse, phase, v, side, level, segment)
+            swing = swing_linear(law, pulse, angle, v, side, level, segment)
         else:
-            swing = swing_exact(law, pulse, phase, v, side, lifted, series, f, sine, cosine)
+            swing = swing_exact(law, pulse, angle, v, side, lifted, series, f, sine, cosine)
         steps += swing.steps
         if swing.end == OVERTURNED:
             return impacts, math.inf, steps
@@ -131,15 +146,19 @@ def pulse_mode(
         if swing.end != LANDED or impacts == MAX_STEPS:
             return FAILED, math.nan, steps
         impacts += 1
-        phase, side, v, lifted = swing.phase, -side, -law.eta * swing.v, 0.0
-        if phase >= pulse.end - level and is_quiet(law, v, (pulse.end - phase) / pulse.omega):
+        pulse, angle = later(pulse, swing.half_cycles), swing.angle
+        side, v, lifted = -side * parity(swing.half_cycles), -law.eta * swing.v, 0.0
+        left = (pulse.half_cycles * math.pi - angle) / pulse.omega
+        if left * pulse.omega <= level and is_quiet(law, v, left):
             return SURVIVES, -1.0, steps
-        a = pulse.amplitude * math.sin(phase)
+        if pulse.half_cycles <= 0:
+            mode, margin = decide(law, 0.0, v, impacts)
+            return mode, margin, steps
+        a = pulse.amplitude * math.sin(angle)
         wait = time_to_rest(law, side, v, a)
-        rested = phase + pulse.omega * wait
-        later = pulse.amplitude * math.sin(rested) if rested < pulse.end else 0.0
-        if comes_to_rest(law, side, a, later, wait):
-            phase, side, v = rested, 0.0, 0.0
+        if comes_to_rest(law, side, a, ground_after(pulse, angle, wait), wait):
+            turned, angle = whole_half_cycles(angle + pulse.omega * wait)
+            pulse, side, v = later(pulse, turned), 0.0, 0.0
         elif v == 0.0:
             # no velocity is left, but the ground lifts the block again at once
             side = 0.0
@@ -170,8 +189,8 @@ def solve_modes(
         k, saddle, factor, alpha, onset = constants[:, i]
         _, amplitude, omega, half_cycles, eta = cases[:, i]
         law = Law(linear, k, saddle, factor, alpha, onset, eta)
-        pulse = Pulse(abs(amplitude), omega, half_cycles * math.pi)
-        segment[1], segment[2], segment[3] = pulse.end / omega, pulse.amplitude, omega
+        pulse = Pulse(abs(amplitude), omega, int(half_cycles))
+        segment[1], segment[2], segment[3] = math.pi / omega, pulse.amplitude, omega
         modes[i], margins[i], steps[i] = pulse_mode(law, pulse, work, segment)
 
 

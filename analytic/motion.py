@@ -2,12 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.checks import finite, positive
+from analytic.checks import finite, held, measurable, whole_half_cycles
 from analytic.kernels.law import FloatArray as FloatArray
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
@@ -42,7 +42,10 @@ class Motion(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SinePulse:
-    """Ground acceleration a_p sin(omega t) during a number of half cycles.
+    """Ground acceleration a_p sin(omega t + phase) during a number of half cycles.
+
+    The ground is at rest before. Where the phase is not 0 the acceleration jumps at the begin and
+    the end; pi/2 makes a cosine.
 
     Parameters
     ----------
@@ -52,24 +55,32 @@ class SinePulse:
         Circular frequency [rad/s].
     half_cycles : int
         1 for the half-sine pulse, 2 for the full-sine pulse.
+    phase : float, optional
+        Phase at time zero [rad].
 
     Raises
     ------
     ValueError
-        If the amplitude is not finite, omega not positive and finite, or half_cycles not a
-        positive integer.
+        If the amplitude or the phase is not finite, omega not positive and finite, or half_cycles
+        not a positive integer; also if omega is not of a size whose square floating point holds,
+        or the displacement of the ground overflows.
     """
 
     amplitude: float
     omega: float
     half_cycles: int = 1
+    phase: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "amplitude", finite("amplitude", self.amplitude))
-        object.__setattr__(self, "omega", positive("omega", self.omega))
-        if self.half_cycles != int(positive("half_cycles", self.half_cycles)):
-            raise ValueError(f"half_cycles is {self.half_cycles!r}; it must be a whole number")
-        object.__setattr__(self, "half_cycles", int(self.half_cycles))
+        object.__setattr__(self, "omega", measurable("omega", self.omega))
+        object.__setattr__(self, "phase", finite("phase", self.phase))
+        object.__setattr__(self, "half_cycles", whole_half_cycles(self.half_cycles))
+        held(
+            "the displacement of the ground",
+            self.amplitude / self.omega**2 * (self.half_cycles * math.pi),
+            f"amplitude is {self.amplitude!r} and omega {self.omega!r}",
+        )
 
     @property
     def duration(self) -> float:
@@ -85,22 +96,43 @@ class SinePulse:
         """Ground acceleration [m/s2] at the times `t` [s]."""
         t = np.asarray(t, dtype=np.float64)
         during = (t >= 0.0) & (t <= self.duration)
-        return np.where(during, self.amplitude * np.sin(self.omega * t), 0.0)
+        return np.where(during, self.amplitude * np.sin(self.omega * t + self.phase), 0.0)
 
     def velocity(self, t: ArrayLike) -> FloatArray:
         """Ground velocity [m/s] at the times `t` [s]; constant after the pulse."""
-        phase = self.omega * np.clip(np.asarray(t, dtype=np.float64), 0.0, self.duration)
-        # 1 - cos x = 2 sin(x/2)^2 keeps its digits at small x
-        return 2.0 * self.amplitude / self.omega * np.sin(0.5 * phase) ** 2
+        half = 0.5 * self.omega * np.clip(np.asarray(t, dtype=np.float64), 0.0, self.duration)
+        # cos f - cos(f + x) = 2 sin(f + x/2) sin(x/2) keeps its digits at small x
+        grown = np.sin(self.phase + half) * np.sin(half)
+        return np.asarray(2.0 * self.amplitude / self.omega * grown)
 
     def displacement(self, t: ArrayLike) -> FloatArray:
         """Ground displacement [m] at the times `t` [s]; linear after the pulse."""
         t = np.asarray(t, dtype=np.float64)
         during = np.clip(t, 0.0, self.duration)
-        phase = self.omega * during
-        moved = self.amplitude / self.omega**2 * (phase - np.sin(phase))
+        x = self.omega * during
+        ahead = math.cos(self.phase) * (x - np.sin(x))
+        across = 2.0 * math.sin(self.phase) * np.sin(0.5 * x) ** 2
+        moved = self.amplitude / self.omega**2 * (ahead + across)
         return moved + self.velocity(self.duration) * np.maximum(t - self.duration, 0.0)
 
     def segments(self) -> FloatArray:
         """One row of `SEGMENT_COLUMNS`."""
-        return np.array([[0.0, self.duration, self.amplitude, self.omega, 0.0, 0.0, 0.0]])
+        return np.array([[0.0, self.duration, self.amplitude, self.omega, self.phase, 0.0, 0.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """Ground that does not move: for a block that is released from a tilt, or set turning."""
+
+    duration: ClassVar[float] = 0.0
+    breakpoints: ClassVar[tuple[float, float]] = (0.0, 0.0)
+
+    def acceleration(self, t: ArrayLike) -> FloatArray:
+        """Zero, at the times `t` [s]."""
+        return np.zeros_like(np.asarray(t, dtype=np.float64))
+
+    velocity = displacement = acceleration
+
+    def segments(self) -> FloatArray:
+        """One row of `SEGMENT_COLUMNS`, of no length."""
+        return np.zeros((1, len(SEGMENT_COLUMNS)))

@@ -1,6 +1,6 @@
 """The paper's own solvers (section 4): RK4 and average acceleration, with fractional time stepping.
 
-They march with a fixed step from rest. A step that passes through theta = 0 is taken back and
+They march with a fixed step. A step that passes through theta = 0 is taken back and
 repeated in tenths, and so on, until abs(theta) is below the event tolerance at the impact.
 """
 
@@ -18,8 +18,9 @@ from analytic.kernels.excursions import (
     IMPACT,
     LYING,
     OVERTURNED,
-    REST,
+    RESTED,
     ROCKED,
+    START,
     TOO_LONG,
     UPLIFT,
     VANISHING,
@@ -27,12 +28,20 @@ from analytic.kernels.excursions import (
     Notes,
     note,
 )
-from analytic.kernels.law import Law
-from analytic.kernels.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
+from analytic.kernels.law import Law, Start
+from analytic.kernels.rest import (
+    acceleration,
+    comes_to_rest,
+    ground,
+    is_finite,
+    next_uplift,
+    time_to_rest,
+)
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.simulate import check_window, respond, scaled_segments
+from analytic.start import REST, folded
 
 METHODS = ("rk4", "average-acceleration")
 STEP = 1e-3
@@ -47,6 +56,7 @@ def integrate(
     block: RigidBlock,
     motion: Motion,
     model: str | Model = "exact",
+    start: tuple[float, float] = REST,
     *,
     method: str = "rk4",
     step: float = STEP,
@@ -58,7 +68,7 @@ def integrate(
 
     Parameters
     ----------
-    block, motion, model, duration, times
+    block, motion, model, start, duration, times
         As for `simulate`. Without a duration the response is followed to its first turning point
         after the motion, where peak and outcome are decided.
     method : {"rk4", "average-acceleration"}
@@ -85,11 +95,12 @@ def integrate(
     event_tolerance = positive("event_tolerance", event_tolerance)
     law = find_model(model).law(block.alpha, block.restitution)
     until, sampled = check_window(motion, duration, times)
+    begin = folded(block, law, motion, start, sampled)
     segments = scaled_segments(block, motion)
 
     def solve(notes: Notes) -> End:
         end = until * block.p if duration is not None else 0.0
-        return tread(law, segments, end, notes, method == "rk4", step, event_tolerance)
+        return tread(law, segments, begin, end, notes, method == "rk4", step, event_tolerance)
 
     return respond(block, solve, sampled, times is not None, watched=False)
 
@@ -162,22 +173,27 @@ def turning_value(y: float, v: float, end: float, rate: float, h: float) -> floa
 def tread(
     law: Law,
     segments: FloatArray,
+    start: Start,
     until: float,
     notes: Notes,
     rk4: bool,
     step: float,
     tolerance: float,
 ) -> End:
-    """Follow one response from rest with a fixed step; arguments as for `excursions.march`.
+    """Follow one response with a fixed step; arguments as for `excursions.march`.
 
     With `until` before the end of the ground motion the march ends when the peak is decided.
     """
+    if not is_finite(segments):
+        return End(BROKEN, 0.0, 0, 0, 0, 0.0)
     times, samples = notes.times, notes.samples
     moving = segments[-1, 1]
     last = max(until, moving)
-    tau = y = v = side = peak = 0.0
-    h = step
+    side, y, v = start
+    tau, peak, h = 0.0, y, step
     j = steps = impacts = events = n = 0
+    if side != 0.0:
+        events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
             j, rise, side, _ = next_uplift(segments, j, tau, law.onset)
@@ -243,7 +259,7 @@ def tread(
         unseen = wait < math.inf and 0.5 * v * v < -tolerance * acceleration(law, side, a, 0.0)
         if unseen or comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
             tau += wait
-            events = note(notes.log, events, REST, tau, 0.0, 0.0)
+            events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
             side = v = 0.0
         elif v == 0.0:
             side = -math.copysign(1.0, a)

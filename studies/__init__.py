@@ -26,6 +26,7 @@ def respond(
     block: RigidBlock,
     motion: Motion,
     *,
+    start: tuple[float, float] = (0.0, 0.0),
     duration: float | None = None,
     times: FloatArray | None = None,
     **options: Any,
@@ -39,7 +40,9 @@ def respond(
         ``"mujoco:fixed"``.
     block : RigidBlock
     motion : Motion
-        For instance a `SinePulse`.
+        For instance a `SinePulse`; `analytic.Still()` where the ground does not move.
+    start : (float, float), optional
+        Rotation theta [rad] and angular velocity [rad/s] at time zero; at rest by default.
     duration : float, optional
         Observe until this time [s], not before the motion ends. By default the response is
         followed until its peak is decided, and no longer.
@@ -55,4 +58,6 @@ def respond(
     """
     from studies.sources.registry import resolve
 
+    if tuple(start) != (0.0, 0.0):
+        options["start"] = start
     return resolve(source).call(block, motion, duration=duration, times=times, **options)

@@ -25,23 +25,41 @@ def angular_acceleration(model, block, s, theta, a_g):
 MOST_IMPACTS = 12
 
 
-def peak_and_impacts(model, block, pulse, after=15.0, rtol=1e-12):
+def first_uplift(block, pulse, onset):
+    """Return when abs(a_p sin(omega t + phase)) first exceeds the onset, and the side it lifts to;
+    (inf, 0) if it does not within the pulse."""
+    if abs(pulse.amplitude) <= onset * block.gravity:
+        return math.inf, 0
+    level = math.asin(onset * block.gravity / abs(pulse.amplitude))
+    within = pulse.phase % math.pi
+    t = 0.0
+    if not level < within < math.pi - level:
+        t = ((level - within) % math.pi) / pulse.omega
+    ahead = math.sin(pulse.omega * t + pulse.phase + 1e-9)
+    return (t if t < pulse.duration else math.inf), -int(math.copysign(1, pulse.amplitude * ahead))
+
+
+def peak_and_impacts(model, block, pulse, after=15.0, rtol=1e-12, start=(0.0, 0.0)):
     """Return (peak/alpha or inf, impact times) up to `after`/p past the pulse.
 
-    After MOST_IMPACTS impacts it stops; the peak is None if the pulse is not over by then.
+    A block tilted at the start turns about the corner that it stands on, an upright one about that
+    which it turns to. After MOST_IMPACTS impacts it stops; the peak is None if the pulse is not
+    over by then.
     """
     saddle = math.tan(block.alpha) if model == "modified" else block.alpha
     onset = math.tan(block.alpha) if model != "housner" else block.alpha
-    if abs(pulse.amplitude) <= onset * block.gravity:
+    t, s = first_uplift(block, pulse, onset)
+    if any(start):
+        t, s = 0.0, int(math.copysign(1, start[0] or start[1]))
+    if t == math.inf:
         return 0.0, []
-    t = math.asin(onset * block.gravity / abs(pulse.amplitude)) / pulse.omega
-    s = -1 if pulse.amplitude > 0 else 1
-    state, peak, impacts = [0.0, 0.0], 0.0, []
+    state, peak, impacts = list(start), abs(start[0]), []
     for stop in (pulse.duration, pulse.duration + after / block.p):
         while t < stop:
 
             def equation(time, x, s=s, moving=stop == pulse.duration):
-                a_g = pulse.amplitude * math.sin(pulse.omega * time) if moving else 0.0
+                phase = pulse.omega * time + pulse.phase
+                a_g = pulse.amplitude * math.sin(phase) if moving else 0.0
                 return [x[1], angular_acceleration(model, block, s, x[0], a_g)]
 
             def contact(time, x, s=s):

@@ -12,10 +12,17 @@ import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.compiled import kernel
-from analytic.kernels.forces import POINTS, watch, watch_free
-from analytic.kernels.law import FloatArray, Law
-from analytic.kernels.polynomial import MAX_DEPTH, ORDER, next_root, slope, value
-from analytic.kernels.rest import acceleration, comes_to_rest, ground, next_uplift, time_to_rest
+from analytic.kernels.forces import watch_free, watch_rest, watch_step, watch_train
+from analytic.kernels.law import FloatArray, Law, Start
+from analytic.kernels.polynomial import MAX_DEPTH, ORDER, highest, next_root, slope, value
+from analytic.kernels.rest import (
+    acceleration,
+    comes_to_rest,
+    ground,
+    is_finite,
+    next_uplift,
+    time_to_rest,
+)
 from analytic.kernels.taylor import (
     Accuracy,
     expand_exact,
@@ -25,7 +32,7 @@ from analytic.kernels.taylor import (
 )
 
 AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
-UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
+UPLIFT, IMPACT, RESTED, START = 0.0, 1.0, 2.0, 3.0
 LYING = 0.5 * math.pi
 """Rotation at which the side of the block lies on the ground."""
 MAX_STEPS = 2_000_000
@@ -42,8 +49,9 @@ class Notes(NamedTuple):
     """What to write down on the way; each array may be empty.
 
     times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
-    (capacity, 4): kind, time, velocity before, velocity after. limits (2,): smallest normal force
-    over weight, largest friction ratio.
+    (capacity, 4): kind, time, velocity before, velocity after; of an uplift the lead, and of a
+    start off rest the rotation, in place of the velocity before. limits (2,): smallest normal
+    force over weight, largest friction ratio.
     """
 
     times: FloatArray
@@ -77,7 +85,7 @@ def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after:
 @kernel
 def workspace() -> FloatArray:
     """Return the workspace that `march` needs."""
-    return np.empty((MAX_DEPTH + 9, ORDER + 1))
+    return np.empty((MAX_DEPTH + 12, ORDER + 1))
 
 
 @kernel
@@ -115,42 +123,6 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
         q[i] = d[i + lead]
         low += min(q[i], 0.0)
     return 2.0 if low > 0.0 else next_root(q, degree, 0.0, work[1:])
-
-
-@kernel
-def highest(
-    d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
-) -> tuple[float, float]:
-    """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
-
-    Else `above` itself, and -1.
-    """
-    bound = d[0]
-    for i in range(1, order + 1):
-        bound += max(d[i], 0.0)
-    if bound <= above:
-        return above, -1.0
-    top, where = above, -1.0
-    last = value(d, order, end)
-    if last > top:
-        top, where = last, end
-    rate = work[0]
-    shift = max(lead, 1)
-    degree = order - shift
-    least = most = 0.0
-    for i in range(degree + 1):
-        rate[i] = (i + shift) * d[i + shift]
-        least += min(rate[i], 0.0) if i > 0 else rate[i]
-        most += max(rate[i], 0.0) if i > 0 else rate[i]
-    if least > 0.0 or most < 0.0:
-        return top, where
-    x = next_root(rate, degree, 0.0, work[1:])
-    while x < end:
-        here = value(d, order, x)
-        if here > top:
-            top, where = here, x
-        x = next_root(rate, degree, x, work[1:])
-    return top, where
 
 
 @kernel
@@ -212,11 +184,12 @@ def march(
     law: Law,
     accuracy: Accuracy,
     segments: FloatArray,
+    start: Start,
     until: float,
     notes: Notes,
     work: FloatArray,
 ) -> End:
-    """Follow one response from rest.
+    """Follow one response.
 
     Parameters
     ----------
@@ -225,6 +198,8 @@ def march(
         Of the exact model; for a linear one the order is that of the series that brackets events.
     segments : ndarray, shape (m, 7)
         The ground motion: rows of `motion.SEGMENT_COLUMNS` in units of 1/p and g.
+    start : Start
+        State at time zero.
     until : float
         Time to follow the response to, at least to the end of the ground motion. The outcome and
         the peak of what comes after follow from energy.
@@ -236,25 +211,34 @@ def march(
     order = accuracy.order
     last = max(until, segments[-1, 1])
     still = np.zeros(7)
-    tau = y = v = side = peak = 0.0
-    j = lead = steps = impacts = events = n = 0
+    if not is_finite(segments):
+        return End(BROKEN, 0.0, 0, 0, 0, 0.0)
+    side, y, v = start
+    tau, peak = 0.0, y
+    j = steps = impacts = events = n = 0
+    lead = 1 if y == 0.0 else 0
+    if side != 0.0:
+        events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
+            resting = j
             j, rise, side, lead = next_uplift(segments, j, tau, law.onset)
             while n < notes.times.size and notes.times[n] <= min(rise, last):
                 notes.samples[:, n] = 0.0
                 n += 1
+            if notes.limits.size > 0:
+                watch_rest(notes.limits, segments, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau = rise
-            events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
+            events = note(notes.log, events, UPLIFT, tau, float(lead), 0.0)
         while j < len(segments) and tau >= segments[j, 1]:
             j += 1
         if tau >= last:
             ahead = free_peak(law, y, v)
             if notes.limits.size > 0:
-                watch_free(notes.limits, law, side, y, v)
+                watch_free(notes.limits, law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, last)
         if steps == MAX_STEPS:
@@ -288,10 +272,7 @@ def march(
             x = min(polish(law, segment, side, tau, lead, y, v, x * h) / h, 1.0)
         n = sample_step(law, segment, side, tau, lead, h, x * h, d, order, y, v, notes, n)
         if notes.limits.size > 0:
-            for i in range(POINTS + 1):
-                at = x * i / POINTS
-                a = ground(segments, j, tau + at * h)
-                watch(notes.limits, law, side, a, value(d, order, at), slope(d, order, at) / h)
+            watch_step(notes.limits, order, h, x, work)
         if fallen:
             return End(OVERTURNED, peak, steps, impacts, events, tau + x * h)
 
@@ -314,8 +295,10 @@ def march(
         a = ground(segments, j, tau)
         wait = time_to_rest(law, side, v, a)
         if comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
+            if notes.limits.size > 0:
+                watch_train(notes.limits, law, side, a, v)
             tau += wait
-            events = note(notes.log, events, REST, tau, 0.0, 0.0)
+            events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
             side = v = 0.0
         elif v == 0.0:
             # no velocity is left, but the ground lifts the block again at once

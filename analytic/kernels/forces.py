@@ -9,10 +9,12 @@ import math
 from analytic.kernels.closed_form import turning_rotation, work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.law import FloatArray, Law
-from analytic.kernels.rest import acceleration
+from analytic.kernels.polynomial import highest, value
+from analytic.kernels.rest import acceleration, strongest_between
 
-POINTS = 16
-"""Points at which the forces are looked at in a step."""
+MOST_REFINEMENTS = 30
+REFINED = 1e-14
+"""Part of the friction ratio below which a better one changes nothing."""
 
 
 @kernel
@@ -30,21 +32,133 @@ def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, 
 
 
 @kernel
-def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: float) -> None:
+def keep(limits: FloatArray, normal: float, horizontal: float) -> None:
     """Keep the smallest normal force and the largest friction ratio in limits[0], limits[1]."""
-    normal, horizontal = forces(law, side, a, y, v)
     limits[0] = min(limits[0], normal)
     limits[1] = max(limits[1], abs(horizontal) / normal if normal > 0.0 else math.inf)
 
 
 @kernel
-def watch_free(limits: FloatArray, law: Law, side: float, y: float, v: float) -> None:
-    """Watch a survivor's free rocking from (y, v) between its turning point and its next impact."""
-    work = 0.5 * v * v + work_to(law, y)
-    top = turning_rotation(law, work)
+def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: float) -> None:
+    """Watch one state of a block."""
+    normal, horizontal = forces(law, side, a, y, v)
+    keep(limits, normal, horizontal)
+
+
+@kernel
+def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
+    """Watch a block at rest between two times: it needs the friction that carries it along."""
+    limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
+
+
+@kernel
+def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
+    """Watch a train of impacts that is summed, from the velocity v on `side` to rest."""
+    if v == 0.0:
+        return
+    watch(limits, law, side, a, 0.0, v)
+    watch(limits, law, -side, a, 0.0, law.eta * v)
+    watch(limits, law, side, a, 0.0, 0.0)
+    watch(limits, law, -side, a, 0.0, 0.0)
+
+
+@kernel
+def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
+    """Watch the part [0, x] of a step of length h, whose series `excursions.expand` left in `work`.
+
+    The least normal force N is a minimum of its polynomial. The friction is the largest ratio mu
+    of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
+    (Dinkelbach 1967).
+    """
+    normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]
+    degree = order - 2
+    expand_forces(degree, h, work[:4], normal, tangential, excess)
+    for i in range(degree + 1):
+        excess[i] = -normal[i]
+    least, _ = highest(excess, degree, 0, x, max(-normal[0], -limits[0]), spare)
+    limits[0] = min(limits[0], -least)
+    if limits[0] <= 0.0:
+        limits[1] = math.inf
+        return
+    limits[1] = max(limits[1], abs(tangential[0]) / normal[0])
+    for sign in (1.0, -1.0):
+        for _ in range(MOST_REFINEMENTS):
+            for i in range(degree + 1):
+                excess[i] = sign * tangential[i] - limits[1] * normal[i]
+            _, where = highest(excess, degree, 0, x, 0.0, spare)
+            if where < 0.0:
+                break
+            ratio = sign * value(tangential, degree, where) / value(normal, degree, where)
+            if ratio <= limits[1] * (1.0 + REFINED):
+                break
+            limits[1] = ratio
+
+
+@kernel
+def expand_forces(
+    degree: int,
+    h: float,
+    series: FloatArray,
+    normal: FloatArray,
+    tangential: FloatArray,
+    square: FloatArray,
+) -> None:
+    """Write the series of the contact forces over weight, on [0, 1] for a step of length h.
+
+    From those of y, side x ground acceleration, sin(z) and cos(z), rows of `series`; `square` is
+    that of y'^2. The tangential force is folded, as y is.
+    """
+    y, f, sine, cosine = series[0], series[1], series[2], series[3]
+    scale = 1.0
+    for n in range(degree + 1):
+        square[n] = turned = pressed = 0.0
+        for i in range(n + 1):
+            square[n] += (i + 1) * y[i + 1] * (n - i + 1) * y[n - i + 1]
+        for i in range(n + 1):
+            gained = (i + 1) * (i + 2) * y[i + 2]
+            pressed += gained * sine[n - i] - square[i] * cosine[n - i]
+            turned += gained * cosine[n - i] + square[i] * sine[n - i]
+        normal[n] = scale * ((1.0 if n == 0 else 0.0) + 0.75 * pressed)
+        tangential[n] = scale * (f[n] + 0.75 * turned)
+        scale *= h
+
+
+@kernel
+def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
+    """Watch a survivor's free rocking from (y, v) to its rest."""
+    energy = 0.5 * v * v + work_to(law, y)
+    top = turning_rotation(law, energy)
     if top == math.inf:
         return
-    for i in range(POINTS + 1):
-        height = top * i / POINTS
-        rate = math.sqrt(max(2.0 * (work - work_to(law, height)), 0.0))
-        watch(limits, law, side, 0.0, height, rate)
+    watch_swing(limits, law, energy, top if v >= 0.0 else y)
+    energy *= law.eta * law.eta
+    if energy == 0.0:
+        return
+    if v < 0.0:
+        watch_swing(limits, law, energy, turning_rotation(law, energy))
+    # in smaller swings N is larger, and so is T/N where T < 0: largest in the last and least one
+    watch(limits, law, 1.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def watch_swing(limits: FloatArray, law: Law, energy: float, top: float) -> None:
+    """Watch a free block at rotations from 0 to `top`; at 0 it has the kinetic `energy`.
+
+    With c = cos z, s = sin z and E = c where the block turns, v^2 = 2 (E - c), so that
+    N = 1/4 - 3/2 E c + 9/4 c^2 and T = 3/4 s (2 E - 3 c). N is least at c = E/3, T/N extreme at
+    the roots of 33 c^2 - 38 E c + 12 E^2 - 3, or at an end.
+    """
+    low, high = math.cos(law.alpha), math.cos(law.alpha - top)
+    turn = low + energy
+    spread = math.sqrt(99.0 - 35.0 * turn * turn)
+    for place in (
+        low,
+        high,
+        turn / 3.0,
+        (19.0 * turn - spread) / 33.0,
+        (19.0 * turn + spread) / 33.0,
+    ):
+        c = min(max(place, low), high)
+        normal = 0.25 + c * (2.25 * c - 1.5 * turn)
+        tangential = 0.75 * math.sqrt(1.0 - c * c) * (2.0 * turn - 3.0 * c)
+        keep(limits, normal, tangential)

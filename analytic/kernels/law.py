@@ -23,3 +23,19 @@ class Law(NamedTuple):
     alpha: float
     onset: float
     eta: float
+
+
+class Start(NamedTuple):
+    """A start as the kernels take it: the side that the block is on, y = s theta, and its rate.
+
+    The side is 0 at rest. Upright but turning, a block is on the side that it turns to; there is
+    no impact. Time is in units of 1/p.
+    """
+
+    side: float
+    y: float
+    v: float
+
+
+UPRIGHT = Start(0.0, 0.0, 0.0)
+"""A block at rest on its base."""

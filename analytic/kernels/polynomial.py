@@ -1,4 +1,4 @@
-"""Roots of a polynomial on the unit interval, none missed.
+"""Roots and maxima of a polynomial on the unit interval, none missed.
 
 A polynomial is turned into Bernstein form, where the number of sign changes of its coefficients
 bounds the number of its roots in (0, 1) and has the same parity (Descartes). No change: no root;
@@ -146,3 +146,39 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
             width *= 2.0
             depth -= 1
     return 2.0
+
+
+@kernel
+def highest(
+    d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
+) -> tuple[float, float]:
+    """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
+
+    Else `above` itself, and -1.
+    """
+    bound = d[0]
+    for i in range(1, order + 1):
+        bound += max(d[i], 0.0)
+    if bound <= above:
+        return above, -1.0
+    top, where = above, -1.0
+    last = value(d, order, end)
+    if last > top:
+        top, where = last, end
+    rate = work[0]
+    shift = max(lead, 1)
+    degree = order - shift
+    least = most = 0.0
+    for i in range(degree + 1):
+        rate[i] = (i + shift) * d[i + shift]
+        least += min(rate[i], 0.0) if i > 0 else rate[i]
+        most += max(rate[i], 0.0) if i > 0 else rate[i]
+    if least > 0.0 or most < 0.0:
+        return top, where
+    x = next_root(rate, degree, 0.0, work[1:])
+    while x < end:
+        here = value(d, order, x)
+        if here > top:
+            top, where = here, x
+        x = next_root(rate, degree, x, work[1:])
+    return top, where

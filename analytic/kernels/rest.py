@@ -7,8 +7,10 @@ from analytic.kernels.law import FloatArray, Law
 
 ANGLE_TOLERANCE = 1e-14
 
-ROUNDING = 1e-12
-"""Part of the onset, and of the length of a straight segment, that counts as nothing."""
+EQUAL = 1e-15
+"""Part of the onset that the rounding of data makes: more of it lifts a block, if it lasts."""
+MOMENT = 1e-12
+"""Part of a time that counts as nothing: an excess over the onset that lasts no longer."""
 
 
 @kernel
@@ -19,6 +21,32 @@ def ground(segments: FloatArray, j: int, tau: float) -> float:
     start, _, amplitude, omega, phase, offset, rate = segments[j]
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
+
+
+@kernel
+def is_finite(segments: FloatArray) -> bool:
+    """Tell whether floating point holds a ground motion in the units of a block."""
+    for row in segments:
+        for number in row:
+            if not abs(number) < math.inf:
+                return False
+    return True
+
+
+@kernel
+def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
+    """Return the largest abs(acceleration) of the ground between two times, from segment j on."""
+    most = 0.0
+    for i in range(j, segments.shape[0]):
+        first, last = max(begin, segments[i, 0]), min(end, segments[i, 1])
+        if first > last:
+            break
+        most = max(most, abs(ground(segments, i, first)), abs(ground(segments, i, last)))
+        start, _, amplitude, omega, phase, _, _ = segments[i]
+        quarters = [omega * (t - start) + phase - 0.5 * math.pi for t in (first, last)]
+        if math.floor(quarters[0] / math.pi) < math.floor(quarters[1] / math.pi):
+            most = max(most, abs(amplitude))
+    return most
 
 
 @kernel
@@ -48,17 +76,19 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
-    What exceeds it by no more than ROUNDING, and falls, does not; nor what does so only in the
-    last part ROUNDING of the segment: the next one, beginning there, tells.
+    What exceeds it by no more than a part EQUAL does not, nor what does so for no more than the
+    part MOMENT of the segment, falling at its begin or rising at its end: there the next one tells.
     """
     start, end, _, _, _, offset, rate = segment
-    now = offset + rate * (tau - start)
-    if abs(now) > onset * (1.0 + ROUNDING):
+    now, moment = offset + rate * (tau - start), MOMENT * (end - start)
+    excess = abs(now) - onset
+    falls = now * rate < 0.0
+    if excess > EQUAL * onset and not (falls and excess <= moment * abs(rate)):
         return tau, False
     if rate == 0.0:
         return math.inf, True
     time = tau + max(onset - math.copysign(1.0, rate) * now, 0.0) / abs(rate)
-    return (time if time < end - ROUNDING * (end - start) else math.inf), True
+    return (time if time < end - moment else math.inf), True
 
 
 @kernel

@@ -1,11 +1,16 @@
 """One swing of a block under a pulse, from an impact or an uplift to its end, for maps.
 
 A map needs no peak and no history, so a swing is followed by as few evaluations as will do. The
-rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g, and
-phase = omega x time. No impact is stepped over: from (y, v) the block cannot land before
-y + v h - M h^2/2 = 0 where M bounds -y'', and the steps that this allows converge to the impact
-quadratically; the linear models know more about theirs. In the same way no step passes beyond the
-rotation at which the block lies.
+rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g.
+
+Half cycles of the pulse are counted as whole numbers, from the one in which the swing begins, and
+an angle in [0, pi] tells the place in the present one: so no digit is lost and no half cycle
+miscounted, however long the pulse. The first half cycle of a swing counts as positive; where it is
+negative, the swing is the mirror image of one on the other side.
+
+No impact is stepped over: from (y, v) the block cannot land before y + v h - M h^2/2 = 0 where M
+bounds -y'', and the steps that this allows converge to the impact quadratically; the linear models
+know more about theirs. In the same way no step passes beyond the rotation at which the block lies.
 """
 
 import math
@@ -16,7 +21,6 @@ from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import LYING, MAX_STEPS
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import slope, value
-from analytic.kernels.rest import ANGLE_TOLERANCE
 from analytic.kernels.taylor import expand_exact
 
 LANDED, OVERTURNED, LEFT_OVER, STUCK = 0, 1, 2, 3
@@ -36,34 +40,46 @@ SHORT = 0.3
 
 
 class Swing(NamedTuple):
-    """How a swing ended: its kind, phase, rotation, velocity; evaluations or Taylor steps."""
+    """How a swing ended: its kind, half cycles and angle, rotation, velocity; its steps.
+
+    Steps are evaluations of the closed form, or of the Taylor series.
+    """
 
     end: int
-    phase: float
+    half_cycles: int
+    angle: float
     y: float
     v: float
     steps: int
 
 
 class Pulse(NamedTuple):
-    """A pulse as the kernels take it: amplitude [g] > 0, omega/p, phase at its end."""
+    """What is left of a pulse: amplitude [g] > 0, omega/p, half cycles with the present one."""
 
     amplitude: float
     omega: float
-    end: float
+    half_cycles: int
 
 
 @kernel
-def pushes_out(side: float, phase: float) -> bool:
-    """Tell whether the ground accelerates a block on this side outwards at this phase."""
-    return side * (1.0 - 2.0 * (math.floor(phase / math.pi) % 2.0)) < 0.0
+def parity(half_cycles: int) -> float:
+    """Return the sign of the ground acceleration so many half cycles after a positive one."""
+    return 1.0 - 2.0 * (half_cycles % 2)
 
 
 @kernel
-def strongest_ahead(phase: float) -> float:
-    """Return the largest abs(sin) from a phase to the end of its half cycle."""
-    within = phase - math.pi * math.floor(phase / math.pi)
-    return 1.0 if within < 0.5 * math.pi else math.sin(within)
+def whole_half_cycles(angle: float) -> tuple[int, float]:
+    """Return the half cycles in an angle and what is left of it, in [0, pi)."""
+    if angle < math.pi:
+        return 0, angle
+    rest = angle % math.pi
+    return round((angle - rest) / math.pi), rest
+
+
+@kernel
+def strongest_ahead(angle: float) -> float:
+    """Return the largest sin from an angle to the end of its half cycle."""
+    return 1.0 if angle < 0.5 * math.pi else math.sin(angle)
 
 
 @kernel
@@ -79,14 +95,8 @@ def safe_rise(y: float, v: float, most: float) -> float:
     return 2.0 * room / (v + math.sqrt(v * v + 2.0 * most * room))
 
 
-@kernel
-def half_cycle_end(phase: float, end: float) -> float:
-    """Return the phase at which the ground changes direction, or the pulse ends."""
-    return min((math.floor(phase / math.pi) + 1.0) * math.pi, end)
-
-
 class Arc(NamedTuple):
-    """A swing of a linear model from (0, v) at a phase, y = c + w sin + P e^(k t) + Q e^(-k t)."""
+    """A swing of a linear model from (0, v) at an angle, y = c + w sin + P e^(k t) + Q e^(-k t)."""
 
     start: float
     side: float
@@ -111,7 +121,13 @@ def begin_arc(law: Law, pulse: Pulse, start: float, v: float, side: float) -> Ar
 
 @kernel
 def arc_at(
-    law: Law, pulse: Pulse, segment: FloatArray, arc: Arc, t: float, phase: float
+    law: Law,
+    pulse: Pulse,
+    segment: FloatArray,
+    arc: Arc,
+    t: float,
+    half_cycles: int,
+    angle: float,
 ) -> tuple[float, float, float]:
     """Return rotation, velocity and rounding error at the time t of a swing.
 
@@ -124,27 +140,23 @@ def arc_at(
         return y, v, 0.0
     grown = math.exp(k * t)
     rising, falling = arc.rising * grown, arc.falling / grown
-    y = law.saddle + arc.wave * math.sin(phase) + rising + falling
-    v = arc.wave * omega * math.cos(phase) + k * (rising - falling)
+    wave = parity(half_cycles) * arc.wave
+    y = law.saddle + wave * math.sin(angle) + rising + falling
+    v = wave * omega * math.cos(angle) + k * (rising - falling)
     return y, v, ROUNDING * (law.saddle + abs(rising))
 
 
 @kernel
-def stretch(side: float, phase: float, level: float, end: float) -> tuple[bool, bool, float]:
-    """Tell whether the ground pushes outwards and lifts from a phase on, and until which phase.
+def stretch(out: bool, angle: float, level: float) -> tuple[bool, float]:
+    """Tell whether the ground lifts from an angle on, and until which angle.
 
-    It lifts where its outward acceleration is beyond the onset, `level` from the ends of a half
-    cycle.
+    It lifts where it pushes `out` and is beyond the onset, `level` from the ends of a half cycle.
     """
-    base = math.pi * math.floor(phase / math.pi)
-    within = phase - base
-    if not pushes_out(side, phase):
-        return False, False, min(base + math.pi, end)
-    if within < level - ANGLE_TOLERANCE:
-        return True, False, min(base + level, end)
-    if within < math.pi - level - ANGLE_TOLERANCE:
-        return True, True, min(base + math.pi - level, end)
-    return True, False, min(base + math.pi, end)
+    if out and angle < level:
+        return False, level
+    if out and angle < math.pi - level:
+        return True, math.pi - level
+    return False, math.pi
 
 
 @kernel
@@ -161,42 +173,46 @@ def swing_linear(
     c, omega = law.saddle, pulse.omega
     arc = begin_arc(law, pulse, start, v, side)
     push, square = law.factor * pulse.amplitude, law.k * law.k
-    t, phase, y, top, noise, steps = 0.0, start, 0.0, 0.0, 0.0, 0
+    t, angle, y, top, noise = 0.0, start, 0.0, 0.0, 0.0
+    n = steps = 0
+    out = side < 0.0
     while steps < MAX_STEPS:
-        out, lifts, stop = stretch(side, phase, level, pulse.end)
-        onward = out and c <= LYING and phase >= pulse.end - math.pi
+        lifts, stop = stretch(out, angle, level)
+        onward = out and c <= LYING and n == pulse.half_cycles - 1
         if onward and y >= c and v >= 0.0:
-            return Swing(OVERTURNED, phase, y, v, steps)
+            return Swing(OVERTURNED, n, angle, y, v, steps)
         if lifts:
             h = math.inf if v >= 0.0 else max(y, 0.0) / -v
         else:
             # as if the acceleration stayed: any guess will do
-            fall = square * (c - y - push * abs(math.sin(phase)) * (1.0 if out else -1.0))
+            fall = square * (c - y - push * math.sin(angle) * (1.0 if out else -1.0))
             h = safe_fall(max(y, 0.0), v, fall) if fall > 0.0 else math.inf
         if not (onward or (lifts and v >= 0.0)):
-            force = push * strongest_ahead(phase) if out else 0.0
+            force = push * strongest_ahead(angle) if out else 0.0
             h = min(h, safe_rise(y, v, square * max(LYING - c + force, 0.0)))
         t += max(h, CONTACT * t)
-        phase = max(start + omega * t, phase)
-        if phase >= stop:
-            t, phase = (stop - start) / omega, stop
+        angle = max(start + omega * t - n * math.pi, angle)
+        if angle >= stop:
+            t, angle = (n * math.pi + stop - start) / omega, stop
         steps += 1
-        y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+        y, v, noise = arc_at(law, pulse, segment, arc, t, n, angle)
         top = max(top, y)
         if LYING - y <= CONTACT:
-            return Swing(OVERTURNED, phase, y, v, steps)
+            return Swing(OVERTURNED, n, angle, y, v, steps)
         contact = max(CONTACT * top, noise)
         while y < -contact and v < 0.0 and not lifts and steps < MAX_STEPS:
             steps += 1
             t -= y / v
-            phase = start + omega * t
-            y, v, noise = arc_at(law, pulse, segment, arc, t, phase)
+            angle = start + omega * t - n * math.pi
+            y, v, noise = arc_at(law, pulse, segment, arc, t, n, angle)
             contact = max(CONTACT * max(abs(v) * t, top), noise)
         if y <= contact and v <= 0.0:
-            return Swing(LANDED, phase, 0.0, v, steps)
-        if phase >= pulse.end:
-            return Swing(LEFT_OVER, phase, y, v, steps)
-    return Swing(STUCK, phase, y, v, steps)
+            return Swing(LANDED, n, angle, 0.0, v, steps)
+        if angle >= math.pi:
+            n, angle, out = n + 1, 0.0, not out
+            if n == pulse.half_cycles:
+                return Swing(LEFT_OVER, n, angle, y, v, steps)
+    return Swing(STUCK, n, angle, y, v, steps)
 
 
 @kernel
@@ -222,10 +238,10 @@ def map_step(y: FloatArray) -> float:
 
 
 @kernel
-def expand_pulse(pulse: Pulse, phase: float, side: float, f: FloatArray) -> None:
+def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None:
     """Write the Taylor coefficients of side x ground acceleration into f[0..MAP_ORDER]."""
-    f[0] = side * pulse.amplitude * math.sin(phase)
-    f[1] = side * pulse.amplitude * pulse.omega * math.cos(phase)
+    f[0] = side * pulse.amplitude * math.sin(angle)
+    f[1] = side * pulse.amplitude * pulse.omega * math.cos(angle)
     square = pulse.omega * pulse.omega
     for i in range(2, MAP_ORDER + 1):
         f[i] = -square * f[i - 2] / (i * (i - 1))
@@ -293,41 +309,46 @@ def swing_exact(
     sine: FloatArray,
     cosine: FloatArray,
 ) -> Swing:
-    """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`."""
+    """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`.
+
+    Until the time `lifted` the ground lifts the block.
+    """
     alpha, omega = law.alpha, pulse.omega
     low, high = math.sin(alpha), math.cos(alpha)
-    phase, y, top, steps = start, 0.0, 0.0, 0
+    t, angle, y, top = 0.0, start, 0.0, 0.0
+    n = steps = 0
     while steps < MAX_STEPS:
         steps += 1
-        expand_pulse(pulse, phase, side, f)
+        out, last = side < 0.0, n >= pulse.half_cycles - 1
+        expand_pulse(pulse, angle, side, f)
         series[0], series[1] = y, v
         # where the ground passes through the onset the second derivative starts from zero
         smooth = y == 0.0 and v == 0.0 and abs(low + f[0] * high) <= CONTACT * low
         series[2] = 0.0 if smooth else -0.5 * (math.sin(alpha - y) + f[0] * math.cos(alpha - y))
         expand_exact(law, MAP_ORDER, f, series, sine, cosine)
-        h = min(map_step(series), (pulse.end - phase) / omega)
-        stop = phase + omega * h
-        out, turn = pushes_out(side, phase), half_cycle_end(phase, pulse.end)
-        straddles = stop > turn
-        force = pulse.amplitude if straddles else pulse.amplitude * strongest_ahead(phase)
-        clear = min(max((lifted - phase) / omega, 0.0), h)
+        ahead = max(((pulse.half_cycles - n) * math.pi - angle) / omega, 0.0)
+        h = map_step(series)
+        ended = h >= ahead
+        h = min(h, ahead)
+        straddles = not last and angle + omega * h > math.pi
+        force = pulse.amplitude if straddles else pulse.amplitude * strongest_ahead(angle)
+        clear = min(max(lifted - t, 0.0), h)
         landed = False
         if clear < h and lowest_bound(series, h) <= 0.0:
             most = low + (0.0 if out and not straddles else force)
             h, landed = lands(series, clear, h, most, top)
-        onward = out and turn >= pulse.end
-        if not onward and highest_bound(series, h) >= LYING:
+        if not (out and last) and highest_bound(series, h) >= LYING:
             most = high + (force if out or straddles else 0.0)
             if lies(series, h, most):
-                return Swing(OVERTURNED, phase, y, v, steps)
+                return Swing(OVERTURNED, n, angle, y, v, steps)
         y, v = value(series, MAP_ORDER, h), slope(series, MAP_ORDER, h)
         top = max(top, y)
+        turned, angle = whole_half_cycles(angle + omega * h)
+        t, n, side = t + h, n + turned, side * parity(turned)
         if landed:
-            return Swing(LANDED, phase + omega * h, 0.0, v, steps)
-        if stop >= pulse.end or phase + omega * h >= pulse.end:
-            return Swing(LEFT_OVER, pulse.end, y, v, steps)
-        phase += omega * h
-        onward = pushes_out(side, phase) and half_cycle_end(phase, pulse.end) >= pulse.end
-        if onward and y >= alpha and v >= 0.0:
-            return Swing(OVERTURNED, phase, y, v, steps)
-    return Swing(STUCK, phase, y, v, steps)
+            return Swing(LANDED, n, angle, 0.0, v, steps)
+        if ended or n >= pulse.half_cycles:
+            return Swing(LEFT_OVER, n, angle, y, v, steps)
+        if side < 0.0 and n == pulse.half_cycles - 1 and y >= alpha and v >= 0.0:
+            return Swing(OVERTURNED, n, angle, y, v, steps)
+    return Swing(STUCK, n, angle, y, v, steps)

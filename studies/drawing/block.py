@@ -51,7 +51,8 @@ def _dimensions(axes: Axes, corners: FloatArray) -> None:
         outward = (middle - centre) / np.linalg.norm(middle - centre)
         shift = 0.12 * outward
         axes.add_patch(_arrow(start + shift, end + shift, "<|-|>", SOFT))
-        axes.text(*(middle + 0.3 * outward), name, ha="center", va="center", fontsize=15)
+        x, y = middle + 0.3 * outward
+        axes.text(x, y, name, ha="center", va="center", fontsize=15)
 
 
 def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta: float) -> None:
@@ -60,7 +61,8 @@ def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta:
     centre = 0.5 * (pivot + far)
     axes.plot(*np.array([pivot, centre]).T, color=INK, linewidth=1.4)
     axes.plot(*centre, "o", color=INK, markersize=5)
-    axes.text(*(0.62 * centre + 0.38 * pivot + [-0.15, 0.0]), "R", fontsize=15, va="center")
+    x, y = 0.62 * centre + 0.38 * pivot
+    axes.text(x - 0.15, y, "R", fontsize=15, va="center")
     along = math.degrees(math.atan2(*(top - pivot)[::-1]))
     alpha = math.degrees(math.atan2(width, height))
     axes.add_patch(Arc(tuple(pivot), 1.3, 1.3, theta1=along, theta2=along + alpha, color=INK))
@@ -72,14 +74,14 @@ def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta:
 
 def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: str) -> None:
     angle = math.radians(degrees)
-    place = origin + distance * np.array([math.cos(angle), math.sin(angle)])
-    axes.text(*place, name, ha="center", va="center", fontsize=15)
+    x, y = origin + distance * np.array([math.cos(angle), math.sin(angle)])
+    axes.text(x, y, name, ha="center", va="center", fontsize=15)
 
 
 def _shaking(axes: Axes) -> None:
     """Name the acceleration of the ground, which drives the block the other way."""
     axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
-    axes.text(0.45, -0.36, "ü$_g$  acceleration of the ground", va="center", fontsize=11)
+    axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
 
 
 def _arrow(

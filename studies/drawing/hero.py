@@ -1,6 +1,7 @@
 """One block and one pulse: who is on the exact solution, and who is not."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -36,14 +37,15 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
         source, outcome and error (relative, of the peak), one line each.
     """
     drawing = Figure(figsize=(10.0, 6.0), layout="constrained")
-    upper, lower = drawing.subfigures(2, 1, height_ratios=(1.0, 1.25))
+    upper, lower = drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.25))[:, 0]
     others = lines[lines["source"] != "exact"]
     exact = samples[samples["source"] == "exact"]
-    instant = float(exact.loc[exact["theta_ratio"].abs().idxmax(), "time_s"])
+    instant = float(exact["time_s"].to_numpy()[np.argmax(exact["theta_ratio"].abs())])
     panels = upper.subplots(1, len(others), sharey=True)
     for axes, (_, line) in zip(panels, others.iterrows(), strict=True):
-        angles = [_at(samples, name, instant) for name in ("exact", str(line["source"]))]
-        _outlines(axes, block, *angles, style_of(str(line["source"])).colour)
+        source = str(line["source"])
+        right, found = (_at(samples, name, instant) for name in ("exact", source))
+        _outlines(axes, block, right, found, style_of(source).colour)
         axes.set_title(_title(line), fontsize=10, fontweight="bold")
         axes.text(
             0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top", fontsize=11
@@ -58,13 +60,13 @@ def _at(samples: pd.DataFrame, source: str, instant: float) -> float:
     return float(np.interp(instant, points["time_s"], points["theta_ratio"]))
 
 
-def _title(line: "pd.Series[str]") -> str:
+def _title(line: "pd.Series[Any]") -> str:
     engine, colon, preset = str(line["source"]).partition(":")
     is_model = not colon and engine == "housner"
     return "Housner's linearization" if is_model else TITLES[preset].format(engine)
 
 
-def _verdict(line: "pd.Series[float]") -> str:
+def _verdict(line: "pd.Series[Any]") -> str:
     if line["outcome"] != "rocked":
         return str(line["outcome"])
     error = float(line["error"])
@@ -75,10 +77,11 @@ def _outlines(axes: Axes, block: RigidBlock, exact: float, found: float, colour:
     axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75), aspect="equal")
     axes.set_axis_off()
     axes.add_patch(Rectangle((-1.15, -0.1), 2.3, 0.1, color=GROUND, linewidth=0))
-    for ratio, look in (
+    looks: list[tuple[float, dict[str, Any]]] = [
         (exact, {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
         (found, {"fill": False, "edgecolor": colour, "linewidth": 2.2}),
-    ):
+    ]
+    for ratio, look in looks:
         theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
         axes.add_patch(Polygon(outline(block.width, block.height, theta), **look))
 
@@ -104,7 +107,7 @@ def _histories(axes: Axes, samples: pd.DataFrame, lines: pd.DataFrame, instant: 
     axes.legend(loc="upper right", fontsize=9, frameon=False, ncols=3)
 
 
-def _look(source: str) -> dict[str, object]:
+def _look(source: str) -> dict[str, Any]:
     """Return how a history is drawn: the exact one as a band on which landing steps lie."""
     style = style_of(source)
     engine, colon, _ = source.partition(":")

@@ -117,6 +117,8 @@ METHODS = {
     "real_time_factor": Column("-", "length of the pulse over the time it took"),
     "period_error": Column("-", "largest relative error of the time between two impacts"),
     "decay_error": Column("-", "largest relative error of the rotation after an impact"),
+    "timed_impacts": Column("-", "impacts whose times were compared"),
+    "drift_p": Column("1/p", "drift of the time of the last of them"),
     "swings": Column("-", "swings that were compared"),
     "quantity": Column("", "what was perturbed"),
     "delta": Column("-", "relative size of the perturbation"),

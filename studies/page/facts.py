@@ -129,21 +129,21 @@ def _typical(chosen: Choice | None) -> tuple[str, str, str, str]:
 
 
 def hero_lines(published: Path) -> dict[str, str]:
-    """Return what each source of the first picture does: its outcome, or the error of its peak."""
+    """Return the outcome of each source of the first picture, or how far its peak is off."""
     lines = hero.summary(pd.read_csv(published / "hero" / "hero.csv"))
     return {
-        str(row["source"]): _of_peak(float(row["error"]))
+        str(row["source"]): _off(float(row["error"]))
         if row["outcome"] == "rocked"
-        else f"the block {row['outcome']}"
+        else str(row["outcome"])
         for _, row in lines.iterrows()
     }
 
 
-def _of_peak(error: float) -> str:
-    """Return the error of a peak with its sign where it can be seen."""
+def _off(error: float) -> str:
+    """Return the error of a peak, with its sign where it can be seen."""
     if abs(error) < 1e-3:
-        return f"its peak is right to {scientific(abs(error))}"
-    return f"its peak is off by {error:+.0%}".replace("%", " %").replace("-", "−")
+        return scientific(abs(error))
+    return f"{error:+.0%}".replace("%", " %").replace("-", "−")
 
 
 def counts(published: Path) -> dict[str, int]:

@@ -13,10 +13,12 @@ import numpy as np
 
 from analytic import MODELS
 from analytic.block import RigidBlock
-from analytic.kernels.rest import comes_to_rest, ground, next_uplift, time_to_rest
+from analytic.kernels.excursions import BROKEN
+from analytic.kernels.rest import comes_to_rest, ground, is_finite, next_uplift, time_to_rest
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.simulate import scaled_segments
+from analytic.simulate import FAILURES, scaled_segments
+from analytic.start import REST, folded
 
 MOST_EXCURSIONS = 2000
 
@@ -27,6 +29,7 @@ def solve_ivp_response(
     *,
     method: str,
     rtol: float = 1e-9,
+    start: tuple[float, float] = REST,
     duration: float | None = None,
     times: FloatArray | None = None,
 ) -> Response:
@@ -34,7 +37,7 @@ def solve_ivp_response(
 
     Parameters
     ----------
-    block, motion, duration, times
+    block, motion, start, duration, times
         As in `studies.respond`.
     method : str
         Of solve_ivp: "RK45", "DOP853", "Radau", "LSODA", ...
@@ -46,7 +49,7 @@ def solve_ivp_response(
     Response
         Its steps are evaluations of the right-hand side.
     """
-    march = _March(block, motion, method, rtol, duration, times)
+    march = _March(block, motion, method, rtol, start, duration, times)
     began = time.perf_counter()
     outcome = march.run()
     wall_s = time.perf_counter() - began
@@ -73,6 +76,7 @@ class _March:
         motion: Motion,
         method: str,
         rtol: float,
+        start: tuple[float, float],
         duration: float | None,
         times: FloatArray | None,
     ) -> None:
@@ -82,6 +86,7 @@ class _March:
         self.method, self.rtol = method, rtol
         self.p, self.alpha = block.p, block.alpha
         self.law = MODELS["exact"].law(block.alpha, block.restitution)
+        self.start = folded(block, self.law, motion, start, () if times is None else times)
         self.segments = scaled_segments(block, motion)
         self.moving = float(self.segments[-1, 1])
         self.until = math.inf if duration is None else duration * block.p
@@ -89,15 +94,20 @@ class _March:
         self.samples = np.zeros((2, self.times.size))
         self.recorded, self.end = times is not None, self.until
         self.impacts: list[Impact] = []
-        self.peak, self.evaluations, self.message = 0.0, 0, ""
+        self.peak, self.evaluations, self.message = self.start.y, 0, ""
 
     def run(self) -> Outcome:
-        tau, y, v, side, j = 0.0, 0.0, 0.0, 0.0, 0
+        if not is_finite(self.segments):
+            self.message = FAILURES[BROKEN].message
+            return Outcome.FAILED
+        side, y, v = self.start
+        tau, j = 0.0, int(np.searchsorted(self.segments[:, 1], 0.0, side="right"))
+        started = side != 0.0
         for _ in range(MOST_EXCURSIONS + len(self.segments)):
             if side == 0.0:
                 j, tau, side, _ = next_uplift(self.segments, j, tau, self.law.onset)
                 if side == 0.0:
-                    return Outcome.ROCKED if self.peak > 0.0 else Outcome.AT_REST
+                    return Outcome.ROCKED if started or self.peak > 0.0 else Outcome.AT_REST
             path = self._stretch(j, tau, y, v, side)
             self.evaluations += path.nfev
             if path.status < 0:

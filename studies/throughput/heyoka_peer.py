@@ -11,7 +11,8 @@ import heyoka
 import numpy as np
 
 from analytic.kernels.rest import comes_to_rest, time_to_rest
-from analytic.maps import decide, next_lift
+from analytic.kernels.swings import Pulse, parity, whole_half_cycles
+from analytic.maps import decide, ground_after, later, next_lift
 from analytic.models import MODELS
 from studies.cases.window import Window
 
@@ -44,33 +45,34 @@ class HeyokaSolver:
         omega = float(window.ratio(np.array(x)))
         block, _ = window.case(x, onsets)
         law = MODELS["exact"].law(alpha, block.restitution)
-        amplitude, end = onsets * law.onset, window.half_cycles * math.pi
-        if amplitude <= law.onset:
+        pulse = Pulse(onsets * law.onset, omega, window.half_cycles)
+        if pulse.amplitude <= law.onset:
             return False
-        level, phase, v, side = math.asin(law.onset / amplitude), 0.0, 0.0, 0.0
+        level, angle, v, side = math.asin(law.onset / pulse.amplitude), 0.0, 0.0, 0.0
         step = self.integrator
         for impacts in range(MOST_IMPACTS):
             if side == 0.0:
-                phase = next_lift(phase, level, end)
-                if phase == math.inf:
-                    return False
-                side = 1.0 if math.floor(phase / math.pi) % 2 else -1.0
+                turned, angle = next_lift(angle, level)
+                pulse, side = later(pulse, turned), -1.0
+            if pulse.half_cycles <= 0:
+                return bool(decide(law, 0.0, v, impacts)[0] >= 0)
             step.time, step.state[:], step.pars[:] = (
-                phase / omega,
+                angle / omega,
                 (0.0, v),
-                (alpha, side * amplitude, omega),
+                (alpha, side * pulse.amplitude, omega),
             )
             step.reset_cooldowns()
-            outcome = step.propagate_until(end / omega)[0]
+            outcome = step.propagate_until(pulse.half_cycles * math.pi / omega)[0]
             if outcome == heyoka.taylor_outcome.time_limit:
                 return bool(decide(law, step.state[0], step.state[1], impacts)[0] >= 0)
             if int(outcome) != -1:
                 return True
-            phase, side, v = step.time * omega, -side, -law.eta * step.state[1]
-            a = amplitude * math.sin(phase)
+            turned, angle = whole_half_cycles(step.time * omega)
+            pulse = later(pulse, turned)
+            side, v = -side * parity(turned), -law.eta * step.state[1]
+            a = ground_after(pulse, angle, 0.0)
             wait = time_to_rest(law, side, v, a)
-            rested = phase + omega * wait
-            later = amplitude * math.sin(rested) if rested < end else 0.0
-            if comes_to_rest(law, side, a, later, wait):
-                phase, side, v = rested, 0.0, 0.0
+            if comes_to_rest(law, side, a, ground_after(pulse, angle, wait), wait):
+                turned, angle = whole_half_cycles(angle + omega * wait)
+                pulse, side, v = later(pulse, turned), 0.0, 0.0
         raise RuntimeError(f"more than {MOST_IMPACTS} impacts")

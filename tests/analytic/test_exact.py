@@ -315,7 +315,7 @@ def test_bad_tolerance(tolerance):
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize(("amplitude", "omega"), [(1e300, 6.0), (4.0, 1e-300)])
+@pytest.mark.parametrize(("amplitude", "omega"), [(1e300, 6.0), (4.0, 1e-150)])
 def test_what_floating_point_cannot_hold_fails_and_says_so(model, amplitude, omega):
     block = RigidBlock(width=0.5, height=1.5)
     motion = SinePulse(amplitude=amplitude, omega=omega, half_cycles=2)

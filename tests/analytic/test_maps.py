@@ -45,6 +45,27 @@ def test_outcomes_are_those_of_the_other_kernel(model, half_cycles):
     assert set(named) == {Outcome.ROCKED, Outcome.AT_REST, Outcome.OVERTURNED}
 
 
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("half_cycles", [12, 16, 31, 200])
+def test_long_pulses_are_solved_as_short_ones(model, half_cycles):
+    """floor(k pi/pi) is k - 1 for k = 11, 15, 22, 30, …: half cycles are counted, not computed."""
+    draw = np.random.default_rng(half_cycles)
+    alpha = np.arctan(1.0 / draw.uniform(1.5, 10.0, 200))
+    amplitude = MODELS[model].onset(alpha) * draw.uniform(1.05, 6.0, 200)
+    omega = np.exp(draw.uniform(math.log(0.5), math.log(10.0), 200))
+    found = overturning_modes(alpha, amplitude, omega, half_cycles, model)
+    peaks, _ = peak_ratios(alpha, amplitude, omega, half_cycles, model)
+    assert not np.any(found.mode == FAILED)
+    assert np.array_equal(found.mode >= 0, np.isinf(peaks))
+
+
+def test_an_onset_at_the_eleventh_change_of_direction_is_seen():
+    alpha = math.atan(1.0 / 11.686576298242189)
+    case = (alpha, 44.79311711956174 * alpha, 32.53701453660372, 12, "housner", 0.3050383268777076)
+    assert float(peak_ratios(*case)[0]) == pytest.approx(1.2321, abs=1e-4)
+    assert overturning_modes(*case).mode == SURVIVES
+
+
 @settings(max_examples=150, deadline=None)
 @given(
     alpha=st.floats(0.05, 0.8),

@@ -1,0 +1,270 @@
+"""Any start and any phase, through every source of this storey, by independent routes."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from independent import peak_and_impacts
+
+from analytic import (
+    MODELS,
+    Outcome,
+    Record,
+    RigidBlock,
+    SinePulse,
+    Still,
+    conditioning,
+    integrate,
+    simulate,
+)
+from analytic.criteria import free_amplitude, quarter_period
+from studies import respond
+
+G = 9.81
+BLOCK = RigidBlock(width=0.5, height=1.5)
+ONSET = G * math.tan(BLOCK.alpha)
+SOURCES = ("exact", "rk4", "average-acceleration", "rk45", "dop853", "radau", "lsoda")
+
+
+def drawn(seed):
+    """Return a block, a pulse with a phase and a start: tilted, upright but turning, or at rest."""
+    draw = np.random.default_rng(seed)
+    block = RigidBlock(width=draw.uniform(0.1, 2), height=draw.uniform(2.2, 10))
+    pulse = SinePulse(
+        amplitude=G * math.tan(block.alpha) * draw.uniform(0.5, 2) * draw.choice([-1, 1]),
+        omega=block.p * draw.uniform(1, 6),
+        half_cycles=int(draw.integers(1, 4)),
+        phase=draw.uniform(-4, 8),
+    )
+    tilt = draw.uniform(-1.3, 1.3) * block.alpha
+    rate = draw.uniform(-0.8, 0.8) * block.alpha * block.p
+    return block, pulse, [(0.0, 0.0), (tilt, 0.0), (0.0, rate), (tilt, rate)][seed % 4]
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("seed", range(24))
+def test_every_model_against_scipy(model, seed):
+    block, pulse, start = drawn(seed)
+    peak, impacts = peak_and_impacts(model, block, pulse, start=start)
+    response = simulate(block, pulse, model, start, duration=pulse.duration + 15.0 / block.p)
+    # as without a start: DOP853 at rtol 1e-12 with a dense output of order 7 for the events
+    if peak is not None:
+        assert response.peak_ratio == pytest.approx(peak, rel=2e-9)
+        assert simulate(block, pulse, model, start).peak_ratio == pytest.approx(peak, rel=2e-9)
+    times = [i.time for i in response.impacts][: len(impacts)]
+    assert times == pytest.approx(impacts, rel=2e-9, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("source", "bound"),
+    [
+        ("rk4", 2e-5),
+        ("average-acceleration", 2e-4),
+        ("rk45", 1e-6),
+        ("dop853", 1e-6),
+        ("radau", 1e-6),
+        ("lsoda", 1e-6),
+    ],
+)
+@pytest.mark.parametrize("seed", range(12))
+def test_solvers_and_peers_take_the_start(source, bound, seed):
+    """To what their default settings leave, times the condition number of the peak."""
+    block, pulse, start = drawn(seed)
+    exact = simulate(block, pulse, start=start)
+    response = respond(source, block, pulse, start=start)
+    assert response.outcome is exact.outcome
+    if exact.outcome is Outcome.ROCKED:
+        worst = max(10.0, *map(abs, conditioning(block, pulse, start=start)))
+        assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=bound * worst)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("tilt", [0.1, 0.5, 0.9, -0.5])
+def test_a_released_block_falls_in_its_quarter_period_and_decays(model, tilt):
+    theta = tilt * BLOCK.alpha
+    response = simulate(BLOCK, Still(), model, (theta, 0.0), duration=15.0)
+    quarter = quarter_period(BLOCK, abs(theta), model)
+    assert response.impacts[0].time == pytest.approx(quarter, rel=1e-13)
+    assert math.copysign(1.0, response.impacts[0].velocity_before) == -math.copysign(1.0, tilt)
+    assert response.peak_ratio == pytest.approx(abs(tilt), rel=1e-14)
+    assert response.outcome is Outcome.ROCKED
+    assert len(response.rests) == 1
+    assert len(response.impacts) > 20
+    if model == "exact":
+        for n, (one, next_one) in enumerate(itertools.pairwise(response.impacts[:12])):
+            period = 2 * quarter_period(BLOCK, free_amplitude(BLOCK, abs(theta), n + 1))
+            assert next_one.time - one.time == pytest.approx(period, abs=1e-11)
+
+
+def test_published_quarter_periods():
+    """Check 2 of the physics: a block of 0.5 by 1 m, to all digits given."""
+    block = RigidBlock(width=0.5, height=1.0)
+    for tilt, row in {
+        0.5: (0.36531268, 0.36301056, 0.35991994),
+        0.9: (0.82640501, 0.82506169, 0.72439220),
+    }.items():
+        for model, expected in zip(("exact", "housner", "modified"), row, strict=True):
+            start = (tilt * block.alpha, 0.0)
+            response = simulate(block, Still(), model, start, duration=5.0)
+            assert response.impacts[0].time == pytest.approx(expected, abs=6e-9)
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_free_rocking_is_followed_for_the_duration(source):
+    start, times = (0.6 * BLOCK.alpha, 0.0), np.linspace(0.0, 3.0, 301)
+    exact = simulate(BLOCK, Still(), start=start, duration=3.0, times=times)
+    response = respond(source, BLOCK, Still(), start=start, duration=3.0, times=times)
+    assert response.history.time[-1] == 3.0
+    assert response.history.theta[0] == start[0]
+    assert len(response.impacts) == len(exact.impacts)
+    # the paper's contact tolerance ends each swing 1e-6 rad early or late
+    assert np.abs(response.history.theta - exact.history.theta).max() < 2e-3 * BLOCK.alpha
+    assert respond(source, BLOCK, Still(), start=start).peak_ratio == pytest.approx(0.6, rel=1e-9)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_an_upright_block_turns_about_the_corner_that_its_rate_says(model, sign):
+    rate = sign * 0.3 * BLOCK.alpha * BLOCK.p
+    response = simulate(BLOCK, Still(), model, (0.0, rate), duration=8.0, times=[1e-3, 2e-3])
+    assert np.all(np.sign(response.history.theta) == sign)
+    assert not response.uplifts
+    first = response.impacts[0]
+    assert first.velocity_before == pytest.approx(-rate, rel=1e-12)
+    # up and down again: twice the quarter period from where the energy is spent
+    law = MODELS[model].law(BLOCK.alpha, BLOCK.restitution)
+    assert first.time == pytest.approx(
+        2.0 * quarter_period(BLOCK, response.peak_ratio * BLOCK.alpha, model), rel=1e-11
+    )
+    assert 0.0 < response.peak_ratio * BLOCK.alpha < law.saddle
+
+
+def test_a_response_may_be_taken_up_where_it_was_left():
+    """The state after half a record, and the rest of the record, make the same response."""
+    samples = ONSET * np.array([0.0, 1.6, 0.4, -1.9, -0.3, 1.2, 0.2, -0.4, 0.1, 0.0])
+    whole = Record(dt=0.2, samples=samples)
+    times = np.linspace(0.0, 3.0, 16)
+    for model in MODELS:
+        expected = simulate(BLOCK, whole, model, duration=3.0, times=times).history
+        theta, rate = expected.theta[4], expected.velocity[4]
+        rest = Record(dt=0.2, samples=samples[4:])
+        found = simulate(
+            BLOCK, rest, model, (theta, rate), duration=2.2, times=np.linspace(0.0, 2.2, 12)
+        ).history
+        assert theta != 0.0
+        # the state left is one of some twenty roundings, amplified by a few impacts
+        np.testing.assert_allclose(found.theta, expected.theta[4:], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_beyond_the_critical_rotation_a_push_may_bring_it_back(model):
+    saddle = MODELS[model].law(BLOCK.alpha, 0.5).saddle
+    tilted = (1.1 * saddle, 0.0)
+    falling = simulate(BLOCK, Still(), model, tilted)
+    assert falling.outcome is Outcome.OVERTURNED
+    push = Record(dt=0.3, samples=[0.5 * ONSET, 0.5 * ONSET])
+    response = simulate(BLOCK, push, model, tilted)
+    assert response.outcome is Outcome.ROCKED
+    assert response.crossed
+    assert response.peak_ratio == pytest.approx(1.1 * saddle / BLOCK.alpha, rel=1e-14)
+    assert simulate(BLOCK, push.scaled(-1.0), model, tilted).outcome is Outcome.OVERTURNED
+    returning = simulate(BLOCK, Still(), model, (1.1 * saddle, -0.5 * BLOCK.alpha * BLOCK.p))
+    assert returning.outcome is Outcome.ROCKED
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_free_energy_decides_at_the_separatrix(model):
+    """Upright, the rate that just overturns is that of the barrier."""
+    law = MODELS[model].law(BLOCK.alpha, BLOCK.restitution)
+    barrier = law.k * law.saddle if law.linear else math.sqrt(2 * (1 - math.cos(BLOCK.alpha)))
+    for factor, outcome in ((1 - 1e-12, Outcome.ROCKED), (1 + 1e-12, Outcome.OVERTURNED)):
+        start = (0.0, factor * barrier * BLOCK.p)
+        assert simulate(BLOCK, Still(), model, start).outcome is outcome
+        assert simulate(BLOCK, Still(), model, start, duration=25.0).outcome is outcome
+
+
+@pytest.mark.parametrize("answer", [simulate, integrate])
+@pytest.mark.parametrize(
+    ("start", "words"),
+    [
+        ((math.pi / 2, 0.0), "theta of the start is 1.57"),
+        ((-2.0, 1.0), "theta of the start is -2.0; it must be between -pi/2 and pi/2 rad"),
+        ((math.nan, 0.0), "theta of the start is nan; it must be a finite number"),
+        ((0.0, math.inf), "rate of the start is inf"),
+        ((BLOCK.alpha, 0.0), "start is .*; it must not be the unstable equilibrium"),
+        ((-BLOCK.alpha, 0.0), "unstable equilibrium"),
+        (0.1, "start is 0.1; it must be theta"),
+        ((0.1, 0.2, 0.3), "it must be theta"),
+        (("far", 0.0), "theta of the start is 'far'"),
+    ],
+)
+def test_bad_starts_are_refused(answer, start, words):
+    for motion in (Still(), SinePulse(amplitude=0.0, omega=3.0)):
+        with pytest.raises(ValueError, match=words):
+            answer(BLOCK, motion, start=start)
+    with pytest.raises(ValueError, match=r"times begin at -0\.5"):
+        answer(BLOCK, Still(), start=(0.1, 0.0), duration=1.0, times=[-0.5, 0.5])
+
+
+def test_the_unstable_equilibrium_is_answered_where_the_ground_disturbs_it():
+    for sign, outcome in ((1.0, Outcome.ROCKED), (-1.0, Outcome.OVERTURNED)):
+        push = SinePulse(amplitude=sign * 0.1 * ONSET, omega=4.0)
+        assert simulate(BLOCK, push, start=(BLOCK.alpha, 0.0)).outcome is outcome
+
+
+def test_no_motion_and_no_start_is_rest():
+    for source in SOURCES:
+        response = respond(source, BLOCK, Still(), duration=2.0)
+        assert response.outcome is Outcome.AT_REST
+        assert response.peak_ratio == 0.0
+
+
+def test_a_jump_beyond_the_onset_lifts_at_once():
+    for phase in (0.5 * math.pi, -0.5 * math.pi, 2.0):
+        pulse = SinePulse(amplitude=1.2 * ONSET, omega=4.0, half_cycles=2, phase=phase)
+        lifted = abs(math.sin(phase)) > 1.0 / 1.2
+        response = simulate(BLOCK, pulse, times=[0.05])
+        assert (response.uplifts[0] == 0.0) == lifted
+        if lifted:
+            assert math.copysign(1.0, response.history.theta[0]) == -math.copysign(1.0, phase)
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0), (0.1, -0.2), (0.0, 0.3)])
+@pytest.mark.parametrize("model", MODELS)
+def test_condition_numbers_are_the_slopes_of_the_peaks(model, start):
+    phases = (0.4, 1.57, 3.0, 4.5)
+    for phase in phases:
+
+        def peak(scale, ratio=BLOCK.restitution, phase=phase):
+            pulse = SinePulse(amplitude=3.6 * scale, omega=12.0, half_cycles=4, phase=phase)
+            block = RigidBlock(width=0.5, height=1.5, restitution=ratio)
+            return simulate(block, pulse, model, start).peak_ratio
+
+        pulse = SinePulse(amplitude=3.6, omega=12.0, half_cycles=4, phase=phase)
+        found = conditioning(BLOCK, pulse, model, start)
+        assert math.isfinite(peak(1.0))
+        for number, function in (
+            (found[0], lambda part: peak(1.0 + part)),
+            (found[1], lambda part: peak(1.0, BLOCK.restitution * (1.0 + part))),
+        ):
+            nudge = 1e-5 / math.sqrt(1.0 + abs(number))
+            near, far = (math.log(function(x) / function(-x)) for x in (nudge, 2.0 * nudge))
+            # a difference of fourth order, and the rounding of peaks over its nudge
+            slope = (8.0 * near - far) / (12.0 * nudge)
+            assert number == pytest.approx(slope, rel=1e-7, abs=1e-9)
+
+
+def test_mirrored_starts_and_motions_mirror_the_response():
+    for seed in range(12):
+        block, pulse, (theta, rate) = drawn(seed)
+        mirrored = SinePulse(
+            amplitude=-pulse.amplitude,
+            omega=pulse.omega,
+            half_cycles=pulse.half_cycles,
+            phase=pulse.phase,
+        )
+        one = simulate(block, pulse, start=(theta, rate))
+        other = simulate(block, mirrored, start=(-theta, -rate))
+        assert one.peak_ratio == other.peak_ratio
+        assert [i.time for i in one.impacts] == [i.time for i in other.impacts]

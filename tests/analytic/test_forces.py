@@ -1,0 +1,110 @@
+"""The contact forces that the reference needs: bounds, not samples."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import Outcome, Record, RigidBlock, SinePulse, simulate
+
+G = 9.81
+
+
+def sampled_forces(block, motion, history):
+    """Return N/mg and abs(horizontal)/mg at the samples of a history, from its state."""
+    theta, rate = history.theta, history.velocity / block.p
+    a, s = motion.acceleration(history.time) / G, np.where(history.theta < 0, -1.0, 1.0)
+    z = block.alpha - np.abs(theta)
+    turning = -(np.sin(block.alpha * s - theta) + a * np.cos(block.alpha * s - theta))
+    normal = 1.0 + 0.75 * (s * turning * np.sin(z) - rate**2 * np.cos(z))
+    return normal, np.abs(a + 0.75 * (s * rate**2 * np.sin(z) + turning * np.cos(z)))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_sample_of_a_response_is_beyond_the_limits(seed):
+    """And of a survivor the samples come close; a block that falls is steepest at its end."""
+    draw = np.random.default_rng(seed)
+    block = RigidBlock(width=0.5, height=0.5 * draw.uniform(1.2, 8.0))
+    amplitude = draw.uniform(1.05, 2.0) * G * math.tan(block.alpha)
+    pulse = SinePulse(amplitude=amplitude, omega=block.p * draw.uniform(0.5, 8.0), half_cycles=3)
+    times = np.linspace(0.0, pulse.duration + 6.0 / block.p, 40_001)
+    response = simulate(block, pulse, duration=times[-1], times=times)
+    normal, horizontal = sampled_forces(block, pulse, response.history)
+    here = np.abs(response.history.theta) > 1e-9
+    least, ratio = normal[here].min(), (horizontal / normal)[here].max()
+    survived = response.outcome is Outcome.ROCKED
+    assert response.min_normal <= least + 1e-12
+    if survived:
+        assert response.min_normal == pytest.approx(least, abs=1e-3)
+    if response.min_normal > 0.0:
+        assert response.friction_needed >= ratio * (1 - 1e-12)
+        if survived:
+            assert response.friction_needed == pytest.approx(ratio, rel=2e-3)
+    else:
+        assert response.friction_needed == math.inf
+
+
+def test_the_friction_of_a_smooth_extreme_is_exact():
+    """Without an impact the ratio is smooth: samples miss it by the square of their step."""
+    block = RigidBlock(width=0.5, height=1.0)
+    pulse = SinePulse(amplitude=1.4 * G * math.tan(block.alpha), omega=6.0 * block.p)
+    found = simulate(block, pulse)
+    assert not [i for i in found.impacts if i.time < pulse.duration]
+    times = np.linspace(found.uplifts[0], pulse.duration, 100_001)
+    normal, horizontal = sampled_forces(block, pulse, simulate(block, pulse, times=times).history)
+    assert found.friction_needed == pytest.approx((horizontal / normal).max(), rel=1e-9)
+
+
+@pytest.mark.parametrize("half_cycles", [1, 40, 1000])
+def test_a_block_at_rest_needs_the_strongest_acceleration_there_is(half_cycles):
+    block = RigidBlock(width=0.5, height=1.5)
+    pulse = SinePulse(amplitude=0.225 * G, omega=6.0, half_cycles=half_cycles)
+    assert simulate(block, pulse).friction_needed == pytest.approx(0.225, rel=1e-14)
+
+
+def test_a_block_at_rest_under_samples_needs_the_largest_of_them():
+    block = RigidBlock(width=0.5, height=1.5)
+    record = Record(dt=0.1, samples=0.1 * G * np.array([0.0, 1.0, -2.5, 0.5, 0.0]))
+    response = simulate(block, record)
+    assert response.outcome is Outcome.AT_REST
+    assert response.friction_needed == pytest.approx(0.25, rel=1e-14)
+
+
+def test_the_forces_of_impacts_that_are_summed_count():
+    """A block that hardly rebounds is pressed down on its other corner: N = 1 - 3/4 y'' sin a."""
+    block = RigidBlock(width=1.0, height=8.2, restitution=0.001)
+    pulse = SinePulse(amplitude=1.02 * G / 8.2, omega=5.0 * block.p, half_cycles=2)
+    response = simulate(block, pulse)
+    a = float(pulse.acceleration(response.rests[0])) / G
+    # on the corner that the ground presses down
+    pressed = math.sin(block.alpha) + abs(a) * math.cos(block.alpha)
+    assert abs(a) < math.tan(block.alpha)
+    least = 1.0 - 0.75 * pressed * math.sin(block.alpha)
+    assert least < 0.98
+    assert response.min_normal <= least + 1e-6
+
+
+def test_a_block_that_does_not_rebound_is_not_pressed_on_its_other_corner():
+    block = RigidBlock(width=1.5, height=1.0)
+    pulse = SinePulse(amplitude=1.03 * G * 1.5, omega=2.7 * block.p, half_cycles=2)
+    times = np.linspace(0.0, pulse.duration, 100_001)
+    response = simulate(block, pulse, times=times)
+    normal, _ = sampled_forces(block, pulse, response.history)
+    here = np.abs(response.history.theta) > 0.0
+    assert block.restitution == 0.0
+    assert response.min_normal == pytest.approx(normal[here].min(), abs=1e-3)
+
+
+def test_free_rocking_after_a_pulse_is_watched_to_its_rest():
+    """By samples of a response that is followed, against the closed form of one that is not."""
+    block = RigidBlock(width=0.5, height=0.75)
+    pulse = SinePulse(amplitude=40.0 * G * math.tan(block.alpha), omega=100.0 * block.p)
+    early = simulate(block, pulse)
+    late = pulse.duration + 12.0 / block.p
+    followed = simulate(
+        block, pulse, duration=late, times=np.linspace(pulse.duration, late, 20_001)
+    )
+    assert early.outcome is Outcome.ROCKED
+    assert len(followed.impacts) > 3
+    assert early.min_normal == pytest.approx(followed.min_normal, rel=1e-12)
+    assert early.friction_needed == pytest.approx(followed.friction_needed, rel=1e-12)
