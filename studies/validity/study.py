@@ -39,7 +39,7 @@ QUICK_FACTORS = (0.8, 1.05)
 """Friction of an engine over the least that the reference needs, ..."""
 
 MOST_NEEDED = 8.0
-"""... where that is no more: near N = 0 it grows without bound, and some engines take 10 at most."""
+"""... where that is no more: near N = 0 it grows without bound, and an engine takes 10 at most."""
 
 DEFAULT_SOURCES = core_sources("fixed")
 
