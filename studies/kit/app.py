@@ -52,13 +52,13 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
     except KeyboardInterrupt as stop:
         number = stop.number if isinstance(stop, signals.Ended) else signal.SIGINT
         kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
-        print(f"rocking: {kind}; {stop}".rstrip("; "), file=sys.stderr)
+        streams.say(f"rocking: {kind}; {stop}".rstrip("; "))
         return 128 + number
     except BrokenPipeError:
         # whoever read the output has gone: nothing more can be said there, not even on exit
         streams.give_up_output()
         return 128 + signal.SIGPIPE
-    except OSError as error:
+    except (OSError, ImportError) as error:
         return _refuse(str(error))
     return code
 
@@ -86,5 +86,5 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
 
 
 def _refuse(message: str) -> int:
-    print(f"rocking: {' '.join(message.split())}", file=sys.stderr)
+    streams.say(f"rocking: {' '.join(message.split())}")
     return 2

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
@@ -78,6 +79,9 @@ class Local:
                 }
             for task in as_completed(tasks):
                 yield tasks[task], outcome_of(task.result, self.time_limit_s)
+        except BrokenProcessPool as error:
+            problem = f"a process could not be started ({error.__cause__ or error})"
+            raise OSError(problem) from error
         finally:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
