@@ -11,7 +11,15 @@ from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
 from studies.histories import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
+from studies.kit.arguments import (
+    Count,
+    Place,
+    Positive,
+    check_sources,
+    figures,
+    refuse_repeats,
+    several_or_none,
+)
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -46,9 +54,9 @@ TITLES = {
 
 def command(
     *,
-    out: Path,
+    out: Place,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
-    sources: Annotated[tuple[str, ...] | None, several] = None,
+    sources: Annotated[tuple[str, ...] | None, several_or_none] = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,

@@ -1,9 +1,8 @@
 """Printed numbers against the models and the engines: who printed what, and does it come out?"""
 
-from pathlib import Path
 from typing import Annotated
 
-from studies.kit.arguments import check_sources, several
+from studies.kit.arguments import Place, check_sources, several
 from studies.kit.jobs import Job
 from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
 from studies.literature import STUDY
@@ -19,7 +18,7 @@ DEFAULT_SOURCES = ("pybullet", "mujoco")
 
 def command(
     *,
-    out: Path,
+    out: Place,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:

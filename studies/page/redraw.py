@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Literal
 
 from studies.catalogue import STUDIES
-from studies.kit.arguments import BadInputError
+from studies.kit.arguments import BadInputError, Place
 from studies.kit.jobs import one_line
 from studies.kit.study import Study
 
 
-def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
+def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
     """Draw the figures of a results folder again, from its CSVs alone.
 
     Parameters

@@ -25,6 +25,7 @@ from engines.drive import build
 from engines.world import World
 from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
 from studies.kit import provenance
+from studies.kit.arguments import Place
 from studies.kit.runner import own_folder
 from studies.kit.signals import left_to_this_process
 from studies.precision import COST
@@ -65,7 +66,7 @@ def omissions(block: RigidBlock, motion: SinePulse) -> list[Omission]:
     ]
 
 
-def command(*, out: Path, quick: bool = False) -> int:
+def command(*, out: Place, quick: bool = False) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
     On the block and pulse of the paper's figure 5-b. Times are of one thread, warm, the best of

@@ -4,7 +4,6 @@ import functools
 import json
 import time
 from dataclasses import asdict, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Positive
+from studies.kit.arguments import Place, Positive
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
@@ -34,7 +33,7 @@ BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 
 def command(
     *,
-    out: Path,
+    out: Place,
     quick: bool = False,
     time_limit: Positive = 60.0,
 ) -> int:

@@ -9,7 +9,15 @@ import pandas as pd
 
 from studies.cases.paper import sweep_cases
 from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources, figures, refuse_repeats, several
+from studies.kit.arguments import (
+    Count,
+    Place,
+    Positive,
+    check_sources,
+    figures,
+    refuse_repeats,
+    several,
+)
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -36,7 +44,7 @@ DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", 
 
 def command(
     *,
-    out: Path,
+    out: Place,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     step: Positive | None = None,

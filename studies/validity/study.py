@@ -11,7 +11,7 @@ import pandas as pd
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Positive, check_sources, several
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources, several
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -44,7 +44,7 @@ DEFAULT_SOURCES = ("pybullet:fixed", "mujoco:fixed")
 
 def command(
     *,
-    out: Path,
+    out: Place,
     sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
