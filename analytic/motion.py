@@ -7,6 +7,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic.block import STANDARD_GRAVITY
 from analytic.checks import finite, held, measurable, whole_half_cycles
 from analytic.kernels.law import FloatArray as FloatArray
 
@@ -81,6 +82,19 @@ class SinePulse:
             self.amplitude / self.omega**2 * (self.half_cycles * math.pi),
             f"amplitude is {self.amplitude!r} and omega {self.omega!r}",
         )
+
+    @classmethod
+    def in_g(
+        cls,
+        amplitude: float,
+        *,
+        omega: float,
+        half_cycles: int = 1,
+        phase: float = 0.0,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> "SinePulse":
+        """Return the pulse whose amplitude is given in units of `gravity` [m/s2]."""
+        return cls(amplitude=amplitude * gravity, omega=omega, half_cycles=half_cycles, phase=phase)
 
     @property
     def duration(self) -> float:

@@ -16,6 +16,7 @@ from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
     Count,
+    Place,
     Positive,
     check_sources,
     refuse_given,
@@ -35,14 +36,14 @@ CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 
 def command(
     *,
-    out: Path,
+    out: Place,
     width: Positive | None = None,
     height: Positive | None = None,
     amplitude: Positive | None = None,
     omega: Positive | None = None,
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
-    results: Path | None = None,
+    results: Place | None = None,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     slower: Positive = 1.0,
     jobs: Count | None = None,

@@ -21,7 +21,23 @@ AXES = {
 """What a map's columns may be, their range and label."""
 LEAST_ONSETS = 1.0
 """A map begins at g tan(alpha), below which the exact block stays at rest."""
+LIMITS = {
+    "frequency": (1e-3, 1e3),
+    "slenderness": (1e-3, 1.5),
+    "size": (1e-3, 1e3),
+    "onsets": (1.001, 1e3),
+    "aspect": (0.1, 1e3),
+}
+"""Between which values the edges of every model are found, and in little time."""
+LEAST_SPAN = 1.001
+"""The range of the abscissa, its end over its beginning, is at least this."""
 WIDTH_M = 0.5
+
+
+def _check(name: str, value: float, limits: tuple[float, float]) -> None:
+    least, most = limits
+    if not least <= value <= most:
+        raise ValueError(f"{name} is {value!r}; it must be from {least:g} to {most:g}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +61,11 @@ class Window:
         Where alpha is the abscissa.
     pulse_hz : float
         Where the size is the abscissa.
+
+    Raises
+    ------
+    ValueError
+        If a value is beyond LIMITS, or the range of the abscissa is no range.
     """
 
     over: Axis = "frequency"
@@ -63,12 +84,17 @@ class Window:
         for name, default in (("low", least), ("high", most)):
             if math.isnan(getattr(self, name)):
                 object.__setattr__(self, name, default)
-        if not 0.0 < self.low < self.high:
-            raise ValueError(f"low is {self.low!r} and high {self.high!r}; low must be the smaller")
-        if self.over == "slenderness" and self.high >= 0.5 * math.pi:
-            raise ValueError(f"high is {self.high!r}; a slenderness must be below π/2")
-        if self.onsets <= LEAST_ONSETS:
-            raise ValueError(f"onsets is {self.onsets!r}; it must be more than {LEAST_ONSETS:g}")
+        for name in ("low", "high"):
+            _check(name, getattr(self, name), LIMITS[self.over])
+        if self.high < LEAST_SPAN * self.low:
+            allowed = f"low must be the smaller, at most {self.high / LEAST_SPAN:g}"
+            raise ValueError(f"low is {self.low!r} and high {self.high!r}; {allowed}")
+        for name in ("onsets", "aspect"):
+            _check(name, getattr(self, name), LIMITS[name])
+        slowest, fastest = LIMITS["frequency"]
+        _check("omega_over_p", self.omega_over_p, (slowest, fastest))
+        if self.over == "size":
+            _check("pulse_hz", self.pulse_hz, (slowest * self.high, fastest * self.low))
 
     @property
     def half_cycles(self) -> int:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from statistics import median
 from typing import Annotated, Literal
 
@@ -17,6 +16,7 @@ from studies.drawing.comparison import baseline_note, draw, json_lines, table_te
 from studies.kit.arguments import (
     BadInputError,
     Count,
+    Place,
     Positive,
     check_plot,
     check_sources,
@@ -42,7 +42,7 @@ def command(
     omega: Positive | None = None,
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
-    record: Path | None = None,
+    record: Place | None = None,
     units: Units | None = None,
     scale: Positive | None = None,
     pga: Positive | None = None,
@@ -51,7 +51,7 @@ def command(
     duration: Positive | None = None,
     step: Positive | None = None,
     accuracy: Accuracy | None = None,
-    plot: Path | None = None,
+    plot: Place | None = None,
     json: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,

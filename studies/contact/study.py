@@ -17,7 +17,7 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.contact import STUDY
 from studies.contact.report import headline, paragraph, pictures, report
 from studies.contact.variants import OWN_STEP, Variant, variants
-from studies.kit.arguments import Count, Positive, check_engines, several
+from studies.kit.arguments import Count, Place, Positive, check_engines, several
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -35,7 +35,7 @@ STRONG = 0.1
 
 def command(
     *,
-    out: Path,
+    out: Place,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     jobs: Count | None = None,

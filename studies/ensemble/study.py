@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from analytic.record import Record
@@ -22,10 +21,12 @@ from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
     Count,
+    Place,
     Positive,
     check_sources,
     refuse_given,
     refuse_repeats,
+    several_or_none,
 )
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
@@ -128,11 +129,11 @@ def ensemble_cases(
 
 def command(
     *,
-    out: Path,
+    out: Place,
     family: Literal["noise", "near-fault", "ricker"] | None = None,
     motions: Count | None = None,
     seed: Count | None = None,
-    records: Annotated[tuple[Path, ...] | None, Parameter(consume_multiple=True)] = None,
+    records: Annotated[tuple[Place, ...] | None, several_or_none] = None,
     units: Units | None = None,
     baseline: Baseline | None = None,
     sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,

@@ -16,7 +16,7 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.free import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources
+from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -48,7 +48,7 @@ LEAST_SWING = 1e-3
 
 def command(
     *,
-    out: Path,
+    out: Place,
     quick: bool = False,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     jobs: Count | None = None,

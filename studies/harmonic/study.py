@@ -1,7 +1,6 @@
 """Steady states under sustained harmonic shaking: the exact branches, up and down, and engines."""
 
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
@@ -13,7 +12,7 @@ from studies.harmonic import STUDY
 from studies.harmonic.report import headline, paragraph, pictures, report
 from studies.harmonic.sweeps import Shaking, State, sweep
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Positive, check_sources
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
@@ -49,7 +48,7 @@ class Branch:
 
 def command(
     *,
-    out: Path,
+    out: Place,
     width: Positive = 0.5,
     height: Positive = 1.5,
     over: Over = "frequency",

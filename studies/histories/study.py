@@ -13,6 +13,7 @@ from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import (
     Count,
+    Place,
     Positive,
     check_sources,
     figures,
@@ -58,7 +59,7 @@ TITLES = {
 
 def command(
     *,
-    out: Path,
+    out: Place,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
     sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
     jobs: Count | None = None,

@@ -6,11 +6,14 @@ What takes time to import is imported inside functions, so that a signal meanwhi
 from __future__ import annotations
 
 import itertools
+import os
+import shutil
 import signal
 import sys
 from typing import TYPE_CHECKING
 
 from studies.kit import signals, streams
+from studies.kit.refusing import refuse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,14 +55,14 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
     except KeyboardInterrupt as stop:
         number = stop.number if isinstance(stop, signals.Ended) else signal.SIGINT
         kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
-        print(f"rocking: {kind}; {stop}".rstrip("; "), file=sys.stderr)
+        streams.say(f"rocking: {kind}; {stop}".rstrip("; "))
         return 128 + number
     except BrokenPipeError:
         # whoever read the output has gone: nothing more can be said there, not even on exit
         streams.give_up_output()
         return 128 + signal.SIGPIPE
-    except OSError as error:
-        return _refuse(str(error))
+    except (OSError, ImportError) as error:
+        return refuse(str(error))
     return code
 
 
@@ -69,9 +72,10 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
 
-    for name, value in itertools.pairwise(["", *arguments]):
-        if not value:
-            return _refuse(f"{name} is empty; it must be given")
+    for before, argument in itertools.pairwise(["COMMAND", *arguments]):
+        name, equals, value = argument.partition("=")
+        if not argument or (name.startswith("--") and equals and not value):
+            return refuse(f"{name or before} is empty; it must be given")
     try:
         code = make_app(studies)(
             arguments,
@@ -81,10 +85,20 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
             result_action="return_value",
         )
     except (CycloptsError, BadInputError, FolderError) as error:
-        return _refuse(str(error))
+        return refuse(str(error))
     return code if isinstance(code, int) else 0
 
 
-def _refuse(message: str) -> int:
-    print(f"rocking: {' '.join(message.split())}", file=sys.stderr)
-    return 2
+NARROWEST, WIDEST = 40, 200
+"""Columns of a terminal for which help is set; in two or in ten million it takes for ever."""
+
+
+def settle_environment() -> None:
+    """Take away from libraries what would stop them and has no part here.
+
+    No figure opens a window, and no kernel uses numba's own threads.
+    """
+    for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):
+        os.environ.pop(name, None)
+    columns = shutil.get_terminal_size().columns
+    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))

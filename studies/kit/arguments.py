@@ -1,7 +1,8 @@
-"""What the command line accepts: numbers with their range, sources, folders; one line if not."""
+"""What the command line accepts: numbers with their range, sources, paths; one line if not."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,26 +10,69 @@ from cyclopts import Parameter, Token
 
 from studies.cases.refusal import BadInputError as BadInputError
 
+MOST = 10**9
+"""The largest whole number that an argument takes."""
 
-def _number(allowed: str, accepts: Callable[[float], bool]) -> Any:
-    def convert(type_: type, tokens: Sequence[Token]) -> Any:
+
+@contextmanager
+def as_bad_input(prefix: str = "--") -> Iterator[None]:
+    """Make a ValueError whose message begins with the name of an argument the one line about it.
+
+    Raises
+    ------
+    BadInputError
+    """
+    try:
+        yield
+    except ValueError as error:
+        name, blank, rest = str(error).partition(" ")
+        raise BadInputError(f"{prefix}{name.replace('_', '-')}{blank}{rest}") from error
+
+
+def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
+    """Return what makes an argument take one value, which `convert` refuses by a ValueError."""
+
+    def read(type_: type, tokens: Sequence[Token]) -> Any:
         token = tokens[0]
         try:
-            value = type_(token.value)
-            if math.isfinite(value) and accepts(value):
-                return value
-        except ValueError:
-            pass
-        raise BadInputError(f"{token.keyword} is {token.value!r}; it must be {allowed}")
+            return convert(type_, token.value)
+        except ValueError as error:
+            # an argument that is not an option has no keyword
+            name = token.keyword or "FOLDER"
+            raise BadInputError(f"{name} is {token.value!r}; it must be {allowed}") from error
 
-    return Parameter(converter=convert, n_tokens=1, allow_leading_hyphen=True)
+    return Parameter(converter=read, n_tokens=1, allow_leading_hyphen=True)
 
 
-Positive = Annotated[float, _number("a positive finite number", lambda value: value > 0)]
+def _number(most: float) -> Callable[[type, str], Any]:
+    def convert(type_: type, text: str) -> Any:
+        # Python also reads 1_000 and the digits of every script
+        if not text.isascii() or "_" in text:
+            raise ValueError(text)
+        value = type_(text)
+        if not 0 < value <= most:
+            raise ValueError(text)
+        return value
+
+    return convert
+
+
+def _path(type_: type, text: str) -> Path:
+    if not text or text.startswith("-") or "\0" in text:
+        raise ValueError(text)
+    return Path(text)
+
+
+Positive = Annotated[
+    float, _read("a positive finite number", _number(math.nextafter(math.inf, 0.0)))
+]
 """A positive finite number."""
 
-Count = Annotated[int, _number("a positive whole number", lambda value: value > 0)]
+Count = Annotated[int, _read(f"a positive whole number up to {MOST}", _number(MOST))]
 """A positive whole number."""
+
+Place = Annotated[Path, _read("a path; one that begins with a dash is written ./-name", _path)]
+"""A file or folder."""
 
 
 def figures(*allowed: int) -> Parameter:
@@ -52,6 +96,9 @@ def _spaced(values: Iterable[Any]) -> str:
 
 several = Parameter(consume_multiple=True, show_default=_spaced)
 """Values separated by spaces."""
+
+several_or_none = Parameter(consume_multiple=True)
+"""Values separated by spaces; None where nothing is given."""
 
 
 def check_sources(names: Sequence[str]) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
@@ -10,7 +11,9 @@ from pebble import ProcessPool
 
 from analytic.response import Response
 from studies.kit import provenance
+from studies.kit.arguments import refuse_given
 from studies.kit.cluster import Cluster
+from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
 from studies.kit.processes import ask_loaded, outcome_of
 from studies.kit.signals import left_to_this_process
@@ -51,7 +54,7 @@ class Local:
         loaded: set[str] = set()
         for number, job in enumerate(jobs):
             source = resolve(job.source)
-            if source.kind == "engine" or job.is_long:
+            if job.needs_process(source):
                 slow[number] = job
                 continue
             if job.source not in loaded:
@@ -78,6 +81,9 @@ class Local:
                 }
             for task in as_completed(tasks):
                 yield tasks[task], outcome_of(task.result, self.time_limit_s)
+        except BrokenProcessPool as error:
+            problem = f"a process could not be started ({error.__cause__ or error})"
+            raise OSError(problem) from error
         finally:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
@@ -93,11 +99,16 @@ def choose(
 
     Raises
     ------
-    studies.dask_client.ClusterError
+    BadInputError
+        If there are more processes than the memory holds, or their number is given beside a
+        cluster, whose workers are as many as were started.
+    studies.kit.dask_client.ClusterError
         If the cluster cannot be used.
     """
     if cluster is None:
+        refuse_excess(f"--jobs is {jobs}", (jobs or 1) * PROCESS_BYTES)
         return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
+    refuse_given({"jobs": jobs}, "only without --cluster")
     chosen = Cluster(cluster, time_limit_s, ask)
     chosen.check()
     return chosen

@@ -15,8 +15,18 @@ from analytic.response import Response
 from studies.kit.journal import Row
 from studies.sources.registry import Source, resolve
 
-LONG = 1e7
-"""Steps, about a second of a compiled solver, beyond which a job gets a process of its own."""
+LONG_S = 1.0
+"""Expected time [s] beyond which a job gets a process of its own, where it can be given up."""
+
+STEP_S = {"peer": 1e-6}
+"""About how long a source takes over a step of its kind [s], ..."""
+
+COMPILED_STEP_S = 1e-7
+"""... and a compiled one."""
+
+SLOWEST_RETURN = 40.0
+"""Time, in units of 1/p, in which a free block turns or is lost, if it does so at all: so near to
+the separatrix that it takes longer, it would be within e^-40 of it, which no double is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,11 +62,13 @@ class Job:
         text = json.dumps(parts, default=_plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
-    @property
-    def is_long(self) -> bool:
-        """Whether a stepping source would take so many steps that it needs a time limit."""
+    def needs_process(self, source: Source) -> bool:
+        """Whether a source may crash over it, or take so long that it must be stoppable."""
         observed = self.motion.duration if self.duration is None else self.duration
-        return observed * self.block.p > LONG * float(self.options.get("step", 1e-3))
+        most = observed * self.block.p + SLOWEST_RETURN
+        step_s = STEP_S.get(source.kind, COMPILED_STEP_S)
+        long = most * step_s > LONG_S * float(self.options.get("step", 1e-3))
+        return source.kind == "engine" or long
 
 
 def _plain(value: Any) -> Any:

@@ -7,7 +7,7 @@ from analytic.motion import SinePulse
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, corrected, read_record
 from studies.cases.paper import PULSES
-from studies.kit.arguments import BadInputError
+from studies.kit.arguments import BadInputError, as_bad_input
 
 
 def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
@@ -20,10 +20,8 @@ def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
 
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height."""
-    try:
+    with as_bad_input():
         return RigidBlock(width=width, height=height)
-    except ValueError as error:
-        raise BadInputError(f"--{error}") from error
 
 
 def posed_pulse(
@@ -36,10 +34,8 @@ def posed_pulse(
             name for name, value in (("--amplitude", amplitude), ("--omega", omega)) if not value
         )
         raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
-    try:
-        return SinePulse(amplitude=amplitude * STANDARD_GRAVITY, omega=omega, half_cycles=number)
-    except ValueError as error:
-        raise BadInputError(f"--{error}") from error
+    with as_bad_input():
+        return SinePulse.in_g(amplitude, omega=omega, half_cycles=number)
 
 
 def posed_record(
@@ -53,10 +49,8 @@ def posed_record(
     if scale is not None and pga is not None:
         raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
     record = read_record(path, units)
-    try:
+    with as_bad_input("--record: "):
         record = corrected(record, baseline)
         if pga is not None:
             return record.scaled_to(pga * STANDARD_GRAVITY)
         return record.scaled(1.0 if scale is None else scale)
-    except ValueError as error:
-        raise BadInputError(f"--record: {error}") from error

@@ -3,6 +3,7 @@
 import signal
 from collections.abc import Callable
 from concurrent.futures import TimeoutError
+from concurrent.futures.process import BrokenProcessPool
 
 from pebble import ProcessExpired
 
@@ -34,6 +35,9 @@ def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
         return Response.failure(words, reason=Reason.UNDECIDED)
     except ProcessExpired as error:
         return Response.failure(_cause_of_death(error.exitcode))
+    except BrokenProcessPool:
+        # no case is to blame
+        raise
     except Exception as error:
         return Response.failure(one_line(error))
 

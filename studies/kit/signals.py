@@ -1,11 +1,18 @@
 """Signals that end a run: the first one unwinds it, and those that follow do not disturb that."""
 
+import os
 import signal
+import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+AGAIN_S = 0.02
+"""How long to wait for a callback to return that has swallowed an exception [s]."""
+
+_raised = False
 
 
 class Ended(KeyboardInterrupt):
@@ -21,6 +28,7 @@ def install() -> None:
     for number in ENDING:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
+    sys.unraisablehook = _on_lost
 
 
 def ignore() -> None:
@@ -30,13 +38,33 @@ def ignore() -> None:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    ignore()
-    raise Ended(number)
+    global _raised
+    if not _raised:
+        _raised = True
+        raise Ended(number)
+
+
+def _on_lost(lost: "sys.UnraisableHookArgs") -> None:
+    """Deal with an exception that a destructor or a callback of the compiler swallows."""
+    if not _raised:
+        sys.__unraisablehook__(lost)
+    elif isinstance(lost.exc_value, Ended):
+        threading.Timer(AGAIN_S, _raise_again, [lost.exc_value.number]).start()
+
+
+def _raise_again(number: int) -> None:
+    global _raised
+    _raised = False
+    os.kill(os.getpid(), number)
 
 
 @contextmanager
 def left_to_this_process() -> Iterator[None]:
     """Keep the terminal's signals from processes that start meanwhile: this one ends them."""
+    from multiprocessing.resource_tracker import ensure_running
+
+    # it unblocks SIGINT when it starts, and every process needs it
+    ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
         yield

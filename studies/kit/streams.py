@@ -3,6 +3,7 @@
 import io
 import os
 import sys
+from contextlib import suppress
 
 
 def prepare() -> None:
@@ -22,6 +23,12 @@ def prepare() -> None:
         if isinstance(stream, io.TextIOWrapper):
             # a terminal without Greek letters shows question marks instead
             stream.reconfigure(errors="replace")
+
+
+def say(line: str) -> None:
+    """Write a line to stderr, if somebody is there to read it."""
+    with suppress(OSError):
+        print(line, file=sys.stderr)
 
 
 def finish() -> None:

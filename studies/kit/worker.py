@@ -71,7 +71,7 @@ def work(
     """
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
-    if source.kind == "engine" or job.is_long:
+    if job.needs_process(source):
         task = _processes().schedule(ask_loaded, args=(ask, job, source), timeout=time_limit_s)
         return outcome_of(task.result, time_limit_s)
     if job.source not in _loaded:

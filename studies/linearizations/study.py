@@ -12,6 +12,7 @@ from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit import provenance
+from studies.kit.arguments import Place
 from studies.kit.runner import own_folder
 from studies.linearizations import STUDY
 from studies.measures.claims import (
@@ -89,7 +90,7 @@ def grid(name: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def command(*, out: Path) -> int:
+def command(*, out: Place) -> int:
     """Take a linearization apart: onset, frequency and saddle, each changed alone.
 
     All eight combinations of Housner's and the modified choices, against the exact solution, on

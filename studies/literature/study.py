@@ -1,9 +1,8 @@
 """Printed numbers against the models and the engines: who printed what, and does it come out?"""
 
-from pathlib import Path
 from typing import Annotated
 
-from studies.kit.arguments import check_sources
+from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_engines
 from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
@@ -21,7 +20,7 @@ DEFAULT_SOURCES = core_sources()
 
 def command(
     *,
-    out: Path,
+    out: Place,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:

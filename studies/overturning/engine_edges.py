@@ -77,10 +77,12 @@ def _job(window: Window, source: str, x: float, onsets: float, labels: Row) -> J
 def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
     """Return the edges of the columns nearest to positions that have room; and how many have not.
 
-    `edges` has an `x`; an edge has room where the next ones are further than ROOM.
+    `edges` has an `x`; an edge has room where the next ones are further than ROOM. Only columns
+    with an edge count.
     """
     columns = np.unique(edges["x"])
-    wanted = {float(columns[np.argmin(abs(columns - x))]) for x in positions}
+    nearest = [columns[np.argmin(abs(columns - x))] for x in positions if columns.size]
+    wanted = {float(x) for x in nearest}
     kept, narrow = [], 0
     for _, group in edges[edges["x"].isin(wanted)].groupby("x"):
         gaps = np.diff(np.log(group["low"]))

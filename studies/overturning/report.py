@@ -1,6 +1,7 @@
 """What an overturning map says: who differs from the exact solution, and where; as text."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +43,7 @@ def report(folder: Path, window: Window) -> str:
             "between which abscissae nine tenths of each lie:",
             differences_text(differences),
             "\nEdges of the models:",
-            edges_text(read(folder, "boundaries")),
+            edges_text(read(folder, "boundaries"), list(areas["model"].unique())),
             *engine_text(read(folder, "edges"), read(folder, "thresholds")),
             "\nChecks against closed forms and the literature:",
             checks_text(checked),
@@ -203,10 +204,14 @@ def differences_text(differences: pd.DataFrame) -> str:
     return shown.to_string(index=False)
 
 
-def edges_text(edges: pd.DataFrame) -> str:
+def edges_text(edges: pd.DataFrame, models: Sequence[str]) -> str:
     """Return how many edges each model has, and how they were found."""
     lines = []
-    for model, group in edges.groupby("model", sort=False):
+    for model in models:
+        group = edges[edges["model"] == model]
+        if not len(group):
+            lines.append(f"  {model}: none")
+            continue
         found = group["found"].value_counts()
         direct = int(((group["below"] >= 0) & (group["above"] >= 0)).sum())
         width = (group["high"] - group["low"]).max()

@@ -12,10 +12,20 @@ from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Axis, Window
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Positive, check_sources
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Place,
+    Positive,
+    as_bad_input,
+    check_sources,
+    refuse_given,
+)
+from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
+from studies.kit.provenance import usable_cores
 from studies.kit.runner import exit_code, fill_folder
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
@@ -29,6 +39,16 @@ MAPPED = sources_option("exact must be among them: ")
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 STRIP = 250_000
 """Cases that are held at a time."""
+CELL_BYTES, COLUMN_BYTES = 200.0, 3000.0
+"""About what a cell of a strip holds, and a column's edges."""
+CELL_S, COLUMN_S = 2e-5, 0.02
+"""About how long a cell takes on one core, and a column's edges [s]."""
+APPLIES = {
+    "aspect": ("frequency", "size"),
+    "omega-over-p": ("slenderness",),
+    "pulse-hz": ("size",),
+}
+"""Over which abscissae an option says something."""
 RESOLUTION, QUICK_RESOLUTION = 1000, 200
 KAPPA_RESOLUTION = 160
 ENGINE_RESOLUTION, QUICK_ENGINE_RESOLUTION = 32, 8
@@ -38,15 +58,15 @@ POSITIONS, QUICK_POSITIONS = (0.12, 0.3, 0.5, 0.7, 0.9), (0.5,)
 
 def command(
     *,
-    out: Path,
+    out: Place,
     over: Axis = "frequency",
     pulse: Literal["half-sine", "full-sine"] = "full-sine",
-    aspect: Positive = 4.0,
-    omega_over_p: Positive = 3.0,
-    pulse_hz: Positive = 1.0,
+    aspect: Positive | None = None,
+    omega_over_p: Positive | None = None,
+    pulse_hz: Positive | None = None,
     low: Positive | None = None,
     high: Positive | None = None,
-    onsets: Positive = 10.0,
+    onsets: Positive | None = None,
     columns: Count | None = None,
     rows: Count | None = None,
     sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
@@ -54,6 +74,7 @@ def command(
     jobs: Count | None = None,
     time_limit: Positive = 120.0,
     cluster: str | None = None,
+    yes: bool = False,
 ) -> int:
     """Map which pulses overturn a block.
 
@@ -66,17 +87,21 @@ def command(
     pulse
         half-sine or full-sine.
     aspect
-        H/B of the block; not with --over slenderness.
+        H/B of the block, 4 by default; not with --over slenderness.
     omega_over_p
-        Frequency ω/p of the pulse, with --over slenderness.
+        Frequency ω/p of the pulse, 3 by default; only with --over slenderness.
     pulse_hz
-        Frequency of the pulse [Hz], with --over size.
-    low, high
-        Range of the abscissa.
+        Frequency of the pulse [Hz], 1 by default; only with --over size.
+    low
+        Where the abscissa begins; by default ω/p at 0.2, α at 0.05 rad, p/2π at 0.1 Hz.
+    high
+        Where it ends; by default ω/p at 8, α at 0.6 rad, p/2π at 0.8 Hz.
     onsets
-        Largest amplitude over g tan α; a map begins at 1.
-    columns, rows
-        Number of frequencies and of amplitudes; 1000 each, 200 in a quick study.
+        Largest amplitude over g tan α, 10 by default; a map begins at 1.
+    columns
+        Number of abscissae; 1000 by default, 200 in a quick study.
+    rows
+        Number of amplitudes at each; 1000 by default, 200 in a quick study.
     sources
         exact, and linear models or engines.
     quick
@@ -88,29 +113,40 @@ def command(
         up.
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
     check_mapped(sources)
+    beside = {"aspect": aspect, "omega-over-p": omega_over_p, "pulse-hz": pulse_hz}
+    for name, axes in APPLIES.items():
+        if over not in axes:
+            refuse_given({name: beside[name]}, f"only with --over {' or '.join(axes)}")
+    asked = {**beside, "low": low, "high": high, "onsets": onsets}
+    given = {name.replace("-", "_"): v for name, v in asked.items() if v is not None}
     resolution = QUICK_RESOLUTION if quick else RESOLUTION
-    try:
+    with as_bad_input():
         window = Window(
             over=over,
-            low=float("nan") if low is None else low,
-            high=float("nan") if high is None else high,
-            onsets=onsets,
+            pulse=pulse,
             columns=columns or resolution,
             rows=rows or resolution,
-            pulse=pulse,
-            aspect=aspect,
-            omega_over_p=omega_over_p,
-            pulse_hz=pulse_hz,
+            **given,
         )
-    except ValueError as error:
-        raise BadInputError(f"--{error}") from error
+    refuse_too_much(window, sources, yes)
     executor = choose(jobs, time_limit, cluster, put)
     found = overturning(window, sources, out, quick=quick, executor=executor)
     print(report(out, window))
     return exit_code(found)
+
+
+def refuse_too_much(window: Window, sources: Sequence[str], yes: bool) -> None:
+    """Raise BadInputError if a map needs more memory than there is, or days without a yes."""
+    models = sum(name in MODELS for name in sources)
+    asked = f"--columns is {window.columns} and --rows is {window.rows}"
+    columns = models * window.columns
+    refuse_excess(asked, max(window.rows, STRIP) * CELL_BYTES + columns * COLUMN_BYTES)
+    refuse_days(asked, columns * (COLUMN_S + window.rows * CELL_S / usable_cores()), yes)
 
 
 def check_mapped(sources: Sequence[str]) -> None:

@@ -1,14 +1,17 @@
 """Draw a results folder again, from its CSVs alone."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
 
 from studies.catalogue import STUDIES
-from studies.kit.arguments import BadInputError
+from studies.kit.arguments import BadInputError, Place
 from studies.kit.jobs import one_line
+from studies.kit.study import Study
 
 
-def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
+def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -> int:
     """Draw the figures of a results folder again, from its CSVs alone.
 
     Parameters
@@ -18,21 +21,49 @@ def command(folder: Path, /, *, suffix: Literal["png", "svg", "pdf"] = "png") ->
     suffix
         Format of the files.
     """
-    from studies.drawing.figures import save_all
-
     kept = [study for study in STUDIES if study.table]
     found = [study for study in kept if any(folder.glob(study.table))]
     if not found:
         tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
-    drawn = []
     for study in found:
-        try:
-            drawn += save_all(study.load().pictures(folder), folder, f".{suffix}")
-        except Exception as error:
-            # whatever a table that was edited holds, or no longer holds
-            problem = f"its results of `rocking {study.name}` cannot be drawn"
-            problem += f" ({one_line(error)})"
-            raise BadInputError(f"FOLDER is {str(folder)!r}; {problem}") from error
-    print("\n".join(map(str, drawn)))
+        print(*draw(study, folder, f".{suffix}"), sep="\n")
     return 0
+
+
+def draw(study: Study, folder: Path, suffix: str) -> list[Path]:
+    """Draw a study's figures from its tables; return the files.
+
+    Raises
+    ------
+    BadInputError
+        If a table is not what the study wrote: without rows or columns, or with other contents.
+    """
+    from studies.drawing.figures import save_all
+
+    try:
+        for table in folder.glob(study.table):
+            if table.read_bytes().count(b"\n") < 2:
+                raise ValueError(f"{table.name} has no rows")
+        with _no_words_for_numbers():
+            return save_all(study.load().pictures(folder), folder, suffix)
+    except OSError:
+        raise
+    except Exception as error:
+        # a table that was edited may break its drawing in any way
+        problem = f"its results of `rocking {study.name}` cannot be drawn"
+        raise BadInputError(f"FOLDER is {str(folder)!r}; {problem} ({one_line(error)})") from error
+
+
+@contextmanager
+def _no_words_for_numbers() -> Iterator[None]:
+    """Keep words from being drawn as if they were marks along an axis: no figure has any."""
+    from matplotlib import units
+
+    kept = dict(units.registry)
+    for kind in [kind for kind in kept if issubclass(kind, str | bytes)]:
+        del units.registry[kind]
+    try:
+        yield
+    finally:
+        units.registry.update(kept)

@@ -9,6 +9,7 @@ from tqdm import tqdm
 
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit import app, provenance
+from studies.kit.arguments import Place
 from studies.kit.journal import FolderError
 from studies.kit.study import Chapter, Study
 from studies.page.page import write_page
@@ -16,7 +17,7 @@ from studies.page.page import write_page
 PAGE = "report.html"
 
 
-def command(*, out: Path, full: bool = False) -> int:
+def command(*, out: Place, full: bool = False) -> int:
     """Run every study and write one page about them.
 
     Parameters

@@ -21,7 +21,7 @@ from engines import ENGINES, Scene, core_engines, run
 from engines.drive import build
 from studies.cases.paper import free_rocking_window, sweep_cases
 from studies.kit import provenance
-from studies.kit.arguments import check_engines, several
+from studies.kit.arguments import Place, check_engines, several
 from studies.kit.runner import own_folder
 from studies.kit.signals import left_to_this_process
 from studies.precision import COST
@@ -65,7 +65,7 @@ def omissions(block: RigidBlock, motion: SinePulse) -> list[Omission]:
 
 def command(
     *,
-    out: Path,
+    out: Place,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
 ) -> int:

@@ -5,7 +5,6 @@ import json
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -14,7 +13,7 @@ from analytic.response import Outcome, Response
 from engines import core_engines
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Positive, check_engines, several
+from studies.kit.arguments import Place, Positive, check_engines, several
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
@@ -36,7 +35,7 @@ BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 
 def command(
     *,
-    out: Path,
+    out: Place,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     time_limit: Positive = 60.0,

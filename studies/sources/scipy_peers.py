@@ -6,6 +6,7 @@ SciPy's own.
 
 import math
 import time
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -51,10 +52,15 @@ def solve_ivp_response(
     """
     march = _March(block, motion, method, rtol, start, duration, times)
     began = time.perf_counter()
-    outcome = march.run()
+    with warnings.catch_warnings(record=True) as said:
+        # what an integrator has to say belongs to its row
+        warnings.simplefilter("always")
+        outcome = march.run()
     wall_s = time.perf_counter() - began
     if outcome is Outcome.FAILED:
-        return Response.failure(march.message, steps=march.evaluations, wall_s=wall_s)
+        reasons = dict.fromkeys([march.message, *(str(warning.message) for warning in said)])
+        message = " ".join("; ".join(reasons).split())
+        return Response.failure(message, steps=march.evaluations, wall_s=wall_s)
     overturned = outcome is Outcome.OVERTURNED
     return Response(
         outcome=outcome,
@@ -111,7 +117,7 @@ class _March:
             path = self._stretch(j, tau, y, v, side)
             self.evaluations += path.nfev
             if path.status < 0:
-                self.message = " ".join(str(path.message).split())
+                self.message = str(path.message)
                 return Outcome.FAILED
             contact, turns, lying = path.y_events
             self.peak = max(self.peak, path.y[0].max(), *(float(top[0]) for top in turns))

@@ -10,7 +10,7 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Count, Positive, check_sources
+from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
@@ -44,7 +44,7 @@ RUN_SHARE = 0.02
 
 def command(
     *,
-    out: Path,
+    out: Place,
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 180.0,

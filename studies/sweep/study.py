@@ -11,6 +11,7 @@ from studies.cases.paper import sweep_cases
 from studies.kit import provenance
 from studies.kit.arguments import (
     Count,
+    Place,
     Positive,
     check_sources,
     figures,
@@ -44,7 +45,7 @@ DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_source
 
 def command(
     *,
-    out: Path,
+    out: Place,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     step: Positive | None = None,

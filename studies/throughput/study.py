@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -18,7 +17,7 @@ from analytic.response import Outcome
 from studies.cases.paper import PULSES
 from studies.cases.window import Window
 from studies.kit import provenance
-from studies.kit.arguments import Count
+from studies.kit.arguments import Count, Place
 from studies.kit.runner import own_folder
 from studies.throughput import STUDY
 
@@ -28,7 +27,7 @@ RUNS = 3
 """The shortest of so many is reported, the first one, which compiles, apart."""
 
 
-def command(*, out: Path, quick: bool = False, threads: Count | None = None) -> int:
+def command(*, out: Place, quick: bool = False, threads: Count | None = None) -> int:
     """Report how many cases of an overturning map are solved in a second.
 
     The models on all threads and on one, SciPy's DOP853 and, where it is installed, heyoka.py on

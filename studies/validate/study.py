@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 
 from studies.kit import provenance
-from studies.kit.arguments import Count, Positive, check_sources
+from studies.kit.arguments import Count, Place, Positive, check_sources
+from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 def command(
     *,
-    out: Path,
+    out: Place,
     cases: Count = 500,
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
@@ -44,6 +45,7 @@ def command(
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,
+    yes: bool = False,
 ) -> int:
     """Hold the sources against the exact solution on random cases.
 
@@ -67,10 +69,19 @@ def command(
         Wall-clock time [s] after which an engine's case is given up.
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
+    effort = Effort(step, accuracy)
+    asked = f"--cases is {cases}"
+    refuse_excess(asked, cases * len(sources) * CASE_BYTES)
+    # the exact solution is asked, too, whether a case is kept
+    everyone = ("exact", *sources)
+    seconds = expected_s(cases, everyone, jobs=jobs, time_limit_s=time_limit, effort=effort)
+    refuse_days(asked, seconds, yes)
     executor = choose(jobs, time_limit, cluster)
-    rows = validate(cases, seed, sources, out, executor=executor, effort=Effort(step, accuracy))
+    rows = validate(cases, seed, sources, out, executor=executor, effort=effort)
     print(report(out))
     return exit_code(rows)
 

@@ -11,7 +11,7 @@ import pandas as pd
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Positive, check_sources
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -46,7 +46,7 @@ DEFAULT_SOURCES = core_sources("fixed")
 
 def command(
     *,
-    out: Path,
+    out: Place,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,

@@ -32,7 +32,13 @@ from studies.sweep import study as sweep
 from studies.validity import study as validity
 
 AT_ONCE = ("histories", "linearizations")
-RESUMABLE = [place for place in CHAPTERS if place[0].name not in AT_ONCE]
+DEAR = ("overturning", "precision")
+"""Studies that take many seconds before their first row."""
+RESUMABLE = [
+    pytest.param(study, chapter, id=chapter.folder, marks=[pytest.mark.slow] * (study.name in DEAR))
+    for study, chapter in CHAPTERS
+    if study.name not in AT_ONCE
+]
 
 
 @pytest.fixture(scope="module")
@@ -107,9 +113,7 @@ def look(jobs, *, executor, reduce, journal):
     raise Seen(called)
 
 
-@pytest.mark.parametrize(
-    ("study", "chapter"), RESUMABLE, ids=[chapter.folder for _, chapter in RESUMABLE]
-)
+@pytest.mark.parametrize(("study", "chapter"), RESUMABLE)
 def test_what_a_row_runs_through_was_found(study, chapter, monkeypatch, tmp_path):
     monkeypatch.setattr(runner, "run_jobs", look)
     with pytest.raises(Seen) as seen:

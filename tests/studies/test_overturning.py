@@ -11,7 +11,7 @@ from analytic import MODELS, Outcome, peak_ratios, simulate
 from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
-from studies.cases.window import AXES, Window
+from studies.cases.window import AXES, LIMITS, Window
 from studies.overturning.areas import modes_at, read
 from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
@@ -197,6 +197,41 @@ def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
     assert not (tmp_path / "differences.png").exists()
 
 
+@pytest.mark.parametrize(
+    "window", [["--low", "20", "--high", "40"], ["--over", "size", "--pulse-hz", "20"]]
+)
+def test_a_map_on_which_nothing_overturns(window, tmp_path, capsys):
+    arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "12", *window]
+    assert run([*arguments, "--quick", "--sources", "exact", "housner"]) == 0
+    text = capsys.readouterr().out
+    assert "  exact: none" in text
+    assert "  housner: none" in text
+    assert (tmp_path / "map.png").exists()
+
+
+@pytest.mark.parametrize("over", AXES)
+@pytest.mark.parametrize("end", [0, 1])
+def test_every_edge_is_found_at_the_limits_of_a_window(over, end):
+    least, most = LIMITS[over]
+    low = least if end == 0 else most / 1.5
+    pulse_hz = low if over == "size" else 1.0
+    for onsets in LIMITS["onsets"]:
+        for aspect in LIMITS["aspect"]:
+            window = Window(
+                over=over,
+                low=low,
+                high=1.5 * low,
+                onsets=onsets,
+                aspect=aspect,
+                pulse_hz=pulse_hz,
+                columns=4,
+                rows=10,
+            )
+            for model in ("exact", "housner", "modified", "onset-matched"):
+                _, spans = mapped(window, model)
+                assert (spans["mode"] >= -2).all()
+
+
 @pytest.mark.slow
 def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "100"]
@@ -213,9 +248,23 @@ def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     [
         (["--sources", "housner"], "--sources", "exact"),
         (["--sources", "exact", "rk4"], "'rk4'", "engines"),
-        (["--onsets", "0.5"], "--onsets", "more than 1"),
+        (["--onsets", "0.5"], "--onsets", "from 1.001 to 1000"),
         (["--low", "3", "--high", "2"], "--low", "smaller"),
-        (["--over", "slenderness", "--high", "2"], "--high", "π/2"),
+        (["--low", "2", "--high", "2.0000000000000004"], "--low", "smaller"),
+        (["--low", "1e-300"], "--low", "from 0.001 to 1000"),
+        (["--high", "1e300"], "--high", "from 0.001 to 1000"),
+        (["--over", "slenderness", "--high", "2"], "--high", "to 1.5"),
+        (["--over", "size", "--pulse-hz", "1e-300"], "--pulse-hz", "from 0.0008 to 100"),
+        (["--onsets", "1e300"], "--onsets", "to 1000"),
+        (["--onsets", "1.0000000000000002"], "--onsets", "from 1.001"),
+        (["--aspect", "1e300"], "--aspect", "from 0.1 to 1000"),
+        (["--over", "slenderness", "--omega-over-p", "1e300"], "--omega-over-p", "to 1000"),
+        (["--over", "slenderness", "--aspect", "3"], "--aspect", "frequency or size"),
+        (["--omega-over-p", "3"], "--omega-over-p", "only with --over slenderness"),
+        (["--pulse-hz", "2"], "--pulse-hz", "only with --over size"),
+        (["--columns", "1000000000"], "--columns", "GB"),
+        (["--rows", "1000000000"], "--rows", "GB"),
+        (["--columns", "200000", "--rows", "1000000"], "--columns", "--yes"),
         (["--over", "colour"], "--over", "frequency"),
         (["--rows", "0"], "--rows", "positive"),
     ],

@@ -1,0 +1,124 @@
+"""Where compiled kernels are kept: never beside other sources than their own, never required."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from analytic.kernels import compiled
+
+KERNELS = {
+    "__init__.py": "",
+    "inner/__init__.py": "",
+    "inner/law.py": """
+from analytic.kernels.compiled import kernel
+
+@kernel
+def law(x):
+    return x + 1.0
+""",
+    "steps.py": """
+from analytic.kernels.compiled import kernel
+from analytic.inner.law import law
+
+@kernel
+def steps(x):
+    return 10.0 * law(x)
+""",
+}
+PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
+PROGRAM = """
+from analytic.kernels import compiled
+from analytic import steps
+value = steps.steps(1.0)
+print(value, sum(steps.steps.stats.cache_hits.values()), compiled.kept_in())
+"""
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A package of two kernels, the one in need of the other."""
+    for name, text in KERNELS.items():
+        path = tmp_path / "package" / "analytic" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    shutil.copy(compiled.__file__, tmp_path / "package" / "analytic" / "compiled.py")
+    return tmp_path / "package"
+
+
+def asked(package, **variables):
+    """Return the kernel's answer, whether it was read from disk, and from where."""
+    inherited = {k: v for k, v in os.environ.items() if k not in PLACES}
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env={**inherited, **variables},
+        cwd=package,
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    value, hits, folder = done.stdout.split(maxsplit=2)
+    return float(value), bool(int(hits)), Path(folder.strip())
+
+
+@pytest.mark.parametrize("place", ["the package", "NUMBA_CACHE_DIR", "HOME"])
+def test_a_kernel_is_never_older_than_what_it_calls(place, package, tmp_path):
+    variables, kept = {}, package / "analytic" / "__pycache__"
+    if place == "NUMBA_CACHE_DIR":
+        kept = tmp_path / "chosen"
+        variables = {"NUMBA_CACHE_DIR": str(kept)}
+    if place == "HOME":
+        # a package folder in which nothing can be made
+        kept.write_text("")
+        kept = tmp_path / ".cache" / "rocking"
+        variables = {"HOME": str(tmp_path)}
+    first, again = asked(package, **variables), asked(package, **variables)
+    assert first == (20.0, False, first[2])
+    assert first[2].parent == kept
+    assert again == (20.0, True, first[2])
+    law = package / "analytic" / "inner" / "law.py"
+    law.write_text(law.read_text().replace("1.0", "2.0"))
+    edited = asked(package, **variables)
+    assert edited == (30.0, False, edited[2])
+    # the package's own folder does not fill up; others may be shared
+    assert first[2].exists() == (place != "the package")
+
+
+def test_kernels_run_where_nothing_can_be_written(package, tmp_path):
+    (package / "analytic" / "__pycache__").write_text("")
+    closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null", "NUMBA_CACHE_DIR": "/dev/null"}
+    value, _, folder = asked(package, **closed, TMPDIR=str(tmp_path))
+    assert (value, folder.parent) == (20.0, tmp_path / f"rocking-{os.getuid()}")
+    assert folder.parent.stat().st_mode & 0o777 == 0o700
+    folder.parent.chmod(0o777)
+    value, hit, folder = asked(package, **closed, TMPDIR=str(tmp_path))
+    assert (value, hit, str(folder)) == (20.0, False, "None")
+
+
+def test_a_folder_is_named_by_all_sources(package, tmp_path):
+    sources = package / "analytic"
+
+    def name():
+        return compiled.folder_for(sources, [tmp_path / "kept"]).name
+
+    names = [name()]
+    for path in ("steps.py", "inner/law.py", "inner/more.py"):
+        with (sources / path).open("a") as file:
+            file.write("\n# edited")
+        names.append(name())
+    assert len(set(names)) == 4
+    assert compiled.folder_for(sources, [Path("/dev/null"), Path("/proc/none")]) is None
+
+
+def test_other_kernels_of_the_user_are_kept_where_they_were():
+    before = compiled.numba.config.CACHE_DIR
+
+    @compiled.kernel
+    def twice(x):
+        return 2.0 * x
+
+    assert before == compiled.numba.config.CACHE_DIR
+    assert twice.stats.cache_path.startswith(str(compiled.kept_in()))

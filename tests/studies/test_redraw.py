@@ -1,0 +1,84 @@
+"""Results drawn again from their tables: as they are, and after somebody edited them."""
+
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from matplotlib import units
+
+from studies.__main__ import run
+
+PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
+
+
+def with_a_word(table, column):
+    return table.astype({column: object}).assign(
+        **{column: [*table[column].iloc[:-1].astype(str), "many"]}
+    )
+
+
+# (study, table, what is done to it, what the line names)
+EDITS = [
+    ("free", "free.csv", lambda t: with_a_word(t, "period_error"), "free"),
+    ("free", "free.csv", lambda t: with_a_word(t, "tilt"), "many"),
+    ("free", "free.csv", lambda t: t.drop(columns="source"), "source"),
+    ("free", "free.csv", lambda t: t.drop(columns="decay_error"), "decay_error"),
+    ("free", "free.csv", lambda t: t.head(0), "free.csv has no rows"),
+    ("validity", "map.csv", lambda t: t.head(1), "validity"),
+    ("validity", "map.csv", lambda t: t.head(0), "validity"),
+    ("validity", "map.csv", lambda t: with_a_word(t, "min_normal"), "validity"),
+    ("validity", "compared.csv", lambda t: with_a_word(t, "friction_factor"), "validity"),
+    ("validity", "compared.csv", lambda t: t.drop(columns="verdict"), "verdict"),
+    ("linearizations", "linearizations.csv", lambda t: t.head(0), "has no rows"),
+    ("sweep", "sweep.csv", lambda t: with_a_word(t, "peak_ratio"), "rocking sweep"),
+    ("sweep", "sweep.csv", lambda t: t.drop(columns="aspect"), "aspect"),
+    ("stability", "stability.csv", lambda t: t.drop(columns="verdict"), "verdict"),
+]
+
+
+@pytest.mark.parametrize(("study", "table", "edit", "named"), EDITS)
+def test_an_edited_table_is_one_line(study, table, edit, named, tmp_path, capsys):
+    folder = Path(shutil.copytree(PUBLISHED / study, tmp_path / study))
+    pictures = sorted(folder.glob("*.png"))
+    before = {path: path.read_bytes() for path in pictures}
+    edit(pd.read_csv(folder / table)).to_csv(folder / table, index=False)
+    assert run(["redraw", str(folder)]) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert len(output.err.splitlines()) == 1
+    assert named in output.err
+    assert {path: path.read_bytes() for path in pictures} == before
+    assert not list(folder.glob(".*"))
+
+
+@pytest.mark.parametrize("content", [b"", b"\n\n\n", bytes(range(256)), b"a,b\n1,2,3\n4,5\n"])
+def test_what_is_no_table_is_one_line(content, tmp_path, capsys):
+    (tmp_path / "free.csv").write_bytes(content)
+    assert run(["redraw", str(tmp_path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
+    before = dict(units.registry)
+    for study in ("free", "sweep", "stability", "validity"):
+        folder = tmp_path / study
+        folder.mkdir()
+        for path in (PUBLISHED / study).glob("*.csv"):
+            shutil.copy(path, folder)
+        assert run(["redraw", str(folder), "--suffix", "svg"]) == 0
+        drawn = [Path(line) for line in capsys.readouterr().out.splitlines()]
+        assert [path.suffix for path in drawn] == [".svg"] * len(drawn) != []
+        assert all(path.read_text().startswith("<?xml") for path in drawn)
+        published = {path.stem for path in (PUBLISHED / study).glob("*.png")}
+        assert {path.stem for path in drawn} == published
+    assert units.registry == before
+
+
+def test_a_picture_that_cannot_be_written_is_named(tmp_path, capsys, monkeypatch):
+    folder = Path(shutil.copytree(PUBLISHED / "free", tmp_path / "free"))
+    (folder / ".free.png.part").mkdir()
+    assert run(["redraw", str(folder)]) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1
+    assert "free.png" in error
