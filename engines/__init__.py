@@ -31,7 +31,16 @@ declaration; every study reads it, and none names an engine.
 """
 
 from engines.drive import run
-from engines.registry import ENGINES, core_engines
+from engines.registry import ENGINES, core_engines, installed_engines
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene
 
-__all__ = ["ACCURACIES", "ENGINES", "FRAMES", "GEOMETRIES", "Scene", "core_engines", "run"]
+__all__ = [
+    "ACCURACIES",
+    "ENGINES",
+    "FRAMES",
+    "GEOMETRIES",
+    "Scene",
+    "core_engines",
+    "installed_engines",
+    "run",
+]

@@ -10,7 +10,7 @@ from typing import Any
 from analytic.block import RigidBlock
 from engines.factors import Factor
 from engines.parts.settings import largest
-from engines.scene import ACCURACIES, FRAMES, Scene, one_of
+from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
 from engines.world import ROUNDINGS, Resolution, World
 
 
@@ -192,11 +192,13 @@ class Engine:
         """Whether its library is there."""
         return importlib.util.find_spec(self.library) is not None
 
-    def lacks(self, scene: Scene, settings: Any) -> str:
+    def lacks(self, scene: Scene) -> str:
         """Say what of a scene the engine cannot do, or return an empty string."""
+        wanted = scene.settings.get("geometry")
         if scene.frame not in self.frames:
-            return f"not available: {self.title} has no frame {scene.frame!r}"
-        geometry = getattr(settings, "geometry", self.geometries[0])
-        if geometry not in self.geometries:
-            return f"not available: {self.title} has no geometry {geometry!r}"
+            return f"{self.title} has no frame {scene.frame!r}"
+        if wanted in GEOMETRIES and wanted not in self.geometries:
+            return f"{self.title} has no geometry {wanted!r}"
+        if scene.settings.get("planar") is False and not self.spatial:
+            return f"{self.title} knows the plane alone"
         return ""

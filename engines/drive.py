@@ -84,10 +84,10 @@ def build(engine: Engine, scene: Scene) -> World:
         If a preset or setting is not one of the engine's.
     """
     preset = engine.preset(scene.preset)
-    settings = scene.choose(preset.settings)
-    lacking = engine.lacks(scene, settings)
+    lacking = engine.lacks(scene)
     if lacking:
-        raise NotAvailableError(lacking)
+        raise NotAvailableError(f"not available: {lacking}")
+    settings = scene.choose(preset.settings)
     try:
         return engine.build(scene, settings, preset.ordinary_step_s(scene))
     except ImportError as error:

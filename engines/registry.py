@@ -65,6 +65,11 @@ def core_engines() -> tuple[str, ...]:
     return tuple(name for name, engine in ENGINES.items() if engine.core)
 
 
+def installed_engines() -> tuple[str, ...]:
+    """Return the names of the engines whose libraries are here."""
+    return tuple(name for name, engine in ENGINES.items() if engine.installed)
+
+
 def find(name: str) -> Engine:
     """Return an engine by its name.
 

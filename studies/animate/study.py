@@ -20,15 +20,16 @@ from studies.kit.arguments import (
     Positive,
     check_sources,
     refuse_given,
-    several,
 )
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.posing import posed_block, posed_pulse
 from studies.kit.runner import exit_code, run_jobs
+from studies.sources.groups import core_sources
 
-DEFAULT_SOURCES = ("exact", "housner", "pybullet:naive", "mujoco:naive", "pybullet", "mujoco")
+DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 FRAMES_A_SECOND = 25
 CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 
@@ -43,7 +44,7 @@ def command(
     pulse: Literal["half-sine", "full-sine"] | None = None,
     half_cycles: Count | None = None,
     results: Place | None = None,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     slower: Positive = 1.0,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,

@@ -21,16 +21,17 @@ from studies.kit.arguments import (
     check_plot,
     check_sources,
     refuse_given,
-    several,
 )
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.posing import posed_block, posed_pulse, posed_record
 from studies.kit.runner import exit_code, run_jobs
+from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 
-DEFAULT_SOURCES = ("exact", "housner", "modified", "pybullet", "mujoco")
+DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
 
 
 def command(
@@ -46,7 +47,7 @@ def command(
     scale: Positive | None = None,
     pga: Positive | None = None,
     baseline: Baseline | None = None,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     step: Positive | None = None,
     accuracy: Accuracy | None = None,
@@ -87,8 +88,7 @@ def command(
         (constant) or the line that fits it best (linear). By default it is taken as it is, and what
         velocity it leaves the base with is reported.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
-        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in pybullet:naive.
+        Who is asked.
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
         8/p of free rocking.

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from engines import ENGINES
 from studies.kit.drafts import draft
 
 LOWEST = 1e-16
@@ -38,19 +39,30 @@ STYLES = {
     "onset-matched": Style("#CC79A7", ":", width=1.8),
     "rk4": Style("#56B4E9", "-", width=1.0),
     "average-acceleration": Style("#E69F00", "--", width=1.0),
-    "pybullet": Style("#009E73", marker="o"),
-    "pybullet:naive": Style("#009E73", marker="x"),
-    "pybullet:fixed": Style("#009E73", marker="s"),
-    "mujoco": Style("#7A4FBF", marker="^"),
-    "mujoco:naive": Style("#7A4FBF", marker="+"),
-    "mujoco:fixed": Style("#7A4FBF", marker="v"),
 }
+
+# from Tol's muted palette, but for the first two
+ENGINE_COLOURS = (
+    *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
+)
+MARKERS = {"": "o^", "fixed": "sv", "naive": "x+"}
+"""Preset -> markers of engines, in turn; the empty name is the best there is."""
+
+
+def engine_style(engine: str, preset: str) -> Style:
+    """Return colour and marker of an engine, by its place among all."""
+    number = list(ENGINES).index(engine)
+    markers = MARKERS.get(preset, MARKERS[""])
+    colour = ENGINE_COLOURS[number % len(ENGINE_COLOURS)]
+    return Style(colour, marker=markers[number % len(markers)])
 
 
 def style_of(source: str) -> Style:
     """Return the style of a source; one without a style of its own is grey."""
-    plain = source.partition(":")[0]
-    return STYLES.get(source) or STYLES.get(plain) or Style("#777777", marker="D")
+    plain, _, preset = source.partition(":")
+    if plain in ENGINES:
+        return engine_style(plain, preset)
+    return STYLES.get(plain) or Style("#777777", marker="D")
 
 
 def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:

@@ -26,13 +26,14 @@ from studies.kit.arguments import (
     check_sources,
     refuse_given,
     refuse_repeats,
-    several,
     several_or_none,
 )
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.naming import sources_option
 from studies.kit.runner import exit_code, fill_folder
+from studies.sources.groups import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,9 +52,11 @@ QUICK_SIZES_M = SIZES_M[:1]
 QUICK_INTENSITIES = INTENSITIES[1:4]
 QUICK_MOTIONS = 8
 
+BESIDE = sources_option("Beside the exact solution: ")
 DEFAULT_SOURCES = (
-    *("housner", "modified", "pybullet:naive", "mujoco:naive"),
-    *("pybullet", "mujoco"),
+    *("housner", "modified"),
+    *core_sources("naive"),
+    *core_sources(),
 )
 
 TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
@@ -133,7 +136,7 @@ def command(
     records: Annotated[tuple[Place, ...] | None, several_or_none] = None,
     units: Units | None = None,
     baseline: Baseline | None = None,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
@@ -161,8 +164,7 @@ def command(
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).
     sources
-        housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's rk45
-        dop853 radau lsoda, beside the exact solution; an engine takes a preset after a colon.
+        Who is asked beside the exact solution.
     quick
         One block and three intensities.
     jobs

@@ -16,12 +16,14 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.free import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, Positive, check_sources, several
+from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import scientific
+from studies.sources.groups import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +32,7 @@ ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Rotations over alpha from which the blocks fall."""
 QUICK_ASPECTS, QUICK_TILTS = (2.0, 4.0), (0.3, 0.9)
-DEFAULT_SOURCES = ("exact", "housner", "modified", "rk4", "pybullet", "mujoco")
+DEFAULT_SOURCES = ("exact", "housner", "modified", "rk4", *core_sources())
 MODEL_OF = {"housner": "housner", "modified": "modified"}
 """Whose closed form a source is held against, where that is not the exact one."""
 OMEGA_OVER_P = 8.0
@@ -48,7 +50,7 @@ def command(
     *,
     out: Place,
     quick: bool = False,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,
@@ -67,8 +69,7 @@ def command(
     quick
         Two aspect ratios and two tilts.
     sources
-        exact housner modified rk4 average-acceleration pybullet mujoco, and SciPy's rk45 dop853
-        radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+        Who is asked.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit

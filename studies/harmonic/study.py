@@ -12,12 +12,14 @@ from studies.harmonic import STUDY
 from studies.harmonic.report import headline, paragraph, pictures, report
 from studies.harmonic.sweeps import Shaking, State, sweep
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources, several
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.naming import several_engines
 from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, fill
 from studies.kit.runner import exit_code
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
+from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
@@ -57,7 +59,7 @@ def command(
     tilt: float = 0.3,
     points: Count | None = None,
     periods: Count | None = None,
-    sources: Annotated[tuple[str, ...], several] = ("pybullet", "mujoco"),
+    sources: Annotated[tuple[str, ...], several_engines] = core_sources(),
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -89,8 +91,7 @@ def command(
     periods
         Forcing periods at each point before its steady state is read; 400, with --quick 200.
     sources
-        Engines that start on the exact orbit at some points; an engine takes a preset after a
-        colon, as in mujoco:fixed.
+        Engines that start on the exact orbit at some points.
     quick
         Fewer points, periods and runs of engines.
     """

@@ -18,11 +18,11 @@ from studies.kit.arguments import (
     check_sources,
     figures,
     refuse_repeats,
-    several_or_none,
 )
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import sources_option
 from studies.kit.runner import exit_code, own_folder, run_jobs
 from studies.measures.claims import (
     TABLE,
@@ -45,6 +45,11 @@ DEFAULT_SOURCES = {
 }
 """What the paper draws; its numerical solution is the exact model's."""
 
+PAPERS = sources_option(
+    "By default what the paper draws, exact, rk4 and average-acceleration in figure 2, exact, "
+    "housner and modified in 4 and 5: "
+)
+
 TITLES = {
     2: "Figure 2: fourth-order Runge–Kutta and average acceleration",
     4: "Figure 4: half-sine pulse",
@@ -56,7 +61,7 @@ def command(
     *,
     out: Place,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
-    sources: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,

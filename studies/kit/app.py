@@ -29,7 +29,7 @@ def make_app(studies: Sequence[Study]) -> App:
 
     app = App(
         name="rocking",
-        help="A rocking block: the exact solution, its linearizations, PyBullet and MuJoCo.",
+        help="A rocking block: the exact solution, its linearizations, physics engines.",
         help_format="markdown",
         help_formatter="default",
         version=_version,

@@ -2,24 +2,26 @@
 
 from typing import Annotated
 
-from studies.kit.arguments import Place, check_sources, several
+from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job
+from studies.kit.naming import several_engines
 from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
 from studies.literature import STUDY
 from studies.literature.problems import PROBLEMS, ModeEnd, Problem
 from studies.literature.readings import put, reduce, times_of
 from studies.literature.report import headline, paragraph, pictures, report
+from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-DEFAULT_SOURCES = ("pybullet", "mujoco")
+DEFAULT_SOURCES = core_sources()
 
 
 def command(
     *,
     out: Place,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Hold printed numbers against the models that they are about, and the engines beside.
@@ -32,8 +34,7 @@ def command(
     out
         Folder for the results; made if there is none.
     sources
-        Beside the printed model and the exact one: engines, pybullet mujoco by default; an engine
-        takes a preset after a colon, as in mujoco:fixed.
+        Engines, beside the printed model and the exact one.
     """
     check_sources(sources)
     jobs = [

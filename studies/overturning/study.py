@@ -20,21 +20,23 @@ from studies.kit.arguments import (
     as_bad_input,
     check_sources,
     refuse_given,
-    several,
 )
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.journal import Row
+from studies.kit.naming import sources_option
 from studies.kit.provenance import usable_cores
 from studies.kit.runner import exit_code, fill_folder
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
 from studies.overturning.report import headline, paragraph, pictures, report
+from studies.sources.groups import core_sources
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
+MAPPED = sources_option("exact must be among them: ")
+DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 STRIP = 250_000
 """Cases that are held at a time."""
 CELL_BYTES, COLUMN_BYTES = 200.0, 3000.0
@@ -67,7 +69,7 @@ def command(
     onsets: Positive | None = None,
     columns: Count | None = None,
     rows: Count | None = None,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 120.0,
@@ -101,8 +103,7 @@ def command(
     rows
         Number of amplitudes at each; 1000 by default, 200 in a quick study.
     sources
-        exact and any of housner modified onset-matched pybullet mujoco; an engine takes a preset
-        after a colon, as in mujoco:naive.
+        exact, and linear models or engines.
     quick
         A coarser map and fewer runs of the engines: less than a minute on 2 cores.
     jobs

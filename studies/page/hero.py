@@ -11,11 +11,12 @@ from analytic.response import Response
 from studies.cases.paper import free_rocking_window
 from studies.kit import provenance
 from studies.kit.jobs import Job, ask
+from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * STANDARD_GRAVITY, omega=6.2832, half_cycles=2)
-SOURCES = ("exact", "housner", "pybullet:naive", "mujoco:naive", "pybullet", "mujoco")
+SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 SAMPLES = 401
 
 

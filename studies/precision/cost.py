@@ -1,17 +1,14 @@
 """What a scene costs and what leaving things out of it saves: measured by putting them back."""
 
-import contextlib
-import functools
-import importlib
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
@@ -19,17 +16,17 @@ import pandas as pd
 from analytic import peak_ratios, simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Response
-from engines import ENGINES, Scene, run
+from analytic.response import Outcome, Response
+from engines import ENGINES, Scene, core_engines, run
 from engines.drive import build
-from engines.world import World
-from studies.cases.paper import HISTORIES, free_rocking_window, sweep_cases
+from studies.cases.paper import free_rocking_window, sweep_cases
 from studies.kit import provenance
-from studies.kit.arguments import Place
+from studies.kit.arguments import Place, check_engines, several
 from studies.kit.runner import own_folder
 from studies.kit.signals import left_to_this_process
 from studies.precision import COST
 from studies.precision.cost_report import headline, paragraph, pictures, report
+from studies.precision.shares import best_of, pose_case, share_table
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
@@ -66,7 +63,12 @@ def omissions(block: RigidBlock, motion: SinePulse) -> list[Omission]:
     ]
 
 
-def command(*, out: Place, quick: bool = False) -> int:
+def command(
+    *,
+    out: Place,
+    engines: Annotated[tuple[str, ...], several] = core_engines(),
+    quick: bool = False,
+) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
     On the block and pulse of the paper's figure 5-b. Times are of one thread, warm, the best of
@@ -76,52 +78,40 @@ def command(*, out: Place, quick: bool = False) -> int:
     ----------
     out
         Folder for the tables; made if there is none.
+    engines
+        Names of engines, without a preset.
     quick
         Shorter timing: a few seconds.
     """
+    check_engines(engines)
     with own_folder(out, COST.name, COST.products, module=__name__, quick=quick):
-        measure(out, quick)
+        measure(out, engines, quick)
         print(report(out))
     return 0
 
 
-def measure(folder: Path, quick: bool) -> None:
+def measure(folder: Path, engines: Sequence[str], quick: bool) -> None:
     """Measure and write the three tables."""
     budget_s = QUICK_BUDGET_S if quick else BUDGET_S
     tables = {
-        "shares": share_table(budget_s),
-        "scenes": scene_table(budget_s),
+        "shares": share_table(engines, budget_s),
+        "scenes": scene_table(engines, budget_s),
         "reference": reference_table(),
     }
     for name, table in tables.items():
         provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
 
 
-def pose_case() -> tuple[RigidBlock, SinePulse]:
-    """Return the block and pulse of figure 5-b: one impact before the peak, κ about 5."""
-    case = HISTORIES[5][1]
-    return case.block, case.motion
-
-
-def best_of(action: Callable[[], Response], budget_s: float) -> tuple[Response, float]:
-    """Return the response with the shortest run time, and the shortest set-up time [s]."""
-    began = time.perf_counter()
-    responses = [action()]
-    while time.perf_counter() - began < budget_s:
-        responses.append(action())
-    best = min(responses, key=lambda response: response.wall_s)
-    return best, min(response.setup_s for response in responses)
-
-
-def scene_table(budget_s: float) -> pd.DataFrame:
+def scene_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
     """Return a row for each engine and omission: time, steps, set-up, memory, what it changes."""
     block, motion = pose_case()
     exact = simulate(block, motion).peak_ratio
     rows = []
-    for engine in ENGINES:
+    for engine in engines:
         for omission in omissions(block, motion):
-            scene = Scene(block=block, motion=motion, **omission.put_back)
-            response, setup_s = best_of(partial(run, engine, scene), budget_s)
+            action = partial(put_back, engine, omission, block, motion)
+            response, setup_s = best_of(action, budget_s)
+            failed = response.outcome is Outcome.FAILED
             rows.append(
                 {
                     "engine": engine,
@@ -131,12 +121,22 @@ def scene_table(budget_s: float) -> pd.DataFrame:
                     "steps": response.steps,
                     "step_s": response.wall_s / max(response.steps, 1),
                     "setup_s": setup_s,
-                    "memory_kib": in_a_new_process(scene_memory, engine, omission.put_back),
+                    "memory_kib": math.nan
+                    if failed
+                    else in_a_new_process(scene_memory, engine, omission.put_back),
                     "error": response.peak_ratio / exact - 1.0,
                     "message": response.message,
                 }
             )
     return pd.DataFrame(rows)
+
+
+def put_back(engine: str, omission: Omission, block: RigidBlock, motion: SinePulse) -> Response:
+    """Run a scene with what it leaves out; an engine that has no such thing fails."""
+    preset = omission.put_back.get("preset")
+    if preset not in (None, *(use.name for use in ENGINES[engine].presets)):
+        return Response.failure(f"not available: {engine} has no preset {preset!r}")
+    return run(engine, Scene(block=block, motion=motion, **omission.put_back))
 
 
 def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
@@ -165,97 +165,6 @@ def scene_memory(engine: str, put_back: dict[str, Any]) -> float:
 
 def _resident(status: Path) -> float:
     return int(status.read_text().split()[1]) * 4.0
-
-
-def share_table(budget_s: float) -> pd.DataFrame:
-    """Return where the time of a step goes: the engine's own step, the rest of the adapter, ...
-
-    Each part is timed from within by a clock around it, whose own cost is taken off.
-    """
-    block, motion = pose_case()
-    clock_s = tick()
-    rows = []
-    for engine in ENGINES:
-        scene = Scene(block=block, motion=motion)
-        plain, _ = best_of(partial(run, engine, scene), budget_s)
-        with clocks(engine) as spent:
-            response = run(engine, scene)
-        spent = {part: max(total - clock_s * response.steps, 0.0) for part, total in spent.items()}
-        per_step = {part: total / response.steps for part, total in spent.items()}
-        whole = plain.wall_s / plain.steps
-        rows.append(
-            {
-                "engine": engine,
-                "step_s": whole,
-                "engine_s": per_step["engine"],
-                "adapter_s": max(per_step["step"] - per_step["engine"], 0.0),
-                "pose_s": per_step["pose"],
-                "policy_s": per_step["policy"],
-                "observer_s": per_step["observer"],
-            }
-        )
-    return pd.DataFrame(rows)
-
-
-def tick() -> float:
-    """Return what reading the clock twice costs [s]."""
-    count = 20_000
-    began = time.perf_counter()
-    for _ in range(count):
-        time.perf_counter()
-        time.perf_counter()
-    return (time.perf_counter() - began) / count
-
-
-def own_step(engine: str) -> tuple[Any, str]:
-    """Return where an engine's own step stands, and its name there."""
-    library, _, path = ENGINES[engine].own_step.partition(":")
-    *owners, name = path.split(".")
-    return functools.reduce(getattr, owners, importlib.import_module(library)), name
-
-
-def example_world(engine: str) -> World:
-    """Return a world of an engine, closed: its class is wanted."""
-    block, motion = pose_case()
-    world = build(ENGINES[engine], Scene(block=block, motion=motion))
-    world.close()
-    return world
-
-
-@contextlib.contextmanager
-def clocks(engine: str) -> Iterator[dict[str, float]]:
-    """Put clocks around the parts of a step while the context lasts; yield the sums [s]."""
-    from engines.stepping.steps import Stepper
-    from engines.watching.observe import Observer
-
-    world = type(example_world(engine))
-    places = {
-        "engine": own_step(engine),
-        "step": (world, "step"),
-        "pose": (world, "pose"),
-        "policy": (Stepper, "next"),
-        "observer": (Observer, "see"),
-    }
-    spent = dict.fromkeys(places, 0.0)
-    kept = {part: getattr(owner, name) for part, (owner, name) in places.items()}
-
-    def timed(part: str, call: Callable[..., Any]) -> Callable[..., Any]:
-        def measured(*arguments: Any, **named: Any) -> Any:
-            start = time.perf_counter()
-            try:
-                return call(*arguments, **named)
-            finally:
-                spent[part] += time.perf_counter() - start
-
-        return measured
-
-    try:
-        for part, (owner, name) in places.items():
-            setattr(owner, name, timed(part, kept[part]))
-        yield spent
-    finally:
-        for part, (owner, name) in places.items():
-            setattr(owner, name, kept[part])
 
 
 def reference_table() -> pd.DataFrame:

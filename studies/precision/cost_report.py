@@ -43,10 +43,11 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def headline(folder: Path) -> str:
     """Say how long a step takes, and how much of that is the engine's own."""
+    shares = read(folder, "shares").dropna(subset=["step_s", "engine_s"])
     words = [
         f"{line['engine']} {1e6 * line['step_s']:.0f} µs "
         f"(the engine's own step {1e6 * line['engine_s']:.0f} µs)"
-        for _, line in read(folder, "shares").iterrows()
+        for _, line in shares.iterrows()
     ]
     return f"A step of the stepping loop takes {', '.join(words)}."
 
@@ -61,7 +62,7 @@ def shares_text(shares: pd.DataFrame) -> str:
     parts = shares.set_index("engine").filter(like="_s") * 1e6
     own = 1.0 - shares["engine_s"] / shares["step_s"]
     shown = parts.rename(columns=lambda name: name.removesuffix("_s") + " µs").map("{:.2f}".format)
-    shown["beside the engine"] = [f"{share:.0%}" for share in own]
+    shown["beside the engine"] = own.map("{:.0%}".format)
     return shown.reset_index().to_string(index=False)
 
 

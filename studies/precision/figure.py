@@ -6,7 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.figures import LOWEST, Style
+from engines import ENGINES
+from studies.drawing.figures import LOWEST, Style, engine_style
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),
@@ -20,15 +21,21 @@ STYLES = {
     "housner, closed form": Style("#D55E00", "", "*"),
     "modified, closed form": Style("#0072B2", "", "*"),
     "onset-matched, closed form": Style("#CC79A7", "", "*"),
-    "pybullet naive": Style("#009E73", ":", "x"),
-    "pybullet fixed": Style("#009E73", "--", "s"),
-    "pybullet landing": Style("#009E73", "-", "o", 2.0),
-    "pybullet fixed, iterations": Style("#009E73", "-.", "+", 0.8),
-    "mujoco naive": Style("#7A4FBF", ":", "x"),
-    "mujoco fixed": Style("#7A4FBF", "--", "v"),
-    "mujoco landing": Style("#7A4FBF", "-", "^", 2.0),
-    "mujoco fixed, iterations": Style("#7A4FBF", "-.", "+", 0.8),
 }
+
+LINES = {"naive": (":", 1.4), "fixed": ("--", 1.4), "iterations": ("-.", 0.8)}
+"""What is varied of an engine -> its line and how thick that is; the best preset's is full."""
+
+
+def style_of(method: str) -> Style:
+    """Return the style of a method; engines by their colours, others grey."""
+    engine, _, varied = method.partition(" ")
+    if method in STYLES or engine not in ENGINES:
+        return STYLES.get(method, Style("#777777", "-", "."))
+    preset, _, dial = varied.partition(", ")
+    line, width = LINES.get(dial or preset, ("-", 2.0))
+    look = engine_style(engine, preset)
+    return Style(look.colour, line, "+" if dial else look.marker, width)
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:
@@ -47,7 +54,7 @@ def draw_precision(table: pd.DataFrame) -> Figure:
         axes.set_title(f"{kind} cases")
         axes.set_xlabel("run time of a case, set-up apart  [s]")
     panels[0].set_ylabel("median relative error of the peak  [–]")
-    handles = [_handle(name) for name in STYLES if name in set(table["method"])]
+    handles = [_handle(str(name)) for name in table["method"].unique()]
     handles.append(Line2D([], [], color="#FFD54A", linewidth=5, alpha=0.6, label="Pareto front"))
     drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawing
@@ -66,7 +73,7 @@ def _one_set(axes: Axes, table: pd.DataFrame) -> None:
         zorder=0,
     )
     for name, line in table.groupby("method", sort=False):
-        style = STYLES.get(str(name), Style("#000000", "-", "."))
+        style = style_of(str(name))
         whole = line[np.isfinite(line["median_error"])]
         axes.plot(
             whole["wall_s"],
@@ -101,7 +108,7 @@ def pareto(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _handle(name: str) -> Line2D:
-    style = STYLES[name]
+    style = style_of(name)
     handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name)
     handle.set(linestyle=style.line or "none", marker=style.marker, markersize=5)
     return handle

@@ -1,6 +1,6 @@
 """Every method that yields a peak, each along the setting that trades time for accuracy."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -64,7 +64,17 @@ def _of_preset(engine: str, preset: Preset) -> Method:
     return Method(source=source, setting=setting, values=values, of_engine=True)
 
 
-METHODS = {
+def _of_iterations(engine: str, preset: Preset) -> Method:
+    return Method(
+        source=f"{engine}:{preset.name}",
+        setting="iterations",
+        values=ITERATIONS,
+        of_engine=True,
+        options={"step": 1e-3},
+    )
+
+
+OF_NO_ENGINE = {
     "Taylor series": Method(
         source="exact", setting="tolerance", values=(*TOLERANCES, 1e-14, 1e-16)
     ),
@@ -79,22 +89,22 @@ METHODS = {
         f"{name}, closed form": Method(source=name)
         for name in ("housner", "modified", "onset-matched")
     },
-    **{
-        f"{name} {preset.name}": _of_preset(name, preset)
-        for name, engine in ENGINES.items()
-        for preset in engine.presets
-    },
-    **{
-        f"{name} {preset.name}, iterations": Method(
-            source=f"{name}:{preset.name}",
-            setting="iterations",
-            values=ITERATIONS,
-            of_engine=True,
-            options={"step": 1e-3},
-        )
-        for name, engine in ENGINES.items()
-        for preset in engine.presets
-        if preset.name == "fixed" and hasattr(preset.settings, "iterations")
-    },
 }
-"""Name -> method."""
+
+
+def methods_of(engines: Iterable[str]) -> dict[str, Method]:
+    """Return every method by its name, with the presets of some engines."""
+    uses = [(engine, preset) for engine in engines for preset in ENGINES[engine].presets]
+    return {
+        **OF_NO_ENGINE,
+        **{f"{engine} {preset.name}": _of_preset(engine, preset) for engine, preset in uses},
+        **{
+            f"{engine} fixed, iterations": _of_iterations(engine, preset)
+            for engine, preset in uses
+            if preset.name == "fixed" and hasattr(preset.settings, "iterations")
+        },
+    }
+
+
+METHODS = methods_of(ENGINES)
+"""Name -> method, of all engines."""

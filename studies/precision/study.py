@@ -3,22 +3,24 @@
 import functools
 import json
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from analytic.response import Outcome, Response
+from engines import core_engines
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Place, Positive
+from studies.kit.arguments import Place, Positive, check_engines, several
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost, cost_report
-from studies.precision.methods import METHODS, Method
+from studies.precision.methods import Method, methods_of
 from studies.precision.report import headline, paragraph, pictures, report
 from studies.sources.registry import Source
 
@@ -34,6 +36,7 @@ BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 def command(
     *,
     out: Place,
+    engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     time_limit: Positive = 60.0,
 ) -> int:
@@ -47,15 +50,18 @@ def command(
     ----------
     out
         Folder for the results; made if there is none.
+    engines
+        Names of engines, without a preset.
     quick
         Fewer cases and settings: less than a minute on 2 cores.
     time_limit
         Wall-clock time [s] after which one case with one setting is given up.
     """
+    check_engines(engines)
     rows = fill_folder(
         out,
         "precision",
-        precision_jobs(quick),
+        precision_jobs(quick, engines),
         module=__name__,
         executor=Local(
             workers=1,
@@ -64,16 +70,16 @@ def command(
         ),
         reduce=reduce,
         settings={"quick": quick},
-        growing={},
+        growing={"method": list(methods_of(engines))},
         products=STUDY.products,
     )
     if not (out / "scenes.csv").is_file():
-        cost.measure(out, quick)
+        cost.measure(out, engines, quick)
     print(report(out), cost_report.report(out), sep="\n\n")
     return exit_code(rows)
 
 
-def precision_jobs(quick: bool) -> list[Job]:
+def precision_jobs(quick: bool, engines: Sequence[str]) -> list[Job]:
     """Return a job for every method, setting and case."""
     return [
         Job(
@@ -85,7 +91,7 @@ def precision_jobs(quick: bool) -> list[Job]:
             times=np.linspace(0.0, free_rocking_window(case.block, case.motion), SAMPLES),
             options=method.options_at(value),
         )
-        for name, method in METHODS.items()
+        for name, method in methods_of(engines).items()
         for value in (quick_values(method) if quick else method.values)
         for kind, cases in chosen_cases(quick).items()
         for case in cases

@@ -121,10 +121,15 @@ def presets_of(source: Source) -> list[str]:
     return [preset.name for preset in ENGINES[source.engine].presets] if source.engine else []
 
 
+def all_presets() -> list[str]:
+    """Return the names of presets that some engine has."""
+    return list(dict.fromkeys(name for source in SOURCES.values() for name in presets_of(source)))
+
+
 def allowed() -> str:
     """Return the sentence that lists the sources and presets."""
-    presets = dict.fromkeys(name for source in SOURCES.values() for name in presets_of(source))
-    return f"{', '.join(SOURCES)}; an engine takes a preset after a colon: {', '.join(presets)}"
+    presets = ", ".join(all_presets())
+    return f"{', '.join(SOURCES)}; an engine takes a preset after a colon: {presets}"
 
 
 Accuracy = Literal["loose", "standard", "tight"]

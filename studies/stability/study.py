@@ -10,13 +10,15 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Count, Place, Positive, check_sources, several
+from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
+from studies.sources.groups import core_sources
 from studies.sources.registry import Source
 from studies.stability import STUDY
 from studies.stability.largest_step import reduce_steps, search, step_jobs
@@ -32,12 +34,7 @@ METHODS = (
     "average-acceleration",
     "dop853",
     "radau",
-    "pybullet",
-    "pybullet:fixed",
-    "pybullet:naive",
-    "mujoco",
-    "mujoco:fixed",
-    "mujoco:naive",
+    *core_sources("", "fixed", "naive"),
 )
 SAMPLES = 400
 """Samples of the free rocking, from which its energy is read."""
@@ -52,7 +49,7 @@ def command(
     jobs: Count | None = None,
     time_limit: Positive = 180.0,
     cluster: str | None = None,
-    sources: Annotated[tuple[str, ...], several] = METHODS,
+    sources: Annotated[tuple[str, ...], several_sources] = METHODS,
 ) -> int:
     """Put extreme cases to every method.
 
@@ -70,8 +67,7 @@ def command(
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
-        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+        Who is asked.
     """
     check_sources(sources)
     ask = functools.partial(put, time_limit_s=time_limit)

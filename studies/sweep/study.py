@@ -16,11 +16,11 @@ from studies.kit.arguments import (
     check_sources,
     figures,
     refuse_repeats,
-    several,
 )
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.claims import findings_text, write_findings
 from studies.measures.differences import (
@@ -31,6 +31,7 @@ from studies.measures.differences import (
     worst_text,
 )
 from studies.measures.findings import findings
+from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 from studies.sweep import STUDY
 from studies.sweep.claims import claims, first_claim, whole
@@ -39,14 +40,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", "pybullet", "mujoco")
+DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 
 
 def command(
     *,
     out: Place,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     step: Positive | None = None,
     accuracy: Accuracy | None = None,
     jobs: Count | None = None,
@@ -62,8 +63,7 @@ def command(
     figure
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
-        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+        Who is asked.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
     accuracy

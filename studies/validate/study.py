@@ -12,17 +12,19 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, Positive, check_sources, several
+from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.naming import several_sources
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import (
     conditioning_of,
     scientific,
     with_reference,
 )
+from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 from studies.validate import STUDY
 from studies.validate.cases import draw
@@ -37,7 +39,7 @@ def command(
     out: Place,
     cases: Count = 500,
     seed: Count = 1,
-    sources: Annotated[tuple[str, ...], several] = ("pybullet", "mujoco"),
+    sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
     step: Positive | None = None,
     accuracy: Accuracy | None = None,
     jobs: Count | None = None,
@@ -56,8 +58,7 @@ def command(
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
     sources
-        exact housner modified onset-matched rk4 average-acceleration pybullet mujoco, and SciPy's
-        rk45 dop853 radau lsoda; an engine takes a preset after a colon, as in mujoco:fixed.
+        Who is asked.
     step
         p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
     accuracy

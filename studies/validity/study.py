@@ -11,11 +11,13 @@ import pandas as pd
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources, several
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
+from studies.kit.naming import several_engines
 from studies.kit.runner import exit_code, fill_folder
+from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
@@ -37,15 +39,15 @@ QUICK_FACTORS = (0.8, 1.05)
 """Friction of an engine over the least that the reference needs, ..."""
 
 MOST_NEEDED = 8.0
-"""... where that is no more: near N = 0 it grows without bound, and PyBullet takes 10 at most."""
+"""... where that is no more: near N = 0 it grows without bound, and an engine takes 10 at most."""
 
-DEFAULT_SOURCES = ("pybullet:fixed", "mujoco:fixed")
+DEFAULT_SOURCES = core_sources("fixed")
 
 
 def command(
     *,
     out: Place,
-    sources: Annotated[tuple[str, ...], several] = DEFAULT_SOURCES,
+    sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     quick: bool = False,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
@@ -58,7 +60,7 @@ def command(
     out
         Folder for the results; made if there is none.
     sources
-        Engines, with a preset after a colon, as in pybullet:fixed.
+        Engines.
     quick
         Every other case of the engines, and fewer frictions.
     jobs

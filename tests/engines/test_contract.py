@@ -38,14 +38,16 @@ def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.Mon
     ("change", "message"),
     [
         ({"frames": ("base",)}, "not available: PyBullet has no frame 'world'"),
-        ({"geometries": ("box",)}, "not available: PyBullet has no geometry 'corners'"),
+        ({"geometries": ("box",)}, "not available: PyBullet has no geometry 'hull'"),
+        ({"spatial": False}, "not available: PyBullet knows the plane alone"),
     ],
 )
 def test_what_an_engine_cannot_do_is_a_row_that_says_so(
     change: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     use(monkeypatch, replace(ENGINES["pybullet"], **change))
-    response = run("any", scene(pulse(1.3, 1.0), frame="world"))
+    settings = {"planar": False, "geometry": "hull"}
+    response = run("any", scene(pulse(1.3, 1.0), frame="world", settings=settings))
     assert (response.outcome, response.message) == (Outcome.FAILED, message)
 
 

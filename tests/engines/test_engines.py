@@ -219,6 +219,7 @@ def test_a_sliding_block_is_no_rocking_block(engine: str, preset: str) -> None:
     assert math.isnan(response.peak_ratio)
 
 
+@every_fixed_use
 @pytest.mark.parametrize(
     ("limit", "message"),
     [({"time_limit_s": 1e-6}, "not decided within 1e-06 s"), ({"max_steps": 9}, "9 steps")],

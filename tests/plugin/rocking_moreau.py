@@ -123,7 +123,7 @@ ENGINE = Engine(
             step_s=2e-3,
             step_source="a choice of its own",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=2.5e-4),
         Preset(
             name="landing",
             title="steps that land on impacts",

@@ -7,11 +7,12 @@ import pandas as pd
 import pytest
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
+from engines import core_engines, installed_engines
 from studies.cases.selection import chosen_cases
 from studies.kit.jobs import Job, ask
 from studies.measures.energy import energy_drift
-from studies.precision.figure import STYLES, pareto
-from studies.precision.methods import METHODS
+from studies.precision.figure import pareto, style_of
+from studies.precision.methods import METHODS, methods_of
 from studies.precision.orders import observed_order
 from studies.precision.report import cheapest, with_errors, work_precision
 from studies.precision.study import measure, precision_jobs, quick_values, reduce
@@ -22,7 +23,7 @@ from studies.sources.scipy_peers import solve_ivp_response
 def tabulate(names, kind="typical"):
     jobs = [
         job
-        for job in precision_jobs(quick=True)
+        for job in precision_jobs(True, core_engines())
         if job.labels["method"] in names and job.labels["set"] == kind
     ]
     rows = [
@@ -32,7 +33,7 @@ def tabulate(names, kind="typical"):
     return with_errors(pd.DataFrame(rows))
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", methods_of(installed_engines()))
 def test_every_method_answers_at_its_coarsest_setting(name):
     method = METHODS[name]
     block = RigidBlock(width=0.5, height=1.5)
@@ -40,7 +41,7 @@ def test_every_method_answers_at_its_coarsest_setting(name):
     options = method.options_at(method.values[len(method.values) // 2])
     response = resolve(method.source).call(block, motion, duration=None, times=None, **options)
     assert response.outcome is Outcome.ROCKED
-    assert name in STYLES
+    assert style_of(name) != style_of("nobody")
     assert quick_values(method)
 
 
@@ -83,7 +84,7 @@ def test_general_purpose_integrators_converge_to_the_reference(method):
 def test_energy_drifts_with_the_method_that_loses_it():
     jobs = {
         job.labels["value"]: job
-        for job in precision_jobs(quick=False)
+        for job in precision_jobs(False, core_engines())
         if job.labels["method"] == "average acceleration" and job.labels["figure"] == 8
     }
     coarse, fine = (
@@ -128,7 +129,7 @@ def test_pareto_front_is_what_nothing_beats():
 
 
 def test_timed_answer_is_the_recorded_one():
-    job = next(job for job in precision_jobs(quick=True) if job.labels["method"] == "RK4")
+    job = next(job for job in precision_jobs(True, core_engines()) if job.labels["method"] == "RK4")
     assert isinstance(job, Job)
     response = measure(job, resolve(job.source), budget_s=0.01)
     assert response.history is not None

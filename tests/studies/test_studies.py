@@ -10,7 +10,7 @@ import pytest
 
 from analytic import RigidBlock, SinePulse
 from analytic.response import Impact, Outcome, Response
-from engines import ENGINES
+from engines import ENGINES, installed_engines
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.histories import study as histories
@@ -26,9 +26,10 @@ def raises(block, motion, *, duration, times):
     raise RuntimeError("the engine\nsaid no")
 
 
+HERE = installed_engines()
 EVERY_NAME = [
-    *SOURCES,
-    *(f"{engine.name}:{preset.name}" for engine in ENGINES.values() for preset in engine.presets),
+    *(name for name in SOURCES if name not in ENGINES or name in HERE),
+    *(f"{engine}:{use.name}" for engine in HERE for use in ENGINES[engine].presets),
 ]
 
 

@@ -1,0 +1,132 @@
+"""Where the time of a step goes: clocks around its parts."""
+
+import contextlib
+import functools
+import importlib
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from analytic.response import Outcome, Response
+from engines import ENGINES, Scene, run
+from engines.declaration import Stepping
+from engines.drive import build
+from engines.stepping.steps import Stepper
+from engines.watching.observe import Observer
+from engines.world import World
+from studies.cases.paper import HISTORIES
+
+
+def pose_case() -> tuple[RigidBlock, SinePulse]:
+    """Return the block and pulse of figure 5-b: one impact before the peak, κ about 5."""
+    case = HISTORIES[5][1]
+    return case.block, case.motion
+
+
+def best_of(action: Callable[[], Response], budget_s: float) -> tuple[Response, float]:
+    """Return the response with the shortest run time, and the shortest set-up time [s]."""
+    began = time.perf_counter()
+    responses = [action()]
+    while time.perf_counter() - began < budget_s:
+        responses.append(action())
+    best = min(responses, key=lambda response: response.wall_s)
+    return best, min(response.setup_s for response in responses)
+
+
+def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
+    """Return where the time of a step goes: the engine's own step, the rest of the adapter, ...
+
+    Each part is timed from within by a clock around it, whose own cost is taken off. The engine's
+    own step is nan where no clock fits around it, and then counts as the adapter's; all are nan
+    where the engine is not here.
+    """
+    return pd.DataFrame(_shares(engine, budget_s) for engine in engines)
+
+
+def _shares(engine: str, budget_s: float) -> dict[str, Any]:
+    block, motion = pose_case()
+    scene = Scene(block=block, motion=motion)
+    plain, _ = best_of(partial(run, engine, scene), budget_s)
+    if plain.outcome is Outcome.FAILED:
+        return {"engine": engine, **dict.fromkeys(SHARES, math.nan)}
+    with clocks(engine) as spent:
+        response = run(engine, scene)
+    clock_s = tick()
+    per_step = {part: max(total / response.steps - clock_s, 0.0) for part, total in spent.items()}
+    own = per_step.get("engine", math.nan)
+    rest = per_step["step"] - (0.0 if math.isnan(own) else own)
+    shares = (
+        *(plain.wall_s / plain.steps, own, max(rest, 0.0)),
+        *(per_step[part] for part in ("pose", "policy", "observer")),
+    )
+    return {"engine": engine, **dict(zip(SHARES, shares, strict=True))}
+
+
+SHARES = ("step_s", "engine_s", "adapter_s", "pose_s", "policy_s", "observer_s")
+"""Columns of the table [s]: of a whole step, and of its parts."""
+
+
+def tick() -> float:
+    """Return what reading the clock twice costs [s]."""
+    count = 20_000
+    began = time.perf_counter()
+    for _ in range(count):
+        time.perf_counter()
+        time.perf_counter()
+    return (time.perf_counter() - began) / count
+
+
+def own_step(engine: str) -> tuple[Any, str]:
+    """Return where an engine's own step stands, and its name there."""
+    library, _, path = ENGINES[engine].own_step.partition(":")
+    *owners, name = path.split(".")
+    return functools.reduce(getattr, owners, importlib.import_module(library)), name
+
+
+def example_world(engine: str) -> World:
+    """Return a world of an engine, closed: its class is wanted."""
+    block, motion = pose_case()
+    world = build(ENGINES[engine], Scene(block=block, motion=motion))
+    world.close()
+    return world
+
+
+@contextlib.contextmanager
+def clocks(engine: str) -> Iterator[dict[str, float]]:
+    """Put clocks around the parts of a step while the context lasts; yield the sums [s]."""
+    world = type(example_world(engine))
+    stepping = ENGINES[engine].best.stepping
+    places: dict[str, tuple[Any, str]] = {
+        "step": (world, "advance" if stepping is Stepping.OWN else "step"),
+        "pose": (world, "pose"),
+        "policy": (Stepper, "next"),
+        "observer": (Observer, "see"),
+    }
+    if ENGINES[engine].own_step:
+        places["engine"] = own_step(engine)
+    spent = dict.fromkeys(places, 0.0)
+    kept = {part: getattr(owner, name) for part, (owner, name) in places.items()}
+
+    def timed(part: str, call: Callable[..., Any]) -> Callable[..., Any]:
+        def measured(*arguments: Any, **named: Any) -> Any:
+            start = time.perf_counter()
+            try:
+                return call(*arguments, **named)
+            finally:
+                spent[part] += time.perf_counter() - start
+
+        return measured
+
+    try:
+        for part, (owner, name) in places.items():
+            setattr(owner, name, timed(part, kept[part]))
+        yield spent
+    finally:
+        for part, (owner, name) in places.items():
+            setattr(owner, name, kept[part])
