@@ -114,11 +114,12 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path):
 
 
 def test_other_kernels_of_the_user_are_kept_where_they_were():
-    before = compiled.numba.config.CACHE_DIR
+    config = compiled.numba.config
+    before = config.CACHE_DIR
 
     @compiled.kernel
     def twice(x):
         return 2.0 * x
 
-    assert before == compiled.numba.config.CACHE_DIR
+    assert before == config.CACHE_DIR
     assert twice.stats.cache_path.startswith(str(compiled.kept_in()))
