@@ -13,6 +13,7 @@ from functools import cache
 from pebble import ProcessPool
 
 from analytic.response import Response
+from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.fingerprint import fingerprint
 from studies.kit.jobs import Job
@@ -31,8 +32,9 @@ def fitness() -> dict[str, str]:
     """Return what must be the same on a worker for its results to be the same.
 
     The code is that of every study: a worker that is another version is not asked which it knows.
+    An engine of another package travels with its job.
     """
-    packages = (*provenance.engine_packages(), *provenance.NUMERICAL_PACKAGES)
+    packages = (*provenance.engine_packages(OWN), *provenance.NUMERICAL_PACKAGES)
     return {
         "code": fingerprint("studies."),
         "python": platform.python_version(),

@@ -14,14 +14,14 @@ KERNELS = {
     "__init__.py": "",
     "inner/__init__.py": "",
     "inner/law.py": """
-from analytic.kernels.compiled import kernel
+from analytic.compiled import kernel
 
 @kernel
 def law(x):
     return x + 1.0
 """,
     "steps.py": """
-from analytic.kernels.compiled import kernel
+from analytic.compiled import kernel
 from analytic.inner.law import law
 
 @kernel
@@ -31,7 +31,7 @@ def steps(x):
 }
 PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
 PROGRAM = """
-from analytic.kernels import compiled
+from analytic import compiled
 from analytic import steps
 value = steps.steps(1.0)
 print(value, sum(steps.steps.stats.cache_hits.values()), compiled.kept_in())

@@ -17,7 +17,7 @@ from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.runner import run_jobs
-from studies.sources.registry import SOURCES, Source
+from studies.sources.registry import SOURCES, Source, resolve
 
 ROOT = Path(__file__).parent.parent
 BLOCK = RigidBlock(width=0.5, height=1.5)
@@ -94,7 +94,7 @@ def test_a_long_solve_is_not_timed_while_its_kernels_are_loaded(monkeypatch):
     slow = SinePulse(amplitude=0.34 * 9.81, omega=1e-5, half_cycles=2)
     window = {"duration": slow.duration, "times": np.arange(100.0)}
     jobs = [job("remembers", slow, **window, options={"step": step}) for step in (1e-9, 1e-8)]
-    assert all(asked.is_long for asked in jobs)
+    assert all(asked.needs_process(resolve(asked.source)) for asked in jobs)
     rows = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
     first, second = (ast.literal_eval(row["message"]) for row in rows)
     # a short question once in each process, and then what was to be timed
@@ -126,7 +126,7 @@ for name in ("exact", "modified", "rk4", "average-acceleration"):
         for window in ({}, {"duration": motion.duration + 2.0, "times": np.linspace(0.0, 3.0, 50)}):
             job = Job(labels={}, block=block, motion=motion, source=name, **window)
             quick, source = short(job), resolve(name)
-            assert not quick.is_long
+            assert not quick.needs_process(resolve(quick.source))
             assert ask(quick, source).outcome.value == "rocked"
             before = loaded()
             assert ask(job, source).outcome.value in ("rocked", "overturned")
