@@ -15,7 +15,7 @@ from pebble import ProcessPool
 from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
-from studies.kit.fingerprint import fingerprint
+from studies.kit.fingerprint import EVERY_STUDY, fingerprint
 from studies.kit.jobs import Job
 from studies.kit.processes import ask_loaded, outcome_of
 from studies.sources.registry import Source
@@ -36,7 +36,7 @@ def fitness() -> dict[str, str]:
     """
     packages = (*provenance.engine_packages(OWN), *provenance.NUMERICAL_PACKAGES)
     return {
-        "code": fingerprint("studies."),
+        "code": fingerprint(EVERY_STUDY),
         "python": platform.python_version(),
         **{name: provenance.version_of(name) for name in packages},
     }
