@@ -12,8 +12,6 @@ GROUP = "rocking.engines"
 OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
-    "pymunk": "engines.adapters.pymunk:ENGINE",
-    "box2d": "engines.adapters.box2d:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

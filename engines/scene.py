@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 from analytic.block import RigidBlock
 from analytic.checks import finite, positive
 from analytic.motion import Motion
+from engines.hints import TRUE, Hints
 
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
@@ -83,6 +84,9 @@ class Scene:
         Number of steps after which a run is given up.
     settings : mapping, optional
         Settings of the engine by name that replace those of the preset.
+    hints : Hints, optional
+        What the steps of the preset "landing" expect; the truth by default. False ones are for
+        measuring what the steps lean on.
 
     Raises
     ------
@@ -105,6 +109,7 @@ class Scene:
     time_limit_s: float | None = None
     max_steps: int = 5_000_000
     settings: Mapping[str, Any] = field(default_factory=dict)
+    hints: Hints = TRUE
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", self._checked_start(*self.start))

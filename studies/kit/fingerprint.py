@@ -18,7 +18,10 @@ ROOT = Path(__file__).parents[__name__.count(".")]
 """The folder of the packages, wherever in them this module stands."""
 
 PACKAGES = ("analytic", "engines", "studies")
-READERS = frozenset({"headline", "pictures", "report"})
+EVERY_STUDY = PACKAGES[-1] + "."
+"""What `fingerprint` takes for all studies at once."""
+
+READERS = frozenset({"headline", "paragraph", "pictures", "report"})
 """Functions of a study that read the tables of a finished folder."""
 
 _NAME = re.compile(rf"(?:{'|'.join(PACKAGES)})(?:\.\w+)*")

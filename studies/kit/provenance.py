@@ -5,6 +5,7 @@ import os
 import platform
 import subprocess
 import time
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -40,11 +41,11 @@ def project_version() -> str:
     return version_of("rocking")
 
 
-def engine_packages() -> list[str]:
-    """Return the distributions whose versions decide what the engines answer."""
+def engine_packages(names: Iterable[str] | None = None) -> list[str]:
+    """Return the distributions whose versions decide what engines answer: all, or some."""
     from engines import ENGINES
 
-    return [package for engine in ENGINES.values() for package in engine.packages]
+    return [package for name in names or ENGINES for package in ENGINES[name].packages]
 
 
 def identity(study: str, module: str, **settings: Any) -> dict[str, Any]:

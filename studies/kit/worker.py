@@ -13,8 +13,9 @@ from functools import cache
 from pebble import ProcessPool
 
 from analytic.response import Response
+from engines.registry import OWN
 from studies.kit import provenance
-from studies.kit.fingerprint import fingerprint
+from studies.kit.fingerprint import EVERY_STUDY, fingerprint
 from studies.kit.jobs import Job
 from studies.kit.processes import ask_loaded, outcome_of
 from studies.sources.registry import Source
@@ -31,10 +32,11 @@ def fitness() -> dict[str, str]:
     """Return what must be the same on a worker for its results to be the same.
 
     The code is that of every study: a worker that is another version is not asked which it knows.
+    An engine of another package travels with its job.
     """
-    packages = (*provenance.engine_packages(), *provenance.NUMERICAL_PACKAGES)
+    packages = (*provenance.engine_packages(OWN), *provenance.NUMERICAL_PACKAGES)
     return {
-        "code": fingerprint("studies."),
+        "code": fingerprint(EVERY_STUDY),
         "python": platform.python_version(),
         **{name: provenance.version_of(name) for name in packages},
     }

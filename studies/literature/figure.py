@@ -35,7 +35,7 @@ def draw_literature(table: pd.DataFrame) -> Figure:
                 s=30,
                 facecolor=style.colour if filled else "none",
                 edgecolor=style.colour,
-                label=NAMES.get(str(source), str(source)) if filled or not printed.any() else None,
+                label=NAMES.get(str(source), str(source)) if filled == printed.any() else None,
                 zorder=3,
             )
     labels = table.drop_duplicates(["problem", "side"])
@@ -49,5 +49,5 @@ def draw_literature(table: pd.DataFrame) -> Figure:
     axes.set_xlabel("answer less print, in units of half of what the print's digits allow")
     axes.set_title("Inside the band: agrees to every printed digit", fontsize=10)
     axes.grid(axis="y", color="#EEEEEE")
-    axes.legend(loc="lower right", fontsize=8, title="filled: the model of the print")
+    axes.legend(loc="upper right", fontsize=8, title="filled: the model of the print")
     return drawing

@@ -53,7 +53,8 @@ def paragraph(folder: Path) -> str:
         )
     others = table[~table["source"].isin(["exact", "housner", "modified"])]
     words = [
-        f"{source} {scientific(float(rows['from_exact'].abs().max()))} over {len(rows)}"
+        f"{source} {scientific(float(rows['from_exact'].abs().max()))} "
+        f"over {int(rows['from_exact'].notna().sum())}"
         for source, rows in others.groupby("source", sort=False)
     ]
     if words:

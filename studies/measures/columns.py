@@ -108,7 +108,9 @@ SUMMARIES = {
 
 METHODS = {
     "method": Column("", "the method of a work-precision diagram"),
-    "value": Column("-", "its setting: tolerance, p dt or iterations"),
+    "value": Column(
+        "-", "of a method, its setting: tolerance, p dt or iterations; of a print, the answer to it"
+    ),
     "own_error": Column("-", "difference of the peak from the method's own finest one"),
     "impact_error": Column("1/p", "largest error of the first impact times"),
     "impact_times": Column("1/p", "times of the first impacts"),
@@ -170,6 +172,9 @@ MAPS = {
     "missed_from": Column("-", "abscissa below which a twentieth of the missed part lies"),
     "missed_to": Column("-", "abscissa above which a twentieth of it lies"),
     "table": Column("", "the table that a row belongs to"),
+    "hint": Column("", "what landing steps are told: true, or false by so much"),
+    "still": Column("-", "outcomes that are the exact ones, of pulses too weak to lift the block"),
+    "over_kappa": Column("-", "largest error of a peak over its condition number"),
     "edge": Column("onsets", "amplitude of an exact edge"),
     "overturns": Column("", "above or below the edge"),
     "offset": Column("-", "relative distance from the edge"),
@@ -201,6 +206,29 @@ STATISTICS = {
     "probability": Column("-", "fitted probability of overturning"),
 }
 
+PRINTS = {
+    "problem": Column("", "what was printed, in a word"),
+    "side": Column("-", "0 for the larger rotation, 1 for that to the other side"),
+    "work": Column("", "who printed it"),
+    "where": Column("", "the place in the work, or what it says of the block"),
+    "quantity": Column("", "what was printed, with its unit"),
+    "printed": Column("", "the print, digit by digit; a bracket of two"),
+    "measured": Column("", "what an experiment beside it measured"),
+    "other_side": Column("", "the answer for the other side"),
+    "miss": Column("-", "how far outside the print's digits, relative; 0 inside"),
+    "from_exact": Column("-", "relative difference from the exact solution"),
+}
+
+STEADY = {
+    "direction": Column("", "whether the sweep goes up or down"),
+    "larger_ratio": Column("-", "largest steady rotation over θcr, on its larger side"),
+    "smaller_ratio": Column("-", "the same on the other side"),
+    "period": Column("-", "forcing periods after which the response repeats; 0 if it does not"),
+    "larger_exact": Column("-", "larger_ratio of the exact orbit on which an engine starts"),
+    "smaller_exact": Column("-", "smaller_ratio of that orbit"),
+    "period_exact": Column("-", "period of that orbit"),
+}
+
 GROUPS = {
     "Cases": CASES,
     "Answers": ANSWERS,
@@ -209,6 +237,8 @@ GROUPS = {
     "Methods and settings": METHODS,
     "Maps": MAPS,
     "Statistics": STATISTICS,
+    "Printed numbers": PRINTS,
+    "Steady states": STEADY,
 }
 """Heading -> the columns under it."""
 

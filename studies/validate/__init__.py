@@ -8,13 +8,22 @@ STUDY = Study(
     help="""Random cases that nothing was tuned on, held against the exact solution.
 
 Outcomes, quantiles of the error, and the condition number κ of each case: how far a small error of
-the pulse moves its peak. Writes validate.csv, errors.csv and provenance.json; resumable.""",
+the pulse moves its peak. And what landing steps lean on: the first cases with false hints. Writes
+validate.csv, errors.csv, hints.csv, leaning.csv and provenance.json; resumable.""",
     table="validate.csv",
-    products=("validate.csv", "errors.csv", "validate.png", "findings.txt"),
+    products=(
+        "validate.csv",
+        "errors.csv",
+        "hints.csv",
+        "leaning.csv",
+        "validate.png",
+        "findings.txt",
+    ),
     chapters=(
         Chapter(
             folder="validate",
             question="And cases that nothing was tuned on?",
+            tables=("leaning.csv",),
             quick=("--cases", "100"),
             minutes=(0.1, 0.3),
         ),

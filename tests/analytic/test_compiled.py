@@ -14,14 +14,14 @@ KERNELS = {
     "__init__.py": "",
     "inner/__init__.py": "",
     "inner/law.py": """
-from analytic.kernels.compiled import kernel
+from analytic.compiled import kernel
 
 @kernel
 def law(x):
     return x + 1.0
 """,
     "steps.py": """
-from analytic.kernels.compiled import kernel
+from analytic.compiled import kernel
 from analytic.inner.law import law
 
 @kernel
@@ -31,7 +31,7 @@ def steps(x):
 }
 PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
 PROGRAM = """
-from analytic.kernels import compiled
+from analytic import compiled
 from analytic import steps
 value = steps.steps(1.0)
 print(value, sum(steps.steps.stats.cache_hits.values()), compiled.kept_in())
@@ -114,11 +114,12 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path):
 
 
 def test_other_kernels_of_the_user_are_kept_where_they_were():
-    before = compiled.numba.config.CACHE_DIR
+    config = compiled.numba.config
+    before = config.CACHE_DIR
 
     @compiled.kernel
     def twice(x):
         return 2.0 * x
 
-    assert before == compiled.numba.config.CACHE_DIR
+    assert before == config.CACHE_DIR
     assert twice.stats.cache_path.startswith(str(compiled.kept_in()))

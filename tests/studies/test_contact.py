@@ -59,6 +59,8 @@ def test_every_variant_answers(variant):
         variant.engine,
         scene(preset=variant.preset, settings=variant.settings, **variant.scene),
     )
+    if variant.trap and response.outcome is Outcome.AT_REST:
+        return  # it slid, and never rocked
     if variant.trap and response.outcome is Outcome.FAILED:
         assert "pivot" in response.message  # it left the problem: no setting was refused
         return

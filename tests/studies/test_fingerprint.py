@@ -143,9 +143,7 @@ MADE_UP = {
     "engines/other.py": 'from importlib import import_module\nimport_module(f"engines.parts.{1}")',
     "studies/__init__.py": "",
     "studies/kit/runner.py": "import engines.registry as r",
-    "studies/drawing/style.py": (
-        "from matplotlib import figure\nfrom studies.drawing import colours"
-    ),
+    "studies/drawing/style.py": "from matplotlib import cm\nfrom studies.drawing import colours",
     "studies/drawing/colours.py": "",
     "studies/swing/__init__.py": "",
     "studies/swing/study.py": """
@@ -165,9 +163,7 @@ def command():
 """,
     "studies/swing/report.py": "",
     "studies/swing/measure.py": "import analytic",
-    "studies/swing/late.py": (
-        "def find():\n    'a docstring'\n    return (1 +\n            2)  # three"
-    ),
+    "studies/swing/late.py": "def find():\n    'a docstring'\n    return (1 +\n        2)  # three",
     "studies/swing/types.py": "",
 }
 
@@ -183,7 +179,7 @@ def laid_out(root, **changed):
 def test_imports_are_followed_in_any_layout(tmp_path):
     found = set(reached("studies.swing.study", laid_out(tmp_path)))
     assert found == {
-        *("analytic", "analytic.inner", "analytic.inner.deep", "analytic.kernels.forces"),
+        *("analytic", "analytic.inner", "analytic.inner.deep", "analytic.forces"),
         *("engines", "engines.registry", "engines.adapters", "engines.adapters.one"),
         *("engines.parts", "engines.parts.box"),
         *("studies", "studies.kit.runner", "studies.swing", "studies.swing.study"),

@@ -10,6 +10,7 @@ import pytest
 from analytic import RigidBlock, SinePulse, peak_ratios, simulate
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.response import Outcome
+from engines import core_engines
 from engines.scene import ACCURACIES
 from studies.free import study as free
 from studies.free.study import (
@@ -69,7 +70,7 @@ def test_models_rock_as_their_closed_forms(source, allowed):
     assert row["decay_error"] < allowed
 
 
-@pytest.mark.parametrize("engine", [name for name in SOURCES if SOURCES[name].kind == "engine"])
+@pytest.mark.parametrize("engine", core_engines())
 def test_engines_rock_as_the_closed_forms(engine):
     job = released(3.0, 0.7, engine)
     row = reduce(job, ask(job, resolve(engine)))

@@ -209,6 +209,7 @@ def test_a_map_on_which_nothing_overturns(window, tmp_path, capsys):
     assert (tmp_path / "map.png").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", AXES)
 @pytest.mark.parametrize("end", [0, 1])
 def test_every_edge_is_found_at_the_limits_of_a_window(over, end):

@@ -7,7 +7,6 @@ import resource
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
@@ -32,27 +31,6 @@ PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 HERE = Path(__file__).parent
 PATIENCE_S = 900.0
 """Guards against a test that hangs; nothing is expected within it."""
-
-
-# sources that misbehave; they stand at the top of the module so that a worker finds them
-def exits(block, motion, *, duration, times):
-    os._exit(3)
-
-
-def segfaults(block, motion, *, duration, times):
-    os.kill(os.getpid(), signal.SIGSEGV)
-
-
-def hangs(block, motion, *, duration, times):
-    threading.Event().wait()
-
-
-def raises(block, motion, *, duration, times):
-    raise RuntimeError("the engine\nsaid no")
-
-
-def answers(block, motion, *, duration, times):
-    return simulate(block, motion, duration=duration, times=times)
 
 
 ANSWERED = []
@@ -87,29 +65,6 @@ def sweep_on_a_full_disk(folder):
 
 def job(source, **labels):
     return Job(labels=labels, block=BLOCK, motion=PULSE, source=source)
-
-
-def test_whatever_an_engine_does_becomes_a_row(monkeypatch):
-    for misbehaving in (exits, segfaults, raises, answers):
-        monkeypatch.setitem(SOURCES, misbehaving.__name__, Source("engine", misbehaving))
-    names = ["exits", "segfaults", "raises", "answers", "exact"]
-    rows = run_jobs(
-        [job(name) for name in names],
-        executor=Local(workers=2, time_limit_s=PATIENCE_S),
-        reduce=summary,
-    )
-    assert [row["source"] for row in rows] == names
-    assert [row["outcome"] for row in rows] == ["failed"] * 3 + ["rocked"] * 2
-    assert all(math.isnan(row["peak_ratio"]) for row in rows[:3])
-    for row, reason in zip(rows, ("code 3", "SIGSEGV", "said no"), strict=False):
-        assert reason in row["message"]
-        assert "\n" not in row["message"]
-
-
-def test_an_engine_that_hangs_is_given_up(monkeypatch):
-    monkeypatch.setitem(SOURCES, "hangs", Source("engine", hangs))
-    (row,) = run_jobs([job("hangs")], executor=Local(1, time_limit_s=1.0), reduce=summary)
-    assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit of 1 s")
 
 
 def test_failures_are_tried_again_and_successes_are_not(tmp_path, monkeypatch):
@@ -346,10 +301,3 @@ def test_another_provenance_is_left_alone(tmp_path):
         with pytest.raises(FolderError, match="provenance"):
             sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
         assert path.read_text() == text
-
-
-def test_a_long_solve_has_a_time_limit_too():
-    long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
-    jobs = [Job(labels={}, block=BLOCK, motion=long, source=name) for name in ("rk4",)]
-    rows = run_jobs(jobs, executor=Local(2, 0.5), reduce=summary)
-    assert ["time limit" in row["message"] for row in rows] == [True]

@@ -1,0 +1,140 @@
+"""Jobs in processes of their own: crashes, time limits, and what is timed."""
+
+import ast
+import math
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analytic import RigidBlock, SinePulse, simulate
+from analytic.response import Response
+from studies.kit.executors import Local
+from studies.kit.jobs import Job, summary
+from studies.kit.runner import run_jobs
+from studies.sources.registry import SOURCES, Source, resolve
+
+ROOT = Path(__file__).parent.parent
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
+PATIENCE_S = 900.0
+"""Guards against a test that hangs; nothing is expected within it."""
+
+
+# sources that misbehave; they stand at the top of the module so that a worker finds them
+def exits(block, motion, *, duration, times):
+    os._exit(3)
+
+
+def segfaults(block, motion, *, duration, times):
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def hangs(block, motion, *, duration, times):
+    threading.Event().wait()
+
+
+def raises(block, motion, *, duration, times):
+    raise RuntimeError("the engine\nsaid no")
+
+
+def answers(block, motion, *, duration, times):
+    return simulate(block, motion, duration=duration, times=times)
+
+
+def job(source, motion=PULSE, **more):
+    return Job(labels={}, block=BLOCK, motion=motion, source=source, **more)
+
+
+def test_whatever_an_engine_does_becomes_a_row(monkeypatch):
+    for misbehaving in (exits, segfaults, raises, answers):
+        monkeypatch.setitem(SOURCES, misbehaving.__name__, Source("engine", misbehaving))
+    names = ["exits", "segfaults", "raises", "answers", "exact"]
+    rows = run_jobs(
+        [job(name) for name in names],
+        executor=Local(workers=2, time_limit_s=PATIENCE_S),
+        reduce=summary,
+    )
+    assert [row["source"] for row in rows] == names
+    assert [row["outcome"] for row in rows] == ["failed"] * 3 + ["rocked"] * 2
+    assert all(math.isnan(row["peak_ratio"]) for row in rows[:3])
+    for row, reason in zip(rows, ("code 3", "SIGSEGV", "said no"), strict=False):
+        assert reason in row["message"]
+        assert "\n" not in row["message"]
+
+
+def test_an_engine_that_hangs_is_given_up(monkeypatch):
+    monkeypatch.setitem(SOURCES, "hangs", Source("engine", hangs))
+    (row,) = run_jobs([job("hangs")], executor=Local(1, time_limit_s=1.0), reduce=summary)
+    assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit of 1 s")
+
+
+def test_a_long_solve_has_a_time_limit_too():
+    long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
+    rows = run_jobs([job("rk4", long)], executor=Local(2, 0.5), reduce=summary)
+    assert ["time limit" in row["message"] for row in rows] == [True]
+
+
+ASKED = []
+
+
+def remembers(block, motion, *, duration, times, step=1e-3):
+    """Tell what this process was asked so far."""
+    ASKED.append((motion.duration, duration, len(times), step))
+    return Response.failure(repr(ASKED))
+
+
+def test_a_long_solve_is_not_timed_while_its_kernels_are_loaded(monkeypatch):
+    monkeypatch.setitem(SOURCES, "remembers", Source("solver", remembers))
+    slow = SinePulse(amplitude=0.34 * 9.81, omega=1e-5, half_cycles=2)
+    window = {"duration": slow.duration, "times": np.arange(100.0)}
+    jobs = [job("remembers", slow, **window, options={"step": step}) for step in (1e-9, 1e-8)]
+    assert all(asked.needs_process(resolve(asked.source)) for asked in jobs)
+    rows = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
+    first, second = (ast.literal_eval(row["message"]) for row in rows)
+    # a short question once in each process, and then what was to be timed
+    assert first[0][0] * BLOCK.p == pytest.approx(math.pi / 4.0)
+    assert first[0][2:] == (3, 1e-3)
+    assert first[1:] == [(slow.duration, slow.duration, 100, 1e-9)]
+    assert second == [*first, (slow.duration, slow.duration, 100, 1e-8)]
+
+
+KERNELS = """
+import sys
+import numpy as np
+from analytic import Record, RigidBlock, SinePulse
+from studies.kit.jobs import Job, ask, short
+from studies.sources.registry import resolve
+
+def loaded():
+    modules = [m for name, m in sys.modules.items() if name.startswith("analytic")]
+    return {
+        f"{f.__module__}.{f.__name__}": len(f.signatures)
+        for m in modules for f in vars(m).values() if getattr(f, "signatures", ())
+    }
+
+block = RigidBlock(width=0.5, height=1.5)
+pulse = SinePulse(amplitude=0.36 * 9.81, omega=4.0, half_cycles=3)
+record = Record(dt=0.01, samples=3.6 * np.sin(0.04 * np.arange(400)))
+for name in ("exact", "modified", "rk4", "average-acceleration"):
+    for motion in (pulse, record):
+        for window in ({}, {"duration": motion.duration + 2.0, "times": np.linspace(0.0, 3.0, 50)}):
+            job = Job(labels={}, block=block, motion=motion, source=name, **window)
+            quick, source = short(job), resolve(name)
+            assert not quick.needs_process(resolve(quick.source))
+            assert ask(quick, source).outcome.value == "rocked"
+            before = loaded()
+            assert ask(job, source).outcome.value in ("rocked", "overturned")
+            assert before == loaded() != {}, (name, motion, window)
+"""
+
+
+def test_a_short_question_loads_the_kernels_of_the_long_one():
+    command = [sys.executable, "-c", KERNELS]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
