@@ -19,6 +19,9 @@ LIBRARY_STEP_S = 1.0 / 240.0
 LIBRARY_BREAKING_THRESHOLD = 0.02
 """The library's own gap, over a body's size, up to which it keeps a contact."""
 
+LIBRARY_FRICTION = 0.5
+"""The library's own coefficient of a body, and of the pair with its plane.urdf, whose own is 1."""
+
 KEPT_GAP = 4.0
 """Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot
 rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
@@ -149,7 +152,7 @@ PRESETS: Mapping[str, BulletSettings] = {
         geometry="box",
         planar=False,
         multibody=True,
-        friction=1.0,
+        friction=LIBRARY_FRICTION,
         step=None,
         exact_inertia=False,
         damping=None,

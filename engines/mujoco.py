@@ -10,8 +10,9 @@ import mujoco as mj
 from engines.mujoco_model import OPTIONS, model_xml
 from engines.scene import GEOMETRIES, Grip, Pose, Scene, Step, disagreement, one_of
 
-INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
-"""Integrators of the library that share the layout of its step."""
+INTEGRATORS = ("Euler", "implicit", "implicitfast")
+"""Integrators of the library whose velocity carries the block through the whole step, as `World`
+has it. RK4's belongs to the step's end: it would feel the base's motion half a step late."""
 
 MOST_REFLECTION = 25.0
 """Landing returns no more than this part of the velocity with which a contact comes into a step:
@@ -57,7 +58,7 @@ class MujocoSettings:
     cone, solver, jacobian, tolerance, iterations, impratio, noslip_iterations : optional
         Options of the contact solver.
     integrator : str or None
-        "Euler", "RK4", "implicit" or "implicitfast".
+        "Euler", "implicit" or "implicitfast".
     damping, sliding_damping : float or None
         b dt along the contact's normal and along the base; both or neither.
     stiffness : float or None

@@ -7,6 +7,7 @@ from studies.variants import BEST, DEFAULT, Factor, Level, level
 BOTH = (BEST, DEFAULT)
 UNMOVED = "a base without a velocity: friction does not feel it"
 DRAG = "drag that nobody asked for"
+SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 STEEP = "a pyramid this steep leaves too little normal force"
 SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
 ANCHORED = "an anchor kept through an impact drags the pivot along"
@@ -134,7 +135,12 @@ FACTORS: dict[str, tuple[Factor, ...]] = {
             settings=("warm_starting",),
             levels=(level("off", warm_starting=0.0), level("0.95", warm_starting=0.95)),
         ),
-        Factor(name="friction", settings=("friction",)),
+        Factor(
+            name="friction",
+            settings=("friction",),
+            traps={BEST: SMOOTH},
+            levels=(level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5),),
+        ),
         MOVING_BASE,
     ),
     "mujoco": (
@@ -210,8 +216,7 @@ FACTORS: dict[str, tuple[Factor, ...]] = {
             name="integrator",
             settings=("integrator",),
             levels=(
-                level("RK4", BOTH, integrator="RK4"),
-                level("implicit", integrator="implicit"),
+                level("implicit", BOTH, integrator="implicit"),
                 level("implicitfast", integrator="implicitfast"),
             ),
         ),

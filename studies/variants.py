@@ -1,7 +1,7 @@
 """One factor at a time: from the best setting of an engine, and from its library's defaults."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
 
@@ -12,6 +12,10 @@ BEST, DEFAULT = "fixed", "naive"
 
 AS_BEST, BY_DEFAULT = "as in the best", "default"
 """Names of the values that the presets take from each other."""
+
+ROUGH: dict[str, Any] = {"friction": 1.0}
+"""What the defaults are given here besides: with PyBullet's own friction, 0.5, a block of H/B = 2
+slides before it rocks, and no setting of its contact would show."""
 
 OWN_STEP = "step: the library's own"
 
@@ -92,8 +96,19 @@ class Variant:
 
 
 def variants(engine: str, factors: Sequence[Factor]) -> Iterator[Variant]:
-    """Yield every way to set an engine, each preset as it is before what differs from it."""
-    names = {BEST: "best at a fixed step", DEFAULT: "the library's defaults"}
+    """Yield every way to set an engine, each preset as it is before what differs from it.
+
+    The library's defaults are rough, lest blocks slide, wherever friction is not what differs.
+    """
+    for variant in _plain_variants(engine, factors):
+        if variant.preset == DEFAULT:
+            yield replace(variant, settings={**ROUGH, **variant.settings})
+        else:
+            yield variant
+
+
+def _plain_variants(engine: str, factors: Sequence[Factor]) -> Iterator[Variant]:
+    names = {BEST: "best at a fixed step", DEFAULT: "the library's defaults, friction 1"}
     yield Variant(engine=engine, preset="landing", factor="", level="steps that land on impacts")
     for preset, name in names.items():
         yield Variant(engine=engine, preset=preset, factor="", level=name)

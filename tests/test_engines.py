@@ -125,6 +125,30 @@ def test_first_order(engine: str) -> None:
     assert 0.6 < math.log(errors[0] / errors[1], 4.0) < 1.6
 
 
+def test_naive_friction_is_the_librarys_own() -> None:
+    """What a box made in Python has on the plane that comes with each library."""
+    import mujoco
+    import pybullet
+    import pybullet_data
+
+    from engines import bullet
+    from engines import mujoco as adapter
+
+    client = pybullet.connect(pybullet.DIRECT)
+    plane = pybullet.loadURDF(f"{pybullet_data.getDataPath()}/plane.urdf", physicsClientId=client)
+    shape = pybullet.createCollisionShape(
+        pybullet.GEOM_BOX, halfExtents=[0.5] * 3, physicsClientId=client
+    )
+    body = pybullet.createMultiBody(1.0, shape, physicsClientId=client)
+    own = [pybullet.getDynamicsInfo(i, -1, physicsClientId=client)[1] for i in (plane, body)]
+    pybullet.disconnect(client)
+    assert bullet.PRESETS["naive"].friction == own[0] * own[1]
+
+    plain = "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>"
+    model = mujoco.MjModel.from_xml_string(plain)
+    assert adapter.PRESETS["naive"].friction == model.geom_friction[0, 0]
+
+
 def test_naive_is_worse_than_fixed(engine: str) -> None:
     motions = [pulse(1.3, omega, 2) for omega in (2.5, 3.0, 3.5, 4.0)]
     worst = {}
