@@ -73,7 +73,7 @@ class LandingSteps:
         self._dt = dt_s
         self._width, self._half_height = block.width, 0.5 * block.height
         # what a block that stands on one corner is accelerated by towards the other
-        self._fall = block.p**2 * math.sin(block.alpha)
+        self._fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
         self._swing_part = min(SWING_PART * block.p * dt_s, COARSEST)
         self._load_part = min(LOAD_PART * block.p * dt_s, COARSEST)
         self._shortest = SHORTEST_SWING / block.p

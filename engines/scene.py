@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 from analytic.block import RigidBlock
 from analytic.checks import finite, positive
 from analytic.motion import Motion
+from engines.hints import TRUE, Hints
 
 PRESETS = ("naive", "fixed", "landing")
 """How an engine is used: as it comes out of the box, tuned with a fixed step, or tuned with steps
@@ -65,6 +66,9 @@ class Scene:
         Number of steps after which a run is given up.
     settings : mapping, optional
         Settings of the engine by name that replace those of the preset.
+    hints : Hints, optional
+        What the steps of the preset "landing" expect; the truth by default. False ones are for
+        measuring what the steps lean on.
 
     Raises
     ------
@@ -86,6 +90,7 @@ class Scene:
     time_limit_s: float | None = None
     max_steps: int = 5_000_000
     settings: Mapping[str, Any] = field(default_factory=dict)
+    hints: Hints = TRUE
 
     def __post_init__(self) -> None:
         one_of("preset", self.preset, PRESETS)

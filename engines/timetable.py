@@ -38,9 +38,11 @@ class Timetable:
     """
 
     def __init__(self, scene: Scene, dt_s: float) -> None:
-        block = scene.block
+        block, hints = scene.block, scene.hints
         self._same = ROUNDING * dt_s
-        loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
+        loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
+        if hints.swapped:
+            loads = [load._replace(side=-load.side) for load in loads]
         ends = () if scene.duration is None else (scene.duration,)
         stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
         self._ends: tuple[float, ...] = (scene.motion.duration, *ends, math.inf)

@@ -28,7 +28,8 @@ once: a run that was interrupted goes on where it stopped when the same command 
     "validate": """Random cases that nothing was tuned on, held against the exact solution.
 
 Outcomes, quantiles of the error, and the condition number κ of each case: how far a small error of
-the pulse moves its peak. Writes validate.csv, errors.csv and provenance.json; resumable.""",
+the pulse moves its peak. And what landing steps lean on: the first cases with false hints. Writes
+validate.csv, errors.csv, hints.csv, leaning.csv and provenance.json; resumable.""",
     "precision": """Error against run time: every method along its own setting, on the same cases.
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;

@@ -110,7 +110,7 @@ CHAPTERS: tuple[Chapter, ...] = (
         folder="validate",
         question="And cases that nothing was tuned on?",
         source="validate.csv",
-        tables=(),
+        tables=("leaning.csv",),
         quick=("--cases", "100"),
         minutes=(0.1, 0.3),
     ),

@@ -10,6 +10,7 @@ import pytest
 from analytic import peak_ratios, simulate
 from studies.differences import with_conditioning
 from studies.executors import Local
+from studies.hints import FALSE, KNOWN, leanings
 from studies.journal import FolderError
 from studies.validate import LEAST_NORMAL, draw, report, validate
 
@@ -64,6 +65,43 @@ def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
     assert (errors.loc["exact", "error"].dropna().abs() < 1e-9).all()
     assert "9/9" in text
     assert errors.loc["housner", "error"].abs().max() > 1e-3
+
+
+def test_landing_engines_are_asked_with_false_hints_too(tmp_path):
+    rows = validate(3, 5, ["exact", "mujoco", "mujoco:fixed"], tmp_path, executor=LOCAL)
+    assert len([row for row in rows if row["table"] == "validate"]) == 9
+    text = report(tmp_path)
+    hinted = pd.read_csv(tmp_path / "hints.csv")
+    assert set(hinted["source"]) == {"mujoco"}
+    assert set(hinted["hint"]) == {KNOWN, *FALSE}
+    leaning = pd.read_csv(tmp_path / "leaning.csv").set_index("hint")
+    assert list(leaning.index) == [KNOWN, *FALSE]
+    assert (leaning["cases"] == 3).all()
+    assert leaning.loc[KNOWN, "still"] == 3
+    errors = pd.read_csv(tmp_path / "errors.csv")
+    own = errors[errors["source"] == "mujoco"]["error"].abs()
+    assert leaning.loc[KNOWN, "max_error"] == pytest.approx(own.max(), rel=1e-12)
+    assert leaning.loc["onset 20 % low", "median_error"] > 2 * leaning.loc[KNOWN, "median_error"]
+    assert "onset 20 % low      3/3" in text
+
+
+def test_a_wrong_outcome_with_a_false_hint_is_counted():
+    known = pd.DataFrame(
+        {"case": [0, 1], "source": "mujoco", "error": [1e-6, -3e-6], "agrees": True}
+    ).assign(kappa=2.0, kappa_eta=-3.0, exact_outcome="rocked")
+    wrong = known[known["case"] == 1].assign(hint="onset 2 % low", error=np.nan, agrees=False)
+    stays = wrong.assign(exact_outcome="at rest", agrees=True)
+    true, false = leanings(known, pd.concat([wrong, stays, stays.assign(agrees=False)]))
+    assert (true.hint, true.cases, true.right, true.still) == (KNOWN, 1, 1, 0)
+    assert (true.max_error, true.over_kappa) == pytest.approx((3e-6, 1e-6))
+    assert (false.cases, false.right, false.still) == (1, 0, 1)
+    assert math.isnan(false.max_error)
+
+
+def test_models_have_no_hints(tmp_path):
+    validate(2, 5, ["exact"], tmp_path, executor=LOCAL)
+    assert "lean" not in report(tmp_path)
+    assert not (tmp_path / "leaning.csv").exists()
 
 
 def test_another_seed_is_refused(tmp_path):
