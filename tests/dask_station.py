@@ -20,6 +20,9 @@ from studies.kit.jobs import Job
 HERE = Path(__file__).parent
 KNOWN = os.pathsep.join(map(str, (HERE, HERE / "plugin", HERE.parent)))
 WITH_TESTS = {**os.environ, "PYTHONPATH": KNOWN}
+DASK = [sys.executable, "-m", "dask"]
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
