@@ -18,7 +18,8 @@ from studies.__main__ import run
 from studies.kit.jobs import Job
 
 HERE = Path(__file__).parent
-WITH_TESTS = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parent)])}
+KNOWN = os.pathsep.join(map(str, (HERE, HERE / "plugin", HERE.parent)))
+WITH_TESTS = {**os.environ, "PYTHONPATH": KNOWN}
 DASK = [sys.executable, "-m", "dask"]
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)

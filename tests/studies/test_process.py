@@ -19,7 +19,7 @@ from studies.kit.runner import run_jobs
 from studies.precision import cost
 from studies.sources.registry import SOURCES, Source
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PATIENCE_S = 900.0
 """Guards against a test that hangs; nothing is expected within it."""
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
@@ -91,7 +91,7 @@ def test_a_signal_that_a_destructor_swallows_ends_the_run_after_all():
 
 def test_a_signal_that_is_to_be_ignored_stays_so():
     program = (
-        "import signal; from studies import signals; signals.install();"
+        "import signal; from studies.kit import signals; signals.install();"
         "print(signal.getsignal(signal.SIGHUP) == signal.SIG_IGN)"
     )
     done = python("-c", program, before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))

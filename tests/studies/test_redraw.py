@@ -9,7 +9,7 @@ from matplotlib import units
 
 from studies.__main__ import run
 
-PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
 
 def with_a_word(table, column):
