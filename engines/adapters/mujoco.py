@@ -5,6 +5,9 @@ from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from engines.adapters.mujoco_model import OPTIONS, model_xml
 from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
@@ -29,6 +32,9 @@ FEEBLE = 1e-15
 NARROWEST_CONE = 0.1
 """Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
 one."""
+
+LEAST_HELD = 1e-3
+"""Part of what the whole weight would press a corner by, up to which landing holds one at rest."""
 
 KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
 """Options that the library numbers, by the names that it gives their values."""
@@ -71,7 +77,7 @@ class MujocoWorld:
         self._mj.mj_step(self._model, self._data)
         self._moved = step.base_x if self._moving else 0.0
         self._time += step.dt_s
-        if self._s.preload:
+        if self._s.carry is not None:
             self._look_at_yield(step)
         if self._s.reflection:
             self._reflection.see(step, float(self._data.qvel[self._spin]))
@@ -130,13 +136,15 @@ class MujocoWorld:
 
     def _reach(self, step: Step, carry: float) -> None:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
-        model = self._model
-        # at rest, half of the weight presses a corner just so far below its margin; about to
-        # lift, the free corner is still in reach where no weight does
-        sag = 0.5 * self._yield * step.kick_s * step.dt_s
-        if step.side:
-            sag = self._yield * self._ordinary**2
-        model.pair_margin[:] = sag if step.grip is Grip.REST else 0.0
+        model, sag = self._model, self._yield * self._ordinary**2
+        if step.grip is not Grip.REST:
+            model.pair_margin[:] = 0.0
+            self._yields[:] = 0.5 * self._yield
+        elif step.side:
+            # the free corner, about to lift, is still in reach where no weight presses it
+            model.pair_margin[:] = sag
+        else:
+            model.pair_margin[:] = self._margins_at_rest(step)
         if not step.side:
             return
         if model.npair == 1:
@@ -150,11 +158,32 @@ class MujocoWorld:
             preload = self._yield * step.kick_s / step.dt_s
             model.pair_solref[pivot, 0] = -preload * self._impedance**2 / carry
 
+    def _margins_at_rest(self, step: Step) -> NDArray[np.float64]:
+        """Gap [m] from which on each corner is held: what it carries presses it to the base.
+
+        Were all the same, the block would lean on the corner that carries more. A corner that is
+        higher is held from where it is, and comes down.
+        """
+        reach = step.kick_s * step.dt_s
+        all_of_it = self._yield * reach
+        held = np.clip(self._gaps(), self._yields * reach, all_of_it)
+        return np.asarray(held + LEAST_HELD * all_of_it)
+
+    def _gaps(self) -> NDArray[np.float64]:
+        """Height [m] of each corner above the base."""
+        pose = self.pose()
+        level = pose.z - self._height * math.cos(pose.theta)
+        return level + self._sides * (0.5 * self._width * math.sin(pose.theta))
+
     def _look_at_yield(self, step: Step) -> None:
-        """Note by how much [m/s2] the pivot yields to its force, for the next step's preload."""
+        """Note by how much [m/s2] the corners yield to their forces, for the next step."""
         data = self._data
         if step.grip is Grip.REST and data.nefc:
             self._yield = float(data.efc_R[0]) * self._weight
+            if data.ncon == self._model.npair > 1:
+                normal = slice(None, None, data.nefc // data.ncon)
+                resisted = data.efc_R[normal] * data.efc_force[normal]
+                self._yields[:] = resisted * (step.dt_s / step.kick_s)
         elif step.grip is Grip.SWING and data.ncon == self._corners:
             self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
 
@@ -166,6 +195,8 @@ class MujocoWorld:
         self._weight = scene.mass * scene.block.gravity / self._corners
         self._impedance = 1.0 if self._s.impedance is None else self._s.impedance[1]
         self._yield = (1.0 - self._impedance) * scene.block.gravity
+        self._yields = np.full(pairs, 0.5 * self._yield)
+        self._sides = np.repeat((1.0, -1.0), pairs // 2) if pairs > 1 else np.zeros(pairs)
 
     def _move_base(self, step: Step) -> None:
         """Set the place from which the base sets out, and its surface velocity."""
