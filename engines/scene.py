@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from analytic.block import RigidBlock
 from analytic.checks import finite, positive
-from analytic.motion import Motion
+from analytic.motion import SEGMENT_COLUMNS, Motion
 from engines.hints import TRUE, Hints
 
 FRAMES = ("base", "world")
@@ -112,7 +112,7 @@ class Scene:
     hints: Hints = TRUE
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "start", self._checked_start(*self.start))
+        object.__setattr__(self, "start", self._checked_start(self.start))
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
         one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "friction", "step", "time_limit_s", "max_steps"):
@@ -125,15 +125,20 @@ class Scene:
             object.__setattr__(self, "times", _increasing("times", self.times))
         object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
 
-    def _checked_start(self, theta: float, rate: float) -> tuple[float, float]:
-        tilt, speed = finite("tilt of the start", theta), finite("rate of the start", rate)
-        if abs(tilt) >= 0.5 * math.pi:
-            raise ValueError(f"tilt of the start is {theta!r}; it must be less than pi/2")
-        if abs(tilt) == self.block.alpha and speed == 0.0:
-            raise ValueError(
-                f"start is {(theta, rate)!r}; a block balanced on its corner must have a rate"
-            )
-        return tilt, speed
+    def _checked_start(self, start: Sequence[float]) -> tuple[float, float]:
+        try:
+            theta, rate = start
+        except (TypeError, ValueError):
+            words = "it must be theta [rad] and theta' [rad/s]"
+            raise ValueError(f"start is {start!r}; {words}") from None
+        theta, rate = finite("theta of the start", theta), finite("rate of the start", rate)
+        if abs(theta) >= 0.5 * math.pi:
+            words = "it must be between -pi/2 and pi/2 rad"
+            raise ValueError(f"theta of the start is {theta!r}; {words}")
+        if abs(theta) == self.block.alpha and rate == 0.0 and not _moves(self.motion):
+            words = "it must not be the unstable equilibrium where nothing moves"
+            raise ValueError(f"start is {start!r}; {words}")
+        return theta, rate
 
     def _checked_duration(self, value: float) -> float:
         duration = finite("duration", value)
@@ -202,6 +207,12 @@ def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
     """Raise ValueError unless `value` is one of those allowed."""
     if value not in allowed:
         raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+
+
+def _moves(motion: Motion) -> bool:
+    """Return whether the base is accelerated at any time."""
+    accelerating = [SEGMENT_COLUMNS.index(name) for name in ("amplitude", "offset", "slope")]
+    return bool(motion.segments()[:, accelerating].any())
 
 
 def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:

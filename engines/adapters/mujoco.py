@@ -5,6 +5,10 @@ from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.adapters.mujoco_model import OPTIONS, model_xml
 from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
     FACTORS,
@@ -15,20 +19,12 @@ from engines.adapters.mujoco_settings import (
 )
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.readback import disagreement
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
+from engines.parts.reflection import Reflection
 from engines.scene import GEOMETRIES, Scene
 from engines.world import Grip, Moment, Pose, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
-
-MOST_REFLECTION = 25.0
-"""Landing returns no more than this part of the velocity with which a contact comes into a step:
-after a far shorter step that is noise."""
-
-MOST_GROWTH = 20.0
-"""Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
-returned as if it grew by no more than this many p dt in a step."""
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
@@ -37,25 +33,11 @@ NARROWEST_CONE = 0.1
 """Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
 one."""
 
-OPTIONS = (
-    "cone",
-    "solver",
-    "jacobian",
-    "tolerance",
-    "iterations",
-    "impratio",
-    "integrator",
-    "noslip_iterations",
-)
-"""Settings that are options of the model under their own names, ..."""
+LEAST_HELD = 1e-3
+"""Part of what the whole weight would press a corner by, up to which landing holds one at rest."""
 
 KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
-"""... and those that the library numbers, by the names that it gives their values."""
-
-PLANAR_JOINTS = (
-    '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
-    '<joint type="hinge" axis="0 1 0"/>'
-)
+"""Options that the library numbers, by the names that it gives their values."""
 
 
 class MujocoWorld:
@@ -75,10 +57,8 @@ class MujocoWorld:
         self._data = self._mj.MjData(self._model)
         self._pull, self._option = self._model.opt.gravity, self._model.opt
         self._velocity = self._moved = self._dt = self._time = 0.0
-        self._rate, self._gained = scene.beginning.rate, 0.0
-        self._aloft, self._back, self._released = False, 0.0, bool(scene.side)
+        self._reflection = Reflection(scene, dt_s)
         self._spin = 2 if s.planar else 4
-        self._growth = 1.0 + MOST_GROWTH * scene.block.p * dt_s
         self._sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
         self._by_step = s.by_phase or s.reflection or s.carry is not None
         self._set_reach(scene)
@@ -97,10 +77,10 @@ class MujocoWorld:
         self._mj.mj_step(self._model, self._data)
         self._moved = step.base_x if self._moving else 0.0
         self._time += step.dt_s
-        if self._s.preload:
+        if self._s.carry is not None:
             self._look_at_yield(step)
         if self._s.reflection:
-            self._look_at_rate(step)
+            self._reflection.see(step, float(self._data.qvel[self._spin]))
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
@@ -138,13 +118,13 @@ class MujocoWorld:
         s, model, dt = self._s, self._model, step.dt_s
         if dt == self._dt and not self._by_step:
             return
-        before, self._dt = self._dt, dt
+        self._dt = dt
         self._option.timestep = dt
         if s.solref is not None:
             model.pair_solref[:] = model.geom_solref[:] = (s.solref[0] * dt, s.solref[1])
         if s.damping is None or s.sliding_damping is None or s.stiffness is None:
             return
-        self._back = back = self._reflected(step, before) if s.reflection else 0.0
+        back = self._reflection.part(step) if s.reflection else 0.0
         firm = FEEBLE if s.by_phase and (step.side or step.grip is not Grip.REST) else s.stiffness
         self._sliding = s.sliding_damping + back
         # the library divides both numbers by the impedance, the first one twice
@@ -154,34 +134,17 @@ class MujocoWorld:
         if s.carry is not None:
             self._reach(step, s.carry * self._width)
 
-    def _reflected(self, step: Step, before: float) -> float:
-        """Part of a contact's velocity that is returned, with a change of sign.
-
-        A pivot is back where it was at the end of a step h if it leaves with -c h/2, c being its
-        centripetal acceleration, in proportion to the square of the angular velocity; it comes
-        into the next step with c h/2, or with c h if it was held and not returned before.
-        """
-        was_aloft, self._aloft = self._aloft, step.grip in (Grip.SWING, Grip.APPROACH)
-        self._released = self._released and self._aloft
-        if not (was_aloft and self._aloft and self._rate):
-            return 0.0
-        faster = 1.0 + self._gained * step.kick_s / self._rate
-        growth = faster * faster
-        if self._released and growth > self._growth:
-            # a released block gains speed steadily: what is returned too soon would stay in it
-            return 0.0
-        part = min(growth, self._growth) * step.dt_s / before
-        return min(part if self._back else 0.5 * part, MOST_REFLECTION)
-
     def _reach(self, step: Step, carry: float) -> None:
         """Set from which gap on each contact acts, and preload the one that carries the block."""
-        model = self._model
-        # at rest, half of the weight presses a corner just so far below its margin; about to
-        # lift, the free corner is still in reach where no weight does
-        sag = 0.5 * self._yield * step.kick_s * step.dt_s
-        if step.side:
-            sag = self._yield * self._ordinary**2
-        model.pair_margin[:] = sag if step.grip is Grip.REST else 0.0
+        model, sag = self._model, self._yield * self._ordinary**2
+        if step.grip is not Grip.REST:
+            model.pair_margin[:] = 0.0
+            self._yields[:] = 0.5 * self._yield
+        elif step.side:
+            # the free corner, about to lift, is still in reach where no weight presses it
+            model.pair_margin[:] = sag
+        else:
+            model.pair_margin[:] = self._margins_at_rest(step)
         if not step.side:
             return
         if model.npair == 1:
@@ -195,18 +158,34 @@ class MujocoWorld:
             preload = self._yield * step.kick_s / step.dt_s
             model.pair_solref[pivot, 0] = -preload * self._impedance**2 / carry
 
+    def _margins_at_rest(self, step: Step) -> NDArray[np.float64]:
+        """Gap [m] from which on each corner is held: what it carries presses it to the base.
+
+        Were all the same, the block would lean on the corner that carries more. A corner that is
+        higher is held from where it is, and comes down.
+        """
+        reach = step.kick_s * step.dt_s
+        all_of_it = self._yield * reach
+        held = np.clip(self._gaps(), self._yields * reach, all_of_it)
+        return np.asarray(held + LEAST_HELD * all_of_it)
+
+    def _gaps(self) -> NDArray[np.float64]:
+        """Height [m] of each corner above the base."""
+        pose = self.pose()
+        level = pose.z - self._height * math.cos(pose.theta)
+        return level + self._sides * (0.5 * self._width * math.sin(pose.theta))
+
     def _look_at_yield(self, step: Step) -> None:
-        """Note by how much [m/s2] the pivot yields to its force, for the next step's preload."""
+        """Note by how much [m/s2] the corners yield to their forces, for the next step."""
         data = self._data
         if step.grip is Grip.REST and data.nefc:
             self._yield = float(data.efc_R[0]) * self._weight
+            if data.ncon == self._model.npair > 1:
+                normal = slice(None, None, data.nefc // data.ncon)
+                resisted = data.efc_R[normal] * data.efc_force[normal]
+                self._yields[:] = resisted * (step.dt_s / step.kick_s)
         elif step.grip is Grip.SWING and data.ncon == self._corners:
             self._yield = float(data.efc_R[0] * data.efc_force[0]) * step.dt_s / step.kick_s
-
-    def _look_at_rate(self, step: Step) -> None:
-        """Note the angular velocity [rad/s] of a step, and the acceleration [rad/s2] before it."""
-        before, self._rate = self._rate, float(self._data.qvel[self._spin])
-        self._gained = (self._rate - before) / step.kick_s
 
     def _set_reach(self, scene: Scene) -> None:
         pairs = self._model.npair
@@ -216,6 +195,8 @@ class MujocoWorld:
         self._weight = scene.mass * scene.block.gravity / self._corners
         self._impedance = 1.0 if self._s.impedance is None else self._s.impedance[1]
         self._yield = (1.0 - self._impedance) * scene.block.gravity
+        self._yields = np.full(pairs, 0.5 * self._yield)
+        self._sides = np.repeat((1.0, -1.0), pairs // 2) if pairs > 1 else np.zeros(pairs)
 
     def _move_base(self, step: Step) -> None:
         """Set the place from which the base sets out, and its surface velocity."""
@@ -262,71 +243,6 @@ def build(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
 
 def _ignore(message: str) -> None:
     """Take a warning without writing it anywhere."""
-
-
-def model_xml(scene: Scene, s: MujocoSettings) -> str:
-    """Return the model of a scene in MuJoCo's own language."""
-    block, margin = scene.block, (s.margin or 0.0) * scene.block.width
-    named = ((name, getattr(s, name)) for name in OPTIONS)
-    options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
-    geoms = _geoms(scene, s)
-    common = f'{_friction(s)} margin="{margin}"'
-    parts = (f'<geom name="{name}" {shape} {common}/>' for name, shape in geoms.items())
-    pairs = "" if s.impedance is None else "".join(_pair(name, s, margin) for name in geoms)
-    return (
-        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}"
-        f'<body pos="0 0 {0.5 * block.height}">{PLANAR_JOINTS if s.planar else "<freejoint/>"}'
-        f'<inertial pos="0 0 0" mass="{scene.mass}" diaginertia="{_row(scene.inertia)}"/>'
-        f"{''.join(parts)}</body></worldbody><contact>{pairs}</contact></mujoco>"
-    )
-
-
-def _assets(scene: Scene, s: MujocoSettings) -> str:
-    if s.geometry != "hull":
-        return ""
-    vertices = " ".join(map(_row, hull_points(scene)))
-    return f'<asset><mesh name="hull" vertex="{vertices}"/></asset>'
-
-
-def _base(scene: Scene, s: MujocoSettings) -> str:
-    if scene.frame == "base":
-        return f'<geom name="base" type="plane" size="1 1 1" {_friction(s)}/>'
-    # a plane may not move, so a box does; any surface velocity will do to switch it on
-    return (
-        f'<body mocap="true" pos="0 0 {-scene.block.height}"><geom name="base" type="box" '
-        f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.base_velocity)} 0 0" '
-        f"{_friction(s)}/></body>"
-    )
-
-
-def _geoms(scene: Scene, s: MujocoSettings) -> dict[str, str]:
-    """Name and shape of what the block touches its base with."""
-    if s.geometry == "hull":
-        return {"hull": 'type="mesh" mesh="hull"'}
-    if s.geometry == "box":
-        return {"box": f'type="box" size="{_row(half_size(scene))}"'}
-    radius = s.corner_radius * scene.block.width
-    corners = corner_spheres(scene, radius, planar=s.planar)
-    shape = f'type="sphere" size="{radius}"'
-    return {f"corner{i}": f'{shape} pos="{_row(at)}"' for i, at in enumerate(corners)}
-
-
-def _friction(s: MujocoSettings) -> str:
-    return f'friction="{s.friction} 0.005 0.0001"'
-
-
-def _pair(name: str, s: MujocoSettings, margin: float) -> str:
-    friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
-    # any direct form will do for now: it is set with the first step
-    reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
-    return (
-        f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
-        f'solimp="{_row(s.impedance or ())}" {reference}/>'
-    )
-
-
-def _row(numbers: tuple[float, ...]) -> str:
-    return " ".join(map(repr, numbers))
 
 
 ENGINE = Engine(

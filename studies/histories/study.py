@@ -47,7 +47,8 @@ DEFAULT_SOURCES = {
 
 PAPERS = sources_option(
     "By default what the paper draws, exact, rk4 and average-acceleration in figure 2, exact, "
-    "housner and modified in 4 and 5: "
+    "housner and modified in 4 and 5: ",
+    default=False,
 )
 
 TITLES = {

@@ -13,7 +13,9 @@ def _expanded(type_: type, tokens: Sequence[Token]) -> tuple[str, ...]:
     return tuple(expanded(token.value for token in tokens))
 
 
-def sources_option(first: str = "", names: Iterable[str] = tuple(SOURCES)) -> Parameter:
+def sources_option(
+    first: str = "", names: Iterable[str] = tuple(SOURCES), *, default: bool = True
+) -> Parameter:
     """Return what makes an argument take names of sources.
 
     Parameters
@@ -22,11 +24,13 @@ def sources_option(first: str = "", names: Iterable[str] = tuple(SOURCES)) -> Pa
         What its help says first.
     names : iterable of str, optional
         Those that its help lists.
+    default : bool, optional
+        Whether it shows a default.
     """
     words = " and ".join(f'"{word}"' for word in GROUPS)
     return Parameter(
         consume_multiple=True,
-        show_default=" ".join,
+        show_default=" ".join if default else False,
         converter=_expanded,
         help=(
             f"{first}{' '.join(names)}; an engine takes a preset after a colon: "

@@ -16,7 +16,7 @@ import pandas as pd
 from analytic import peak_ratios, simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, Scene, core_engines, run
 from engines.drive import build
 from studies.cases.paper import free_rocking_window, sweep_cases
@@ -135,7 +135,8 @@ def put_back(engine: str, omission: Omission, block: RigidBlock, motion: SinePul
     """Run a scene with what it leaves out; an engine that has no such thing fails."""
     preset = omission.put_back.get("preset")
     if preset not in (None, *(use.name for use in ENGINES[engine].presets)):
-        return Response.failure(f"not available: {engine} has no preset {preset!r}")
+        words = f"not available: {engine} has no preset {preset!r}"
+        return Response.failure(words, reason=Reason.UNAVAILABLE)
     return run(engine, Scene(block=block, motion=motion, **omission.put_back))
 
 

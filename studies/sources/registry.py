@@ -48,6 +48,11 @@ class Source:
         return self.declared.preset(self.preset)
 
     @property
+    def lands(self) -> bool:
+        """Whether it is an engine whose steps land on impacts."""
+        return bool(self.engine) and self.used.stepping is Stepping.LANDING
+
+    @property
     def accurate(self) -> bool:
         """Whether it is an engine whose steps are not all equal."""
         return bool(self.engine) and self.used.stepping is not Stepping.FIXED

@@ -56,7 +56,7 @@ class Leaning:
 
 def hint_jobs(cases: Iterable["RandomCase"], sources: Sequence[str], effort: Effort) -> list[Job]:
     """Return a job for each case, false hint, and engine whose steps land on impacts."""
-    landing = [source for source in sources if resolve(source).preset == "landing"]
+    landing = [source for source in sources if resolve(source).lands]
     asked = [
         (posed, name, hints)
         for case in cases

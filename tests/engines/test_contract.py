@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from uses import BLOCK, HERE, pulse, scene
+from uses import BLOCK, HERE, every_use, pulse, scene
 
 from analytic import simulate
 from analytic.response import Outcome
 from engines import ENGINES, Scene, run
 from engines.adapters.bullet import BulletWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
+from engines.drive import build
 from engines.world import Moment, Pose
 
 
@@ -65,6 +66,13 @@ def test_a_declaration_is_whole(name: str) -> None:
             assert replace(preset.settings, **left_out) != preset.settings
     for item in engine.factors:
         assert all(hasattr(engine.best.settings, setting) for setting in item.settings)
+
+
+@every_use
+def test_what_helps_can_be_left_out(engine: str, preset: str) -> None:
+    """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
+    for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
+        build(HERE[engine], scene(pulse(1.3, 1.0), preset=preset, settings=left_out)).close()
 
 
 def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:

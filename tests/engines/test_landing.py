@@ -144,13 +144,13 @@ def test_velocity_ratio_of_an_impact(engine: str, aspect: float) -> None:
 
 
 def test_velocity_ratio_of_small_swings(engine: str) -> None:
-    """Swings of some 1e-3 alpha lose what large ones lose: a corner that stays within the contact's
+    """Swings below 1e-2 alpha lose what large ones lose: a corner that stays within the contact's
     reach between two of its impacts must not be drawn to where it stood."""
     block = RigidBlock(width=2.0, height=10.8)
     motion = pulse(1.027, 1.08, 4, block)
     response = run(engine, Scene(block=block, motion=motion))
     ratios = [impact.ratio for impact in response.impacts[:12]]
-    assert response.peak_ratio < 5e-3
+    assert response.peak_ratio < 1e-2
     assert ratios == pytest.approx([block.restitution] * 12, abs=5e-5)
 
 
@@ -335,6 +335,23 @@ def test_out_of_the_plane(engine: str) -> None:
     plane = run(engine, Scene(block=BLOCK, motion=motion))
     space = run(engine, Scene(block=BLOCK, motion=motion, settings={"planar": False}))
     assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=2e-4)
+
+
+@pytest.mark.parametrize("aspect", [3.0, 11.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
+    engine: str, aspect: float, sign: float
+) -> None:
+    """Not even where one corner is about to carry all of it: a lean is the error of a peak after
+    it, and peaks of 1e-3 alpha are wanted to the 1e-5 of the scheme."""
+    block = RigidBlock(width=1.0, height=aspect)
+    motion = pulse(sign * 0.99, 3.0, 1, block)
+    # a slender block in PyBullet takes some steps to settle
+    times = list(np.linspace(0.2, 1.0, 200) * motion.duration)
+    response = run(engine, Scene(block=block, motion=motion, times=times))
+    assert response.outcome is Outcome.AT_REST
+    assert response.history is not None
+    assert np.abs(response.history.theta).max() < 1e-8 * block.alpha
 
 
 FALSE_HINTS = [

@@ -65,8 +65,9 @@ class MoreauWorld:
         """Return the velocity that the corners leave of `free`."""
         sine, cosine = np.sin(self._place[2]), np.cos(self._place[2])
         x, z = np.array([[cosine, sine], [-sine, cosine]]) @ self._corners.T
-        ups = np.stack([0.0 * x, 1.0 + 0.0 * x, -x], axis=1)  # times the velocity: a corner's, up
-        alongs = np.stack([1.0 + 0.0 * x, 0.0 * x, z], axis=1)  # and along the base
+        zero, one = np.zeros(2), np.ones(2)
+        ups = np.stack([zero, one, -x], axis=1)  # times the velocity: a corner's, up
+        alongs = np.stack([one, zero, z], axis=1)  # and along the base
         gaps = self._place[1] + z
         least = np.where(gaps > 0.0, -gaps / dt_s if self._s.closing else -np.inf, 0.0)
         slack, tried = SLACK * float(np.abs(free).max()), []
