@@ -16,7 +16,8 @@ from matplotlib.patches import Polygon, Rectangle
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from studies.drawing.figures import style_of
-from studies.kit.arguments import BadInputError
+from studies.kit.arguments import BadInputError, check_writable
+from studies.kit.drafts import draft_place
 from studies.kit.journal import Row
 
 PRESET_LINES = {"naive": ":", "fixed": "--"}
@@ -32,6 +33,7 @@ def check_film(path: Path) -> None:
         raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
     if not path.parent.is_dir():
         raise BadInputError(f"--out is {str(path)!r}; its folder must exist")
+    check_writable("--out", path)
     if path.suffix == ".mp4":
         _ffmpeg()
 
@@ -67,14 +69,13 @@ def write_film(
     frames_a_second : int
     """
     stage = Stage(block, motion, times, rows)
-    draft = path.with_name(f".part.{path.name}")
-    film = FuncAnimation(stage.drawing, stage.show, frames=len(times), blit=False)
-    if path.suffix == ".gif":
-        film.save(draft, writer=PillowWriter(fps=frames_a_second), dpi=80)
-    else:
-        with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
-            film.save(draft, writer=FFMpegWriter(fps=frames_a_second, bitrate=1800), dpi=110)
-    draft.replace(path)
+    with draft_place(path) as part:
+        film = FuncAnimation(stage.drawing, stage.show, frames=len(times), blit=False)
+        if path.suffix == ".gif":
+            film.save(part, writer=PillowWriter(fps=frames_a_second), dpi=80)
+        else:
+            with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+                film.save(part, writer=FFMpegWriter(fps=frames_a_second, bitrate=1800), dpi=110)
 
 
 class Stage:
