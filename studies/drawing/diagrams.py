@@ -36,7 +36,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     axes.set(xscale="log", yscale="log")
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
-    slope = np.array([1.0, max(float(kappa.max()), 10.0)])
+    slope = np.array([1.0, np.fmax(kappa.max(), 10.0)])
     for level in (1e-6, 1e-4):
         axes.plot(slope, level * slope, color="#999999", linewidth=0.8, zorder=-1)
         middle = float(np.sqrt(slope[1]))
@@ -47,7 +47,11 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
             color="#666666",
             ha="right",
         )
-    axes.set_ylim(top=10.0 * float(compared["error"].abs().max()))
+    errors = compared["error"].abs().dropna()
+    if len(errors):
+        axes.set_ylim(top=10.0 * max(float(errors.max()), LOWEST))
+    else:
+        axes.set_title("no case that both survive")
     axes.legend(loc="upper left", frameon=False)
     axes.grid(alpha=0.25)
     return drawing

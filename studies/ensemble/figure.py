@@ -82,7 +82,7 @@ def _singles(axes: Axes, rows: pd.DataFrame) -> None:
 def _distribution(axes: Axes, rows: pd.DataFrame, stripes: pd.DataFrame) -> None:
     """Draw the shares of peaks below a peak at the intensity nearest to even odds."""
     exact = stripes[stripes["source"] == "exact"]
-    level = float(exact["intensity"].iloc[int((exact["share"] - 0.5).abs().argmin())])
+    level = float(exact["intensity"].iloc[int((exact["share"].fillna(0.0) - 0.5).abs().argmin())])
     for source, group in rows[rows["intensity"] == level].groupby("source", sort=False):
         style = style_of(str(source))
         peaks = np.sort(group["peak_ratio"].dropna())

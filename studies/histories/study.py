@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import pandas as pd
 
+from analytic.response import Outcome
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
 from studies.histories import STUDY
@@ -202,9 +203,13 @@ def report(figure: int, rows: Sequence[Row], found: Finding) -> str:
 
 
 def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
-    """Test what the paper says about a figure."""
-    summaries = pd.DataFrame(rows).drop(columns="response")
-    return CLAIMS[figure].finding(table if figure == 2 and len(table) else summaries)
+    """Test what the paper says about a figure, of the sources that answered in every panel."""
+    failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
+    answered = [row for row in rows if row["source"] not in failed]
+    asked = table if figure == 2 else pd.DataFrame(answered)
+    if not answered:
+        asked = pd.DataFrame({"source": []})
+    return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
 def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
