@@ -154,19 +154,15 @@ def draw_histories(samples: pd.DataFrame, title: str) -> Figure:
         _history_panel(axes, samples[samples["panel"] == name])
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    _legend_below(drawing, sources, ground=True)
+    _legend_below(drawing, sources, ground=bool(samples["amplitude_g"].any()))
     return drawing
 
 
 def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
     limit = _history_limit(panel)
-    ground = axes.twinx()
     motion = panel[panel["time_s"].notna()].drop_duplicates("time_s").sort_values("time_s")
-    ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
-    reach = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
-    ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
-    axes.set_zorder(ground.get_zorder() + 1)
-    axes.patch.set_visible(False)
+    if panel["amplitude_g"].iloc[0]:
+        _ground(axes, motion)
     leavers = 0
     for source, points in panel.groupby("source", sort=False):
         _one_history(axes, points, style_of(str(source)))
@@ -178,10 +174,20 @@ def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
     axes.grid(alpha=0.25)
 
 
+def _ground(axes: Axes, motion: pd.DataFrame) -> None:
+    ground = axes.twinx()
+    ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
+    reach = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
+    ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
+    axes.set_zorder(ground.get_zorder() + 1)
+    axes.patch.set_visible(False)
+
+
 def _caption(row: "pd.Series[Any]") -> str:
     label = f"({row['panel']})  " if isinstance(row["panel"], str) and row["panel"] else ""
     size = f"B = {row['width_m']:g} m, H = {row['height_m']:g} m"
-    return f"{label}{size}, {row['amplitude_g']:g} g, {row['pulse']}"
+    ground = f"{row['amplitude_g']:g} g, {row['pulse']}" if row["amplitude_g"] else "released"
+    return f"{label}{size}, {ground}"
 
 
 def _name_the_leaver(
