@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 LEAST, BEYOND = 1e-2, 3.0
 """Ends of the scale of the peaks: less is drawn at its foot, and overturned blocks at its top."""

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 WIDEST = 12.0
 """Answers further than this from the print, in units of its half interval, stand at the edge."""

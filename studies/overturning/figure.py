@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 from studies.measures.differences import conditioning_of
 from studies.overturning.areas import modes_at, no_impact_line, with_exact
 

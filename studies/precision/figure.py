@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from engines import ENGINES
-from studies.drawing.figures import LOWEST, Style, engine_style
+from studies.drawing.styles import LOWEST, Style, engine_style
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),

@@ -9,7 +9,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 VERDICTS = {
     "held": "#ffffff",

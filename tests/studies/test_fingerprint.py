@@ -12,7 +12,7 @@ from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
 from studies.contact.report import report as report_of_contact
-from studies.drawing.figures import draw_sweep
+from studies.sweep.figure import draw_sweep
 from studies.ensemble import study as ensemble
 from studies.free import study as free
 from studies.kit import runner
