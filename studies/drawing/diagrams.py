@@ -11,7 +11,6 @@ from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, line_of, style_of
 from studies.measures.differences import conditioning_of, scientific
 
-
 NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
 """Variants of a linearization that have a name."""
 ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
@@ -127,7 +126,7 @@ def draw_free(rows: pd.DataFrame) -> Figure:
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("error, relative but for the drift")
     beside(panels[-1], ends)
-    drawing.suptitle("Off from the closed form of each one's own equations, the largest over all H/B",
+    drawing.suptitle("Off from the closed form of each one's equations, the largest over all H/B",
                      fontsize=11)  # fmt: skip
     return drawing
 
