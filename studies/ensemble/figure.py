@@ -73,6 +73,7 @@ def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.Da
     for upper, lower, size in zip(*grid, sizes, strict=True):
         _curves(upper, _of(stripes, size), _of(curves, size))
         _capacities(lower, _of(agreement, size), others)
+        lower.set_xlim(0.98 * agreement["ratio_low"].min(), 1.02 * agreement["ratio_high"].max())
         upper.set_title(_name(size), fontsize=10)
     grid[0, 0].set_ylabel("overturned  [–]")
     beside(grid[0, -1], _ends(_of(curves, sizes[-1]), _of(stripes, sizes[-1])), 7.5)

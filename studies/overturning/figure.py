@@ -29,7 +29,7 @@ MODE_COLOURS = {
 }
 DIFFERENCE_COLOURS = {
     "both survive": "#FFFFFF",
-    "both overturn": "#D9D9D9",
+    "both overturn": "#CCCCCC",
     "false overturning": "#E69F00",
     "missed overturning": "#0072B2",
     "failed": "#000000",
