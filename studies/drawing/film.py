@@ -15,7 +15,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 from studies.kit.arguments import BadInputError
 from studies.kit.journal import Row
 
