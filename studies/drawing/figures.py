@@ -77,8 +77,16 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
     rows = rows[rows["figure"] == figure]
     aspects, widths = sorted(rows["aspect"].unique()), sorted(rows["width_m"].unique())
     sources = list(rows["source"].unique())
-    drawing = Figure(figsize=(10.0, 3.1 * len(aspects) + 1.2), layout="constrained")
-    grid = drawing.subplots(len(aspects), len(widths), sharex=True, sharey=True, squeeze=False)
+    drawing = Figure(figsize=(10.0, 3.1 * len(aspects) + 1.2))
+    # told where the panels go, it draws in half the time that finding out takes
+    grid = drawing.subplots(
+        len(aspects),
+        len(widths),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+        gridspec_kw=_margins(drawing, len(aspects), _legend_rows(len(sources))),
+    )
     for i, aspect in enumerate(aspects):
         for j, width_m in enumerate(widths):
             panel = rows[(rows["aspect"] == aspect) & (rows["width_m"] == width_m)]
@@ -90,10 +98,26 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
         axes.set_ylabel("largest rotation  |θ|/θcr  [–]")
     first = rows.iloc[0]
     drawing.suptitle(
-        f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
+        f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g",
+        y=1.0 - 0.1 / drawing.get_size_inches()[1],
     )
     _legend_below(drawing, sources)
     return drawing
+
+
+def _margins(drawing: Figure, panel_rows: int, legend_rows: int) -> dict[str, float]:
+    """Return the room around panels that share their axes, below titles and above a legend."""
+    width, height = map(float, drawing.get_size_inches())
+    below, above, between = 0.6 + 0.2 * legend_rows, 0.62, 0.35
+    panel = (height - below - above - between * (panel_rows - 1)) / panel_rows
+    return {
+        "left": 0.56 / width,
+        "right": 1.0 - 0.06 / width,
+        "bottom": below / height,
+        "top": 1.0 - above / height,
+        "hspace": between / panel,
+        "wspace": 0.045,
+    }
 
 
 def _sweep_panel(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
@@ -114,17 +138,24 @@ def _sweep_panel(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> Non
             zorder=4 if style.marker else 3,
         )
         _beyond_the_scale(axes, points["omega_over_p"], survived, style)
-        lost = points.loc[points["outcome"] == OVERTURNED, "omega_over_p"]
         level = TOP + row_height * (len(sources) - number - 0.5)
-        axes.plot(lost, [level] * len(lost), "s", color=style.colour, markersize=2.6)
-        failed = points.loc[points["outcome"] == "failed", "omega_over_p"]
-        axes.plot(failed, [0.02] * len(failed), "*", color=style.colour)
+        _mark(axes, points, OVERTURNED, level, "s", color=style.colour, markersize=2.6)
+        _mark(axes, points, "failed", 0.02, "*", color=style.colour)
     top = TOP + row_height * len(sources)
     axes.axhspan(TOP, top, color="#eeeeee", zorder=0)
     axes.text(4.05, TOP + 0.015, OVERTURNED, ha="right", fontsize=8, color="#555555")
     axes.set(xlim=(0.0, 4.1), ylim=(0.0, top), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
     axes.axhline(1.0, color="#999999", linewidth=0.6, zorder=1)
     axes.grid(alpha=0.25)
+
+
+def _mark(
+    axes: Axes, points: pd.DataFrame, outcome: str, level: float, marker: str, **look: Any
+) -> None:
+    """Mark the cases with an outcome, all at the same height."""
+    marked = points.loc[points["outcome"] == outcome, "omega_over_p"]
+    if len(marked):
+        axes.plot(marked, [level] * len(marked), marker, **look)
 
 
 def _beyond_the_scale(
@@ -224,8 +255,12 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
-    columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
+    columns = math.ceil(len(handles) / _legend_rows(len(handles)))
     drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
+
+
+def _legend_rows(entries: int) -> int:
+    return math.ceil(entries / 5)
 
 
 def _handle(source: str) -> Line2D:
