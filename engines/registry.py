@@ -12,6 +12,7 @@ GROUP = "rocking.engines"
 OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
+    "dart": "engines.adapters.dart:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 
