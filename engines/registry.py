@@ -13,6 +13,7 @@ OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
     "pymunk": "engines.adapters.pymunk:ENGINE",
+    "dart": "engines.adapters.dart:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 
