@@ -7,6 +7,7 @@ from studies import (
     compare,
     contact,
     ensemble,
+    export,
     free,
     harmonic,
     histories,
@@ -25,6 +26,7 @@ from studies.kit.study import Chapter, Study
 STUDIES: tuple[Study, ...] = (
     compare.STUDY,
     animate.STUDY,
+    export.STUDY,
     sweep.STUDY,
     histories.STUDY,
     linearizations.STUDY,

@@ -1,13 +1,15 @@
 """From the options of a command line to a block and the motion of its base."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
-from analytic.motion import SinePulse
+from analytic.motion import Motion, SinePulse
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, corrected, read_record
 from studies.cases.paper import PULSES
-from studies.kit.arguments import BadInputError, as_bad_input
+from studies.kit.arguments import BadInputError, as_bad_input, refuse_given
 
 
 def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
@@ -36,6 +38,23 @@ def posed_pulse(
         raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
     with as_bad_input():
         return SinePulse.in_g(amplitude, omega=omega, half_cycles=number)
+
+
+def posed_motion(pulse: Mapping[str, Any], record: Mapping[str, Any]) -> Motion:
+    """Return the motion of the options of a pulse, or of a record where one is named.
+
+    Parameters
+    ----------
+    pulse, record : mapping
+        Option -> its value: amplitude, omega, pulse, half-cycles; record, units, scale, pga,
+        baseline.
+    """
+    path, *rest = record.values()
+    if path is None:
+        refuse_given({name: record[name] for name in list(record)[1:]}, "only with --record")
+        return posed_pulse(*pulse.values())
+    refuse_given(pulse, "only without --record")
+    return posed_record(path, *rest)
 
 
 def posed_record(

@@ -1,0 +1,142 @@
+"""A scene written out for an engine alone: files, and the peak to expect of them."""
+
+from pathlib import Path
+from typing import Any, Literal
+
+from analytic.block import RigidBlock
+from analytic.motion import Motion
+from engines import ENGINES, Scene
+from engines.declaration import Engine, Preset, Stepping
+from studies.cases.accelerograms import Baseline, Units
+from studies.cases.paper import free_rocking_window
+from studies.export.writing import Exported, files, written_engines
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Count, Place, Positive
+from studies.kit.executors import Local
+from studies.kit.jobs import Job, summary
+from studies.kit.posing import posed_block, posed_motion
+from studies.kit.runner import exit_code, run_jobs
+
+
+def command(
+    *,
+    engine: str,
+    out: Place,
+    width: Positive,
+    height: Positive,
+    preset: str = "fixed",
+    amplitude: Positive | None = None,
+    omega: Positive | None = None,
+    pulse: Literal["half-sine", "full-sine"] | None = None,
+    half_cycles: Count | None = None,
+    record: Place | None = None,
+    units: Units | None = None,
+    scale: Positive | None = None,
+    pga: Positive | None = None,
+    baseline: Baseline | None = None,
+    step: Positive | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Write a scene as a script that needs an engine's library alone, with the peak to expect.
+
+    Parameters
+    ----------
+    engine
+        Name of an engine.
+    out
+        Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
+        library reads one.
+    width
+        Full width B of the block [m].
+    height
+        Full height H of the block [m].
+    preset
+        One of the engine's with equal steps: naive or fixed.
+    amplitude
+        Amplitude of the ground acceleration [g], positive.
+    omega
+        Circular frequency of the pulse [rad/s].
+    pulse
+        half-sine or full-sine; full-sine unless --half-cycles is given.
+    half_cycles
+        Number of half cycles, instead of --pulse.
+    record
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
+        a table of time [s] and acceleration.
+    units
+        Of the record's acceleration, where the file does not state them.
+    scale
+        Factor on the record's acceleration.
+    pga
+        Scale the record to this largest absolute acceleration [g].
+    baseline
+        Correct the record, before it is scaled, by what scipy.signal.detrend takes away.
+    step
+        p dt [-], the step in units of 1/p; by default the preset's.
+    time_limit
+        Wall-clock time [s] after which the engine is given up.
+    """
+    asked, used = _asked(engine, preset)
+    block = posed_block(width, height)
+    motion = posed_motion(
+        {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles},
+        {"record": record, "units": units, "scale": scale, "pga": pga, "baseline": baseline},
+    )
+    _check_folder(out)
+    window = free_rocking_window(block, motion)
+    options = {} if step is None else {"step": step}
+    rows = run_jobs(
+        [
+            _job("exact", block, motion, window, {}),
+            _job(f"{engine}:{preset}", block, motion, window, options),
+        ],
+        executor=Local(workers=1, time_limit_s=time_limit),
+        reduce=summary,
+    )
+    if code := exit_code(rows):
+        return code
+    exact, found = (float(row["peak_ratio"]) for row in rows)
+    if not found:
+        raise BadInputError(
+            f"--engine is {engine!r}; its block stays at rest, with no peak to tell"
+        )
+    scene = Scene(block=block, motion=motion, preset=preset, duration=window, **options)
+    what = Exported(
+        engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    for name, text in files(what).items():
+        provenance.write_text(out / name, text)
+        print(out / name)
+    print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
+    return 0
+
+
+def _asked(engine: str, preset: str) -> tuple[Engine, Preset]:
+    """Return an engine and its preset, which must be ones that can be written out."""
+    if engine not in (able := written_engines(ENGINES)):
+        words = f"it must be one that can be written out: {', '.join(able)}"
+        raise BadInputError(f"--engine is {engine!r}; {words}")
+    asked = ENGINES[engine]
+    equal = [use.name for use in asked.presets if use.stepping is Stepping.FIXED]
+    if preset not in equal:
+        words = f"it must have equal steps: {', '.join(equal)}"
+        raise BadInputError(f"--preset is {preset!r}; {words}")
+    return asked, asked.preset(preset)
+
+
+def _check_folder(out: Path) -> None:
+    try:
+        empty = not out.exists() or not any(out.iterdir())
+    except OSError:
+        empty = False
+    if not empty:
+        raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
+
+
+def _job(
+    source: str, block: RigidBlock, motion: Motion, window: float, options: dict[str, Any]
+) -> Job:
+    return Job(
+        labels={}, block=block, motion=motion, source=source, duration=window, options=options
+    )
