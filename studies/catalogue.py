@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from studies import (
+    advise,
     animate,
     compare,
     contact,
@@ -24,6 +25,7 @@ from studies import (
 from studies.kit.study import Chapter, Study
 
 STUDIES: tuple[Study, ...] = (
+    advise.STUDY,
     compare.STUDY,
     animate.STUDY,
     export.STUDY,
@@ -51,6 +53,7 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 """Every study's places in a report, in its order."""
 
 if TYPE_CHECKING:
+    from studies.advise import study as _advise
     from studies.contact import study as _contact
     from studies.ensemble import study as _ensemble
     from studies.free import study as _free
@@ -70,5 +73,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
+        _advise,
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

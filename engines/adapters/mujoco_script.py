@@ -9,8 +9,8 @@ from engines.world import Moment
 MODEL = "block.xml"
 """File of the model, beside the script."""
 
-SAID = ("<option", "<joint", "<freejoint", "<geom", "<pair")
-"""Elements of a model that a preset sets."""
+SAID = ("<option", "<geom", "<pair")
+"""Elements of a model that a preset sets, the joints apart."""
 
 PLANAR_POSE = ("theta, rate = data.qpos[2], data.qvel[2]",)
 FREE_POSE = (

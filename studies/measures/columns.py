@@ -106,6 +106,16 @@ SUMMARIES = {
     "quantile": Column("-", "part of the cases whose |error| is below"),
 }
 
+ADVICE = {
+    "target": Column("-", "error of the peak that is to be kept"),
+    "dt_s": Column("s", "step for the block of the advice"),
+    "random_cases": Column("-", "random cases on which the preset was published as it is"),
+    "random_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "extreme_cases": Column("-", "extreme cases, where the reference holds"),
+    "extreme_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "cheapest": Column("", "whether it is the cheapest of the engine's presets"),
+}
+
 METHODS = {
     "method": Column("", "the method of a work-precision diagram"),
     "value": Column(
@@ -233,6 +243,7 @@ GROUPS = {
     "Answers": ANSWERS,
     "Beside the exact solution": REFERENCE,
     "Summaries": SUMMARIES,
+    "Advice": ADVICE,
     "Methods and settings": METHODS,
     "Maps": MAPS,
     "Statistics": STATISTICS,

@@ -12,6 +12,7 @@ from studies.__main__ import run
 from studies.catalogue import STUDIES
 
 ARGUMENTS = {
+    "advise": ("--engines", "moreau"),
     "sweep": ("--figure", "6", "--accuracy", "loose", "--sources", "exact", "moreau"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
     "free": ("--quick", "--sources", "exact", "moreau"),
