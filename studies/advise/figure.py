@@ -7,11 +7,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.figures import engine_style
+from studies.drawing.styles import PRESET_LINES, engine_style
 from studies.measures.words import listed, part
-
-LINES = {"naive": ":", "fixed": "--"}
-"""Preset -> its line; the best preset's is full."""
 
 WORDS = {"naive": "the libraries' defaults", "fixed": "equal steps", "landing": "landing steps"}
 """Preset -> what it is called in the title."""
@@ -50,7 +47,12 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
         return
     style = engine_style(engine, preset)
     errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
-    look = {"color": style.colour, "linestyle": LINES.get(preset, "-"), "marker": style.marker}
+    look = {
+        "color": style.colour,
+        "linestyle": PRESET_LINES.get(preset, "-"),
+        "marker": style.marker,
+        "fillstyle": style.fill,
+    }
     axes.plot(errors, times, markersize=6, **look)
     axes.annotate(f"  {engine} {preset}", (errors[-1], times[-1]), color=style.colour, va="center")
     for error, time, value in zip(errors, times, kept["value"], strict=True):

@@ -1,20 +1,19 @@
 """A scene written out for an engine alone: files, and the peak to expect of them."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from analytic.block import RigidBlock
 from analytic.motion import Motion
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
-from studies.cases.accelerograms import Baseline, Units
 from studies.cases.paper import free_rocking_window
 from studies.export.writing import Exported, files, written_engines
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive
+from studies.kit.arguments import BadInputError, Place, Positive, refuse_given
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
-from studies.kit.posing import posed_block, posed_motion
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block
 from studies.kit.runner import exit_code, run_jobs
 
 
@@ -25,15 +24,7 @@ def command(
     width: Positive,
     height: Positive,
     preset: str = "fixed",
-    amplitude: Positive | None = None,
-    omega: Positive | None = None,
-    pulse: Literal["half-sine", "full-sine"] | None = None,
-    half_cycles: Count | None = None,
-    record: Place | None = None,
-    units: Units | None = None,
-    scale: Positive | None = None,
-    pga: Positive | None = None,
-    baseline: Baseline | None = None,
+    excitation: Excitation = DEFAULT_EXCITATION,
     step: Positive | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
@@ -52,25 +43,6 @@ def command(
         Full height H of the block [m].
     preset
         One of the engine's with equal steps: naive or fixed.
-    amplitude
-        Amplitude of the ground acceleration [g], positive.
-    omega
-        Circular frequency of the pulse [rad/s].
-    pulse
-        half-sine or full-sine; full-sine unless --half-cycles is given.
-    half_cycles
-        Number of half cycles, instead of --pulse.
-    record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
-        a table of time [s] and acceleration.
-    units
-        Of the record's acceleration, where the file does not state them.
-    scale
-        Factor on the record's acceleration.
-    pga
-        Scale the record to this largest absolute acceleration [g].
-    baseline
-        Correct the record, before it is scaled, by what scipy.signal.detrend takes away.
     step
         p dt [-], the step in units of 1/p; by default the preset's.
     time_limit
@@ -78,10 +50,11 @@ def command(
     """
     asked, used = _asked(engine, preset)
     block = posed_block(width, height)
-    motion = posed_motion(
-        {"amplitude": amplitude, "omega": omega, "pulse": pulse, "half-cycles": half_cycles},
-        {"record": record, "units": units, "scale": scale, "pga": pga, "baseline": baseline},
-    )
+    posed = excitation.pose(block)
+    if posed.start != (0.0, 0.0):
+        begin = {"tilt": excitation.tilt, "rate": excitation.rate}
+        refuse_given(begin, "only where nothing is exported, whose block begins at rest")
+    motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
     options = {} if step is None else {"step": step}

@@ -114,6 +114,7 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
         ),
         (["--engine", "mujoco", *SHAKEN, "--pga", "1"], "--pga is 1.0; it may be given only with"),
         (["--engine", "mujoco"], "--amplitude and --omega missing"),
+        (["--engine", "mujoco", *SHAKEN, "--tilt", "0.5"], "--tilt is 0.5; it may be given only"),
         (["--engine", "mujoco", *SHAKEN, "--record", "x"], "it may be given only without --record"),
     ],
 )
