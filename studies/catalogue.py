@@ -8,6 +8,7 @@ from studies import (
     compare,
     contact,
     ensemble,
+    estimate,
     export,
     free,
     harmonic,
@@ -36,6 +37,7 @@ STUDIES: tuple[Study, ...] = (
     harmonic.STUDY,
     literature.STUDY,
     validate.STUDY,
+    estimate.STUDY,
     precision.STUDY,
     precision.COST,
     contact.STUDY,
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from studies.advise import study as _advise
     from studies.contact import study as _contact
     from studies.ensemble import study as _ensemble
+    from studies.estimate import study as _estimate
     from studies.free import study as _free
     from studies.harmonic import study as _harmonic
     from studies.histories import study as _histories
@@ -73,6 +76,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        _advise,
+        *(_advise, _estimate),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

@@ -19,6 +19,7 @@ ARGUMENTS = {
     "harmonic": ("--quick", "--sources", "moreau"),
     "literature": ("--sources", "moreau"),
     "validate": ("--cases", "8", "--sources", "moreau"),
+    "estimate": ("--cases", "3", "--sources", "moreau"),
     "precision": ("--quick", "--engines", "moreau"),
     "cost": ("--quick", "--engines", "moreau"),
     "contact": ("--quick", "--engines", "moreau"),
