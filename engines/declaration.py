@@ -11,6 +11,7 @@ from analytic.block import RigidBlock
 from engines.factors import Factor
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
+from engines.script import Script
 from engines.world import ROUNDINGS, Resolution, World
 
 
@@ -141,6 +142,9 @@ class Engine:
     precision : Precision
     shortest_step : float
         p dt below which a step has no effect that is resolved.
+    script : callable or None
+        ``(scene, settings, dt_s) -> Script``: a scene on a base at rest in the library's own words,
+        in the ordinary steps dt_s [s]. Without it an engine can be neither exported nor quoted.
     spring : callable or None
         ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
         m/time^2 with critical damping, both arguments in units of 1/p.
@@ -165,6 +169,7 @@ class Engine:
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
     shortest_step: float = 1e-12
+    script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
     factors: tuple[Factor, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)

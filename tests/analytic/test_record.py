@@ -250,7 +250,7 @@ def test_excursions_too_small_to_matter_do_not_matter(seed):
 
 def test_the_mean_velocity_of_the_base_is_its_displacement_over_time():
     """Also over steps longer than a sample, past both ends, from corner to corner."""
-    mean_velocity = mean_velocity_of(WANDERING)
+    mean_velocity = mean_velocity_of(WANDERING.segments())
     draw = np.random.default_rng(4)
     for begin, finish in [*np.sort(draw.uniform(0, 2.5, (40, 2))).tolist(), (0.0, 1.8), (0.3, 0.6)]:
         moved = WANDERING.displacement(finish) - WANDERING.displacement(begin)
