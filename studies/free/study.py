@@ -16,12 +16,12 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.free import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, Positive, check_sources
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
 from studies.measures.differences import scientific
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -50,9 +50,7 @@ def command(
     out: Place,
     quick: bool = False,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Hold free rocking of each source against the closed forms.
 
@@ -69,38 +67,18 @@ def command(
         Two aspect ratios and two tilts.
     sources
         Who is asked.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
-    executor = choose(jobs, time_limit, cluster)
-    rows = free(sources, out, quick=quick, executor=executor)
-    print(report(out))
-    return exit_code(rows)
+    return carry_out(STUDY, plan(sources, quick), out, running, report)
 
 
-def free(sources: Sequence[str], folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
-    """Run what the folder does not hold yet, and write its table.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        folder,
-        "free",
-        free_jobs(sources, quick),
-        module=__name__,
-        executor=executor,
-        reduce=reduce,
+def plan(sources: Sequence[str], quick: bool) -> Plan:
+    """Return the plan that releases blocks of some shapes and tilts, for each source."""
+    return Plan(
+        jobs=free_jobs(sources, quick),
         settings={"quick": quick},
         growing={"source": sources},
-        products=STUDY.products,
+        reduce=reduce,
     )
 
 

@@ -16,7 +16,8 @@ from studies.kit.arguments import BadInputError, Count, Place, Positive, check_s
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
-from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, fill
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, by_label, fill
 from studies.kit.runner import exit_code
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.sources.groups import core_sources
@@ -125,7 +126,11 @@ def command(
         **{"points": count, "periods": cycles, "quick": quick},
     }
     plan = Plan(
-        jobs=jobs, settings=settings, growing={"source": sources}, reduce=reduce, tables="table"
+        jobs=jobs,
+        settings=settings,
+        growing={"source": sources},
+        reduce=reduce,
+        tabulate=by_label("table"),
     )
     rows = fill(STUDY, plan, out, running)
     text = pd.DataFrame(map(row_of, branches)).to_csv(index=False)

@@ -12,6 +12,7 @@ from analytic.criteria import free_amplitude, quarter_period
 from analytic.response import Outcome
 from engines import core_engines
 from engines.scene import ACCURACIES
+from studies.free import STUDY
 from studies.free import study as free
 from studies.free.study import (
     OMEGA_OVER_P,
@@ -23,8 +24,9 @@ from studies.free.study import (
     tilting_amplitude,
     turning_points,
 )
-from studies.kit.executors import Local
 from studies.kit.jobs import ask
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.sources.registry import SOURCES, resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
@@ -135,6 +137,6 @@ def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):
 
     source = resolve("exact")
     monkeypatch.setitem(SOURCES, "fails", type(source)("model", fails))
-    rows = free.free(["exact", "fails"], tmp_path, quick=True, executor=Local(1, 10.0))
+    rows = fill(STUDY, free.plan(["exact", "fails"], quick=True), tmp_path, Running(jobs=1))
     assert {row["outcome"] for row in rows if row["source"] == "fails"} == {Outcome.FAILED.value}
     assert re.search(r"^fails +- -", free.report(tmp_path), re.MULTILINE)
