@@ -1,8 +1,8 @@
 """The questions asked of the reference and the engines.
 
-One folder a study, listed in `catalogue`. A case flows one way: `cases` poses it, `sources` answers,
-`kit` makes of both what a study leaves in a folder (`kit.plan` says how), `measures` says what an
-answer is worth, `drawing` draws it, `page` shows all.
+One folder a study, listed in `catalogue`. A case flows one way: `cases` poses it, `sources`
+answers, `kit` makes of both what a study leaves in a folder (`kit.plan` says how), `measures` says
+what an answer is worth, `drawing` draws it, `page` shows all.
 """
 
 from __future__ import annotations
