@@ -1,5 +1,6 @@
 """Films: what is shown, which case, what is refused."""
 
+import io
 import math
 
 import numpy as np
@@ -11,7 +12,7 @@ from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
-from studies.drawing.film import outline
+from studies.drawing.film import Stage, outline
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
@@ -87,11 +88,40 @@ def test_a_film_begins_where_the_block_is_released(tmp_path, monkeypatch):
         assert 0.0 < rate < 2.0 * block.alpha * block.p
 
 
+def pixels(stage):
+    frame = io.BytesIO()
+    stage.drawing.savefig(frame)
+    return np.frombuffer(frame.getvalue(), np.uint8).astype(int)
+
+
+def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
+    pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    times = np.linspace(0.0, 1.0, 11)
+    rows = [{"source": "exact", "outcome": "rocked", "theta": 0.3 * times}]
+    stage, fresh = (Stage(BLOCK, pulse, times, rows) for _ in range(2))
+    frames = []
+    stage.drawing.still(stage.moving)
+    for frame in (0, 10, 5):
+        stage.show(frame)
+        frames.append(pixels(stage))
+    fresh.show(5)
+    fresh.drawing.still(fresh.moving)
+    assert (frames[-1] == pixels(fresh)).all()
+    assert len(np.unique([np.count_nonzero(frames[0] != frame) for frame in frames])) == 3
+    # drawn whole, only what lies on the clock's line may differ: the frame around it
+    fresh.show(5)
+    for artist in fresh.moving:
+        artist.set_animated(False)
+    fresh.drawing.canvas.draw()
+    whole = np.asarray(fresh.drawing.canvas.buffer_rgba()).astype(int).ravel()
+    assert np.count_nonzero(whole != frames[-1]) < 100
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         ([*CASE, "--out", "film.avi"], ("--out", ".gif")),
-        ([*CASE, "--out", "/nowhere/film.gif"], ("--out", "folder")),
+        ([*CASE, "--out", "nowhere/film.gif"], ("--out", "folder")),
         (["--out", "film.gif"], ("--width", "missing")),
         ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
         (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
