@@ -20,7 +20,9 @@ FORBIDDEN = {
     "analytic.models": "def later():\n    from analytic.models import MODELS",
 }
 """The modules that know the answer, and ways for an adapter to come to one."""
-ALLOWED = "from analytic import block, checks, motion, record\nfrom analytic.response import Response"
+ALLOWED = (
+    "from analytic import block, checks, motion, record\nfrom analytic.response import Response"
+)
 
 
 def test_an_adapter_that_would_see_the_answer_is_named(tmp_path):

@@ -1,6 +1,7 @@
 """Films: what is shown, which case, what is refused."""
 
 import errno
+import io
 import math
 import os
 
@@ -10,12 +11,14 @@ import pytest
 from matplotlib.animation import PillowWriter
 from PIL import Image
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
-from studies.drawing.film import outline
+from studies.drawing import film as film_module
+from studies.drawing.film import Stage, outline
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
+from studies.kit.posing import Posed
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
@@ -36,7 +39,7 @@ def test_a_leaning_block_stands_on_one_corner(theta):
 def test_an_overturned_block_lies():
     pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
     times = np.linspace(0.0, 4.0, 60)
-    rows = shown(BLOCK, pulse, ("exact", "housner"), times, Local(1, 10.0))
+    rows = shown(BLOCK, Posed(pulse, (0.0, 0.0)), ("exact", "housner"), times, Local(1, 10.0))
     assert abs(rows[1]["theta"][-1]) == pytest.approx(math.pi / 2)
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
     flat = outline(BLOCK, float(rows[1]["theta"][-1]))
@@ -72,6 +75,49 @@ def test_a_film_moves(tmp_path):
         images.seek(images.n_frames // 3)
         later = np.asarray(images.convert("RGB"), dtype=float)
     assert np.abs(first - later).max() > 100.0
+
+
+def test_a_film_begins_where_the_block_is_released(tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(film_module, "write_film", lambda *given: kept.append(given))
+    release = ["--width", "0.5", "--height", "1.5", "--tilt", "-0.7", "--rate", "0.1"]
+    arguments = [*release, "--sources", "exact", "pybullet", "--out", str(tmp_path / "film.gif")]
+    assert run(["animate", *arguments]) == 0
+    ((_, block, motion, times, rows, _),) = kept
+    assert motion == Still()
+    for row in rows:
+        assert row["theta"][0] == pytest.approx(-0.7 * block.alpha, rel=1e-9)
+        rate = (row["theta"][1] - row["theta"][0]) / times[1]
+        assert 0.0 < rate < 2.0 * block.alpha * block.p
+
+
+def pixels(stage):
+    frame = io.BytesIO()
+    stage.drawing.savefig(frame)
+    return np.frombuffer(frame.getvalue(), np.uint8).astype(int)
+
+
+def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
+    pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    times = np.linspace(0.0, 1.0, 11)
+    rows = [{"source": "exact", "outcome": "rocked", "theta": 0.3 * times}]
+    stage, fresh = (Stage(BLOCK, pulse, times, rows) for _ in range(2))
+    frames = []
+    stage.drawing.still(stage.moving)
+    for frame in (0, 10, 5):
+        stage.show(frame)
+        frames.append(pixels(stage))
+    fresh.show(5)
+    fresh.drawing.still(fresh.moving)
+    assert (frames[-1] == pixels(fresh)).all()
+    assert len(np.unique([np.count_nonzero(frames[0] != frame) for frame in frames])) == 3
+    # drawn whole, only what lies on the clock's line may differ: the frame around it
+    fresh.show(5)
+    for artist in fresh.moving:
+        artist.set_animated(False)
+    fresh.drawing.canvas.draw()
+    whole = np.asarray(fresh.drawing.canvas.buffer_rgba()).astype(int).ravel()
+    assert np.count_nonzero(whole != frames[-1]) < 100
 
 
 COLUMNS = "figure,pulse,excess_g,aspect,width_m,omega_over_p,source,peak_ratio"
@@ -130,10 +176,15 @@ def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch, ca
     ("arguments", "words"),
     [
         ([*CASE, "--out", "film.avi"], ("--out", ".gif")),
-        ([*CASE, "--out", "/nowhere/film.gif"], ("--out", "folder")),
+        ([*CASE, "--out", "nowhere/film.gif"], ("--out", "folder")),
         (["--out", "film.gif"], ("--width", "missing")),
         ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
         (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
+        (
+            ["--results", "results", "--tilt", "0.5", "--degrees", "--out", "film.gif"],
+            ("--tilt", "--degrees", "--results"),
+        ),
+        ([*CASE[:4], "--tilt", "5", "--out", "film.gif"], ("--tilt", "between")),
         ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
         ([*CASE, "--slower", "1e9", "--out", "film.gif"], ("--slower 1e+09", "1500")),
         ([*CASE, "--slower", "1e308", "--out", "film.gif"], ("--slower 1e+308", "1500")),
