@@ -42,19 +42,15 @@ def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -
             _error_panel(grid[2 * place + 1], part)
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    _legend_below(drawing, sources, ground=True)
+    _legend_below(drawing, sources, ground=bool(samples["amplitude_g"].any()))
     return drawing
 
 
 def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
     limit = _history_limit(panel)
-    ground = axes.twinx()
     motion = panel[panel["time_s"].notna()].drop_duplicates("time_s").sort_values("time_s")
-    ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
-    reach = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
-    ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
-    axes.set_zorder(ground.get_zorder() + 1)
-    axes.patch.set_visible(False)
+    if panel["amplitude_g"].iloc[0]:
+        _ground(axes, motion)
     leavers = 0
     for source, points in panel.groupby("source", sort=False):
         _one_history(axes, points, style_of(str(source)))
@@ -66,6 +62,15 @@ def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
         _name_the_bounds(axes)
     axes.set_title(_caption(panel.iloc[0]), fontsize=10)
     axes.grid(alpha=0.25)
+
+
+def _ground(axes: Axes, motion: pd.DataFrame) -> None:
+    ground = axes.twinx()
+    ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
+    reach = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
+    ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
+    axes.set_zorder(ground.get_zorder() + 1)
+    axes.patch.set_visible(False)
 
 
 def _name_the_bounds(axes: Axes) -> None:
@@ -93,7 +98,8 @@ def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
 def _caption(row: "pd.Series[Any]") -> str:
     label = f"({row['panel']})  " if isinstance(row["panel"], str) and row["panel"] else ""
     size = f"B = {row['width_m']:g} m, H = {row['height_m']:g} m"
-    return f"{label}{size}, {row['amplitude_g']:g} g, {row['pulse']}"
+    ground = f"{row['amplitude_g']:g} g, {row['pulse']}" if row["amplitude_g"] else "released"
+    return f"{label}{size}, {ground}"
 
 
 def _name_the_leaver(
@@ -136,8 +142,12 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
-    columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
+    columns = math.ceil(len(handles) / _legend_rows(len(handles)))
     drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
+
+
+def _legend_rows(entries: int) -> int:
+    return math.ceil(entries / 5)
 
 
 def _handle(source: str) -> Line2D:
