@@ -102,6 +102,8 @@ def told_of(folder: Path) -> list[Finding]:
     return [item for item in read_findings(folder) if item.holds is not None]
 
 
+SMALL = 1e-2
+"""Numbers below are shown as powers of ten."""
 LARGE = 150_000
 """Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
 
@@ -133,7 +135,8 @@ def cell(value: Any) -> Cell:
         return Cell(str(value), str(value))
     if math.isnan(value):
         return Cell("–", "")
-    return Cell(f"{value:.4g}", repr(value))
+    small = 0.0 < abs(value) < SMALL
+    return Cell(f"{value:.3e}" if small else f"{value:.4g}", repr(value))
 
 
 def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
