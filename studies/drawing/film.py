@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 from studies.kit.arguments import BadInputError
 from studies.kit.journal import Row
 
@@ -172,7 +172,8 @@ class Stage:
             )
         axes.set_ylim(-1.6, 1.6)
         axes.set_xlim(0.0, float(self.times[-1]))
-        axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
+        if motion.duration:
+            axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
         axes.axhline(1.0, color="#aaaaaa", linewidth=0.8)
         axes.axhline(-1.0, color="#aaaaaa", linewidth=0.8)
         axes.set_xlabel("time  [s]")

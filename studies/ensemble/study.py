@@ -259,11 +259,14 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw a folder's figure from its tables alone."""
-    from studies.ensemble.figure import draw_ensemble
+    """Draw a folder's figures from its tables alone; single responses where it holds them."""
+    from studies.ensemble.figure import draw_fragility, draw_singles
 
-    stripes, curves = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves"))
-    return {"ensemble": draw_ensemble(read_rows(folder), stripes, curves)}
+    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
+    drawn = {"ensemble": draw_fragility(*tables)}
+    if (folder / "ensemble.csv").is_file():
+        drawn["singles"] = draw_singles(read_rows(folder))
+    return drawn
 
 
 def headline(folder: Path) -> str:

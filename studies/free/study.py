@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import brentq
 
-from analytic import RigidBlock, SinePulse, peak_ratios
+from analytic import MODELS, RigidBlock, SinePulse, peak_ratios
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
@@ -24,6 +24,7 @@ from studies.kit.naming import several_sources
 from studies.kit.runner import exit_code, fill_folder
 from studies.measures.differences import scientific
 from studies.sources.groups import core_sources
+from studies.sources.registry import resolve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,8 +34,6 @@ TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Rotations over alpha from which the blocks fall."""
 QUICK_ASPECTS, QUICK_TILTS = (2.0, 4.0), (0.3, 0.9)
 DEFAULT_SOURCES = ("exact", "housner", "modified", "rk4", *core_sources())
-MODEL_OF = {"housner": "housner", "modified": "modified"}
-"""Whose closed form a source is held against, where that is not the exact one."""
 OMEGA_OVER_P = 8.0
 """Of the half-sine that tilts the block: it is over long before the block turns."""
 SAMPLES = 6000
@@ -118,7 +117,7 @@ def free_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
 def released(aspect: float, tilt: float, source: str) -> Job:
     """Return the job of a block that a pulse tilts to `tilt` alpha, of the source's own model."""
     block = RigidBlock(width=0.5, height=0.5 * aspect)
-    model = MODEL_OF.get(source, "exact")
+    model = resolve(source).model
     motion = SinePulse(
         amplitude=tilting_amplitude(block, tilt, model) * block.gravity,
         omega=OMEGA_OVER_P * block.p,
@@ -149,7 +148,7 @@ def tilting_amplitude(block: RigidBlock, tilt: float, model: str) -> float:
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the summary, the largest errors of period and decay over the swings, and the drift."""
-    model = MODEL_OF.get(job.source, "exact")
+    model = resolve(job.source).model
     period_error = decay_error = drift = math.nan
     timed = 0
     tops = turning_points(response)
@@ -191,11 +190,11 @@ def swing_times(block: RigidBlock, theta: float, model: str) -> list[float]:
 
 def next_amplitude(block: RigidBlock, theta: float, model: str) -> float:
     """Return the rotation [rad] that follows the impact after `theta`, by energy."""
-    if model == "exact":
+    law = MODELS[model].law(block.alpha, block.restitution)
+    if not law.linear:
         return free_amplitude(block, theta, 1)
-    saddle = block.alpha if model == "housner" else math.tan(block.alpha)
-    left = block.restitution**2 * theta * (2.0 * saddle - theta)
-    return left / (saddle + math.sqrt(saddle**2 - left))
+    left = law.eta**2 * theta * (2.0 * law.saddle - theta)
+    return left / (law.saddle + math.sqrt(law.saddle**2 - left))
 
 
 def turning_points(response: Response) -> list[float]:

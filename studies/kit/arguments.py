@@ -44,17 +44,28 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
     return Parameter(converter=read, n_tokens=1, allow_leading_hyphen=True)
 
 
+def _plain(type_: type, text: str) -> Any:
+    # Python also reads 1_000 and the digits of every script
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+    return type_(text)
+
+
 def _number(most: float) -> Callable[[type, str], Any]:
     def convert(type_: type, text: str) -> Any:
-        # Python also reads 1_000 and the digits of every script
-        if not text.isascii() or "_" in text:
-            raise ValueError(text)
-        value = type_(text)
+        value = _plain(type_, text)
         if not 0 < value <= most:
             raise ValueError(text)
         return value
 
     return convert
+
+
+def _finite(type_: type, text: str) -> Any:
+    value = _plain(type_, text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
 
 
 def _path(type_: type, text: str) -> Path:
@@ -67,6 +78,9 @@ Positive = Annotated[
     float, _read("a positive finite number", _number(math.nextafter(math.inf, 0.0)))
 ]
 """A positive finite number."""
+
+Finite = Annotated[float, _read("a finite number", _finite)]
+"""A finite number of either sign."""
 
 Count = Annotated[int, _read(f"a positive whole number up to {MOST}", _number(MOST))]
 """A positive whole number."""

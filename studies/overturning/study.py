@@ -36,7 +36,11 @@ from studies.sources.groups import core_sources
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
-DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
+DEFAULT_SOURCES = (
+    *("exact", "housner", "modified", "onset-matched"),
+    *core_sources("naive"),
+    *core_sources(),
+)
 STRIP = 250_000
 """Cases that are held at a time."""
 CELL_BYTES, COLUMN_BYTES = 200.0, 3000.0

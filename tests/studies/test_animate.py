@@ -8,12 +8,14 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
+from studies.drawing import film as film_module
 from studies.drawing.film import Stage, outline
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
+from studies.kit.posing import Posed
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
@@ -34,7 +36,7 @@ def test_a_leaning_block_stands_on_one_corner(theta):
 def test_an_overturned_block_lies():
     pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
     times = np.linspace(0.0, 4.0, 60)
-    rows = shown(BLOCK, pulse, ("exact", "housner"), times, Local(1, 10.0))
+    rows = shown(BLOCK, Posed(pulse, (0.0, 0.0)), ("exact", "housner"), times, Local(1, 10.0))
     assert abs(rows[1]["theta"][-1]) == pytest.approx(math.pi / 2)
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
     flat = outline(BLOCK, float(rows[1]["theta"][-1]))
@@ -101,6 +103,20 @@ def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
     assert np.count_nonzero(whole != frames[-1]) < 100
 
 
+def test_a_film_begins_where_the_block_is_released(tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(film_module, "write_film", lambda *given: kept.append(given))
+    release = ["--width", "0.5", "--height", "1.5", "--tilt", "-0.7", "--rate", "0.1"]
+    arguments = [*release, "--sources", "exact", "pybullet", "--out", str(tmp_path / "film.gif")]
+    assert run(["animate", *arguments]) == 0
+    ((_, block, motion, times, rows, _),) = kept
+    assert motion == Still()
+    for row in rows:
+        assert row["theta"][0] == pytest.approx(-0.7 * block.alpha, rel=1e-9)
+        rate = (row["theta"][1] - row["theta"][0]) / times[1]
+        assert 0.0 < rate < 2.0 * block.alpha * block.p
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -109,6 +125,11 @@ def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
         (["--out", "film.gif"], ("--width", "missing")),
         ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
         (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
+        (
+            ["--results", "results", "--tilt", "0.5", "--degrees", "--out", "film.gif"],
+            ("--tilt", "--degrees", "--results"),
+        ),
+        ([*CASE[:4], "--tilt", "5", "--out", "film.gif"], ("--tilt", "between")),
         ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
     ],
 )

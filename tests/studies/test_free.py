@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import RigidBlock, SinePulse, peak_ratios, simulate
+from analytic import MODELS, RigidBlock, SinePulse, peak_ratios, simulate
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.response import Outcome
 from engines import core_engines
@@ -30,7 +30,7 @@ from studies.sources.registry import SOURCES, resolve
 BLOCK = RigidBlock(width=0.5, height=1.5)
 
 
-@pytest.mark.parametrize("model", ["exact", "housner", "modified"])
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("tilt", [0.1, 0.9])
 def test_the_pulse_tilts_the_block_as_asked_and_is_over_by_then(model, tilt):
     amplitude = tilting_amplitude(BLOCK, tilt, model)
@@ -43,9 +43,9 @@ def test_the_pulse_tilts_the_block_as_asked_and_is_over_by_then(model, tilt):
     assert times[np.argmax(np.abs(history.theta))] > pulse.duration
 
 
-@pytest.mark.parametrize("model", ["housner", "modified"])
+@pytest.mark.parametrize("model", ["housner", "modified", "onset-matched"])
 def test_next_amplitude_is_that_of_the_linear_energy(model):
-    saddle = BLOCK.alpha if model == "housner" else math.tan(BLOCK.alpha)
+    saddle = math.tan(BLOCK.alpha) if model == "modified" else BLOCK.alpha
     theta = 0.4 * BLOCK.alpha
     after = next_amplitude(BLOCK, theta, model)
     energy, later = (x * (2 * saddle - x) for x in (theta, after))
@@ -58,16 +58,16 @@ def test_crest_of_a_parabola_between_samples():
     assert crest(theta, np.arange(21)) == pytest.approx(1.0, rel=1e-14)
 
 
-@pytest.mark.parametrize(("source", "allowed"), [("exact", 1e-9), ("modified", 1e-9)])
-def test_models_rock_as_their_closed_forms(source, allowed):
+@pytest.mark.parametrize("source", MODELS)
+def test_models_rock_as_their_own_closed_forms(source):
     job = released(2.0, 0.5, source)
     response = ask(job, resolve(source))
     assert len(turning_points(response)) == free.SWINGS + 1
     row = reduce(job, response)
     assert row["swings"] == free.SWINGS
     # a parabola through samples of a crest
-    assert row["period_error"] < allowed
-    assert row["decay_error"] < allowed
+    assert row["period_error"] < 1e-9
+    assert row["decay_error"] < 1e-9
 
 
 @pytest.mark.parametrize("engine", core_engines())
