@@ -12,6 +12,8 @@ GROUP = "rocking.engines"
 OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
+    "pymunk": "engines.adapters.pymunk:ENGINE",
+    "dart": "engines.adapters.dart:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

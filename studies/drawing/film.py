@@ -18,7 +18,8 @@ from tqdm import tqdm
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from studies.drawing.styles import style_of
-from studies.kit.arguments import BadInputError
+from studies.kit.arguments import BadInputError, check_writable
+from studies.kit.drafts import draft_place
 from studies.kit.journal import Row
 
 PRESET_LINES = {"naive": ":", "fixed": "--"}
@@ -34,6 +35,7 @@ def check_film(path: Path) -> None:
         raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
     if not path.parent.is_dir():
         raise BadInputError(f"--out is {str(path)!r}; its folder must exist")
+    check_writable("--out", path)
     if path.suffix == ".mp4":
         _ffmpeg()
 
@@ -69,13 +71,12 @@ def write_film(
     frames_a_second : int
     """
     stage = Stage(block, motion, times, rows)
-    draft = path.with_name(f".part.{path.name}")
-    if path.suffix == ".gif":
-        _roll(stage, PillowWriter(fps=frames_a_second), draft, dpi=80)
-    else:
-        with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
-            _roll(stage, FFMpegWriter(fps=frames_a_second, bitrate=1800), draft, dpi=110)
-    draft.replace(path)
+    with draft_place(path) as part:
+        if path.suffix == ".gif":
+            _roll(stage, PillowWriter(fps=frames_a_second), part, dpi=80)
+        else:
+            with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+                _roll(stage, FFMpegWriter(fps=frames_a_second, bitrate=1800), part, dpi=110)
 
 
 def _roll(stage: "Stage", writer: AbstractMovieWriter, path: Path, dpi: int) -> None:
@@ -139,9 +140,10 @@ class Stage:
         axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, 1.2 * reach), aspect="equal")
         axes.set_axis_off()
         axes.set_title(f"{row['source']}\n{row['outcome']}", fontsize=9)
-        ground = axes.add_patch(
-            Rectangle((-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach, color="#9a9a9a")
+        ground = Rectangle(
+            (-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach, color="#9a9a9a"
         )
+        axes.add_patch(ground)
         self._spacing = 2.0 * reach / (POSTS - 1)
         posts = axes.vlines(
             self._post_places(0.0), 0.0, 1.2 * reach, color="#e4e4e4", linewidth=2, zorder=0
