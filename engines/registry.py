@@ -13,6 +13,7 @@ OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
     "dart": "engines.adapters.dart:ENGINE",
+    "rapier": "engines.adapters.rapier:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 
