@@ -3,10 +3,13 @@
 from typing import TYPE_CHECKING
 
 from studies import (
+    advise,
     animate,
     compare,
     contact,
     ensemble,
+    estimate,
+    export,
     free,
     harmonic,
     histories,
@@ -23,8 +26,10 @@ from studies import (
 from studies.kit.study import Chapter, Study
 
 STUDIES: tuple[Study, ...] = (
+    advise.STUDY,
     compare.STUDY,
     animate.STUDY,
+    export.STUDY,
     sweep.STUDY,
     histories.STUDY,
     linearizations.STUDY,
@@ -32,6 +37,7 @@ STUDIES: tuple[Study, ...] = (
     harmonic.STUDY,
     literature.STUDY,
     validate.STUDY,
+    estimate.STUDY,
     precision.STUDY,
     precision.COST,
     contact.STUDY,
@@ -49,8 +55,10 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 """Every study's places in a report, in its order."""
 
 if TYPE_CHECKING:
+    from studies.advise import study as _advise
     from studies.contact import study as _contact
     from studies.ensemble import study as _ensemble
+    from studies.estimate import study as _estimate
     from studies.free import study as _free
     from studies.harmonic import study as _harmonic
     from studies.histories import study as _histories
@@ -68,5 +76,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
+        *(_advise, _estimate),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

@@ -3,34 +3,29 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
 
 from analytic.block import RigidBlock
-from analytic.motion import Motion
+from analytic.motion import FloatArray
 from analytic.response import Outcome
 from studies.cases.paper import Case, free_rocking_window
-from studies.kit import provenance
-from studies.kit.arguments import (
-    BadInputError,
-    Count,
-    Place,
-    Positive,
-    check_sources,
-    refuse_given,
-)
-from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
+from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
+from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job, one_line, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.posing import posed_block, posed_pulse
+from studies.kit.plan import DEFAULT_RUNNING, Running
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 FRAMES_A_SECOND = 25
+MOST_FRAMES = 1500
+"""A minute of film, which holds up to 3 GB of memory while it is drawn."""
 CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 
 
@@ -39,15 +34,11 @@ def command(
     out: Place,
     width: Positive | None = None,
     height: Positive | None = None,
-    amplitude: Positive | None = None,
-    omega: Positive | None = None,
-    pulse: Literal["half-sine", "full-sine"] | None = None,
-    half_cycles: Count | None = None,
+    excitation: Excitation = DEFAULT_EXCITATION,
     results: Place | None = None,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     slower: Positive = 1.0,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Show a block rocking in several sources side by side.
 
@@ -59,25 +50,13 @@ def command(
         Full width B of the block [m].
     height
         Full height H of the block [m].
-    amplitude
-        Amplitude of the ground acceleration [g].
-    omega
-        Circular frequency of the pulse [rad/s].
-    pulse
-        half-sine or full-sine; full-sine unless --half-cycles is given.
-    half_cycles
-        Number of half cycles, instead of --pulse.
     results
-        Instead of a block and a pulse: results of `rocking sweep`, of which the case is shown in
-        which the sources differ most.
+        Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
+        shown in which the sources differ most.
     sources
         As in `rocking compare`, at most 8.
     slower
         Seconds of film for a second of shaking.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine is given up.
     """
     from studies.drawing.film import check_film, write_film
 
@@ -85,41 +64,29 @@ def command(
     check_film(out)
     if len(sources) > 8:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most 8")
-    block, motion = _posed(width, height, amplitude, omega, pulse, half_cycles, results, sources)
-    window = free_rocking_window(block, motion)
-    times = np.linspace(0.0, window, math.ceil(window * slower * FRAMES_A_SECOND) + 1)
-    executor = Local(jobs or provenance.usable_cores(), time_limit)
-    rows = shown(block, motion, sources, times, executor)
-    usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
-    if usable:
-        write_film(out, block, motion, times, usable, FRAMES_A_SECOND)
-        print(out)
-    return exit_code(rows)
-
-
-def _posed(
-    width: float | None,
-    height: float | None,
-    amplitude: float | None,
-    omega: float | None,
-    pulse: str | None,
-    half_cycles: int | None,
-    results: Path | None,
-    sources: Sequence[str],
-) -> tuple[RigidBlock, Motion]:
     if results is None:
         if width is None or height is None:
             raise BadInputError("--width and --height missing; give them, or --results")
-        return posed_block(width, height), posed_pulse(amplitude, omega, pulse, half_cycles)
-    refuse_given(
-        {
-            **{"width": width, "height": height, "amplitude": amplitude, "omega": omega},
-            **{"pulse": pulse, "half-cycles": half_cycles},
-        },
-        "only without --results",
-    )
-    case = most_different(results, sources)
-    return case.block, case.motion
+        block = posed_block(width, height)
+        posed = excitation.pose(block)
+    else:
+        refuse_given({"width": width, "height": height}, "only without --results")
+        excitation.refuse("only without --results")
+        case = most_different(results, sources)
+        block, posed = case.block, Posed(case.motion, (0.0, 0.0))
+    window = free_rocking_window(block, posed.motion)
+    frames = window * slower * FRAMES_A_SECOND
+    if not frames < MOST_FRAMES:
+        seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
+        raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
+    times = np.linspace(0.0, window, math.ceil(frames) + 1)
+    executor = choose(running.jobs, running.time_limit, running.cluster)
+    rows = shown(block, posed, sources, times, executor)
+    usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
+    if usable:
+        write_film(out, block, posed.motion, times, usable, FRAMES_A_SECOND)
+        print(out)
+    return exit_code(rows)
 
 
 def most_different(results: Path, sources: Sequence[str]) -> Case:
@@ -136,35 +103,57 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
     path = results / "sweep.csv"
     if not path.is_file():
         raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
+    try:
+        peaks = _peaks(path)
+        missing = sorted(set(sources) - set(peaks.columns))
+        if missing:
+            raise ValueError(f"it lacks {', '.join(missing)}")
+        case = _furthest_apart(peaks[list(sources)])
+        _ = case.block, case.motion
+    except OSError:
+        raise
+    except Exception as error:
+        # a table that was edited may be anything
+        problem = "no case of its sweep.csv can be shown"
+        words = f"{problem} ({one_line(error)})"
+        raise BadInputError(f"--results is {str(results)!r}; {words}") from error
+    return case
+
+
+def _peaks(path: Path) -> pd.DataFrame:
+    """Return the peaks of a sweep, a row for each case and a column for each source."""
     rows = pd.read_csv(path)
-    missing = sorted(set(sources) - set(rows["source"]))
-    if missing:
-        raise BadInputError(f"--results is {str(results)!r}; it lacks {', '.join(missing)}")
-    peaks = rows[rows["source"].isin(sources)].pivot(
-        index=list(CASE), columns="source", values="peak_ratio"
-    )
-    least, most = peaks.min(axis=1), peaks.max(axis=1)
+    return rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
+
+
+def _furthest_apart(peaks: pd.DataFrame) -> Case:
+    answered = peaks.dropna()
+    least, most = answered.min(axis=1), answered.max(axis=1)
     apart = np.isinf(most) & np.isfinite(least)
-    place: Any = least[apart].idxmin() if apart.any() else (most / least).idxmax()
+    ratios = (most / least).where(most > least, 1.0)
+    if ratios.empty:
+        raise ValueError("in each of them a source failed")
+    place: Any = least[apart].idxmin() if apart.any() else ratios.idxmax()
     return Case(**dict(zip(CASE, place, strict=True)))
 
 
 def shown(
     block: RigidBlock,
-    motion: Motion,
+    posed: Posed,
     sources: Sequence[str],
-    times: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
-    executor: Local,
+    times: FloatArray,
+    executor: Executor,
 ) -> list[Row]:
     """Run the sources, and return their rows with the rotation [rad] at every time."""
     jobs = [
         Job(
             labels={},
             block=block,
-            motion=motion,
+            motion=posed.motion,
             source=source,
             duration=float(times[-1]),
             times=times,
+            options={} if posed.start == (0.0, 0.0) else {"start": posed.start},
         )
         for source in sources
     ]

@@ -8,59 +8,88 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.motion import Motion, SinePulse
+from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.simulate import strongest
 from studies.cases.paper import PULSES
 from studies.kit.journal import Row
+from studies.kit.posing import Posed
 from studies.measures.differences import scientific
 
 DRIFT = 1e-6
 """Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
 
 
+SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
+BESIDE = ("error", "velocity_ratio", "impact_error")
+ESTIMATED = ("estimate", "bound")
+"""Columns of a comparison that its JSON has, the last where asked for; a number that is not finite
+is null there."""
+
+
 def json_lines(rows: list[Row], note: str = "") -> str:
-    """Return one JSON object a line; a peak that is not finite is null, a note in each message."""
-    names = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
-    objects: list[dict[str, Any]] = [{name: row[name] for name in names} for row in rows]
-    for item in objects:
+    """Return one JSON object a line; a number that is not finite is null, a note in each message.
+
+    The last three, `valid` among them, say what the exact solution needs, and are alike in all.
+    """
+    objects: list[dict[str, Any]] = []
+    for row in rows:
+        exact = row["exact"]
+        item = {name: row[name] for name in (*SHARED, *BESIDE, *ESTIMATED) if name in row}
         item["message"] = "; ".join(words for words in (item["message"], note) if words)
-        if not math.isfinite(item["peak_ratio"]):
-            item["peak_ratio"] = None
-    return "\n".join(json.dumps(item, allow_nan=False) for item in objects)
+        item |= {name: getattr(exact, name) for name in ("min_normal", "friction_needed")}
+        objects.append({**item, "valid": valid(exact)})
+    return "\n".join(
+        json.dumps({k: _finite_or_null(v) for k, v in item.items()}, allow_nan=False)
+        for item in objects
+    )
+
+
+def _finite_or_null(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def table_text(
-    block: RigidBlock, motion: Motion, window: float, rows: list[Row], note: str = ""
+    block: RigidBlock,
+    posed: Posed,
+    window: float,
+    rows: list[Row],
+    note: str = "",
+    *,
+    degrees: bool = False,
 ) -> str:
     """Return the table with its head, a note on the motion in it, and the messages under it."""
+    motion, scale = posed.motion, math.degrees(block.alpha) if degrees else 1.0
     table = pd.DataFrame(
         {
             "source": [row["source"] for row in rows],
             "outcome": [row["outcome"] for row in rows],
-            "θmax/θcr": [_peak(row) for row in rows],
+            "θmax [°]" if degrees else "θmax/θcr": [_peak(row, scale) for row in rows],
             "vs exact": [_difference(row) for row in rows],
+            **_estimates(rows),
             "impacts": [row["impacts"] for row in rows],
+            "late·p": [_part(row["impact_error"]) for row in rows],
             "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
-            "slip/B": [_slip(row["response"].slip_m / block.width) for row in rows],
+            "slip/B": [_part(row["response"].slip_m / block.width) for row in rows],
             "steps": [row["steps"] for row in rows],
             "time": [_duration(row["wall_s"]) for row in rows],
         }
     )
     notes = [f"{row['source']}: {row['message']}" for row in rows if row["message"]]
+    alpha = f"{math.degrees(block.alpha):.5g}°" if degrees else f"{block.alpha:.5g} rad"
     return "\n".join(
         [
             f"block   B = {block.width:g} m, H = {block.height:g} m: "
-            f"α = θcr = {block.alpha:.5g} rad, p = {block.p:.5g} rad/s",
-            f"ground  {motion_name(motion)}, {strongest(motion) / block.gravity:.6g} g, "
-            f"{motion_details(motion)}; observed for {window:.4g} s",
+            f"α = θcr = {alpha}, p = {block.p:.5g} rad/s",
+            f"ground  {ground(motion, block)}; observed for {window:.4g} s",
+            *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
+            "late    largest error of the first five impact times, times p",
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
-            f"valid   {validity(block, motion)}",
+            f"valid   {validity(rows[0]['exact'])}",
             "",
             table.to_string(index=False),
             *notes,
@@ -68,12 +97,38 @@ def table_text(
     )
 
 
-def validity(block: RigidBlock, motion: Motion) -> str:
+def _estimates(rows: list[Row]) -> dict[str, list[str]]:
+    """Return the columns of estimates, where they were asked for."""
+    columns = {"estimate": "estimate", "bound 95 %": "bound"}
+    asked = {head: name for head, name in columns.items() if name in rows[0]}
+    return {head: [_part(row[name]) for row in rows] for head, name in asked.items()}
+
+
+def _start(block: RigidBlock, posed: Posed, degrees: bool) -> str:
+    theta, rate = posed.start
+    if degrees:
+        return f"θ = {math.degrees(theta):.6g}°, θ' = {math.degrees(rate):.6g}°/s"
+    return f"θ = {theta / block.alpha:.6g} α, θ' = {rate / (block.alpha * block.p):.6g} αp"
+
+
+def valid(exact: Response) -> bool | None:
+    """Say whether the pivot stays on the base in the exact solution; None if that does not tell.
+
+    Forces of a block that overturns are those of its fall, too, and say nothing.
+    """
+    if exact.outcome in (Outcome.FAILED, Outcome.OVERTURNED):
+        return None
+    return exact.min_normal >= 0.0
+
+
+def validity(exact: Response) -> str:
     """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
-    exact = simulate(block, motion)
+    holds = valid(exact)
     if exact.outcome is Outcome.FAILED:
         return "unknown: there is no exact solution to tell"
-    if exact.min_normal < 0.0:
+    if holds is None:
+        return "unknown: forces of a block that overturns are those of its fall, too"
+    if not holds:
         return "not here: the pivot would lift off, and an engine is right to differ"
     least = f"the normal force stays above {exact.min_normal:.3g} of the weight"
     return f"with friction of {exact.friction_needed:.3g} or more; {least}"
@@ -85,15 +140,26 @@ def pulse_name(half_cycles: int) -> str:
     return names.get(half_cycles, f"{half_cycles} half cycles")
 
 
+def ground(motion: Motion, block: RigidBlock) -> str:
+    """Return a ground motion in words: its name, its peak and its details."""
+    if isinstance(motion, Still):
+        return motion_name(motion)
+    peak = f"{strongest(motion) / block.gravity:.6g} g"
+    return f"{motion_name(motion)}, {peak}, {motion_details(motion)}"
+
+
 def motion_name(motion: Motion) -> str:
     """Return what a ground motion is called."""
+    if isinstance(motion, Still):
+        return "at rest"
     return pulse_name(motion.half_cycles) if isinstance(motion, SinePulse) else "record"
 
 
 def motion_details(motion: Motion) -> str:
     """Say what a reader needs to know of a ground motion besides its name and its peak."""
     if isinstance(motion, SinePulse):
-        return f"{motion.omega:g} rad/s, {motion.duration:.4g} s"
+        phase = f", phase {motion.phase:g} rad" if motion.phase else ""
+        return f"{motion.omega:g} rad/s{phase}, {motion.duration:.4g} s"
     times = np.array(motion.breakpoints)
     speed = float(np.abs(motion.velocity(times)).max())
     step = motion.duration / (times.size - 1)
@@ -113,12 +179,12 @@ def baseline_note(record: Record, baseline: str | None) -> str:
     return "; ".join(words)
 
 
-def _peak(row: Row) -> str:
-    return f"{row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
+def _peak(row: Row, scale: float) -> str:
+    return f"{scale * row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
 
 
 def _difference(row: Row) -> str:
-    value = row["difference"]
+    value = row["error"]
     return ("" if value < 0 else "+") + scientific(value) if math.isfinite(value) else "-"
 
 
@@ -126,7 +192,7 @@ def _fixed(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.6f}"
 
 
-def _slip(value: float) -> str:
+def _part(value: float) -> str:
     return "-" if math.isnan(value) else scientific(value)
 
 
@@ -151,7 +217,7 @@ def draw(rows: list[Row], block: RigidBlock, motion: Motion, path: Path) -> None
         if row["response"].history is not None
     ]
     if parts:
-        save(draw_histories(pd.concat(parts), "The same block, the same shaking"), path)
+        save(draw_histories(pd.concat(parts), "The same block, the same motion of the base"), path)
 
 
 def samples(

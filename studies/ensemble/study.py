@@ -28,6 +28,7 @@ from studies.kit.arguments import (
     refuse_repeats,
     several_or_none,
 )
+from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -58,6 +59,9 @@ DEFAULT_SOURCES = (
     *core_sources("naive"),
     *core_sources(),
 )
+
+MOTION_BYTES = 1.2e4
+"""About what a motion scaled to an intensity holds."""
 
 TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
 
@@ -141,6 +145,7 @@ def command(
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
     cluster: str | None = None,
+    yes: bool = False,
 ) -> int:
     """Shake blocks by many motions of rising intensity, through every named source.
 
@@ -173,8 +178,11 @@ def command(
         Wall-clock time [s] after which an engine's case is given up.
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
+    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     if records is not None:
         refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
         refuse_repeats("--records", records)
@@ -182,8 +190,11 @@ def command(
     else:
         refuse_given({"units": units, "baseline": baseline}, "only with --records")
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
+        many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
+        asked = f"--motions is {count}"
+        refuse_excess(asked, many * (MOTION_BYTES + len(everyone) * CASE_BYTES))
+        refuse_days(asked, expected_s(many, everyone, jobs=jobs, time_limit_s=time_limit), yes)
         ground = drawn(name, count, seed or 1)
-    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
     executor = choose(jobs, time_limit, cluster)
     origin = [path.name for path in records] if records else [name, str(seed or 1)]
@@ -259,11 +270,14 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw a folder's figure from its tables alone."""
-    from studies.ensemble.figure import draw_ensemble
+    """Draw a folder's figures from its tables alone; single responses where it holds them."""
+    from studies.ensemble.figure import draw_fragility, draw_singles
 
-    stripes, curves = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves"))
-    return {"ensemble": draw_ensemble(read_rows(folder), stripes, curves)}
+    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
+    drawn = {"ensemble": draw_fragility(*tables)}
+    if (folder / "ensemble.csv").is_file():
+        drawn["singles"] = draw_singles(read_rows(folder))
+    return drawn
 
 
 def headline(folder: Path) -> str:

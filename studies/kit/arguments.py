@@ -1,5 +1,6 @@
 """What the command line accepts: numbers with their range, sources, paths; one line if not."""
 
+import errno
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -44,17 +45,28 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
     return Parameter(converter=read, n_tokens=1, allow_leading_hyphen=True)
 
 
+def _plain(type_: type, text: str) -> Any:
+    # Python also reads 1_000 and the digits of every script
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+    return type_(text)
+
+
 def _number(most: float) -> Callable[[type, str], Any]:
     def convert(type_: type, text: str) -> Any:
-        # Python also reads 1_000 and the digits of every script
-        if not text.isascii() or "_" in text:
-            raise ValueError(text)
-        value = type_(text)
+        value = _plain(type_, text)
         if not 0 < value <= most:
             raise ValueError(text)
         return value
 
     return convert
+
+
+def _finite(type_: type, text: str) -> Any:
+    value = _plain(type_, text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
 
 
 def _path(type_: type, text: str) -> Path:
@@ -67,6 +79,9 @@ Positive = Annotated[
     float, _read("a positive finite number", _number(math.nextafter(math.inf, 0.0)))
 ]
 """A positive finite number."""
+
+Finite = Annotated[float, _read("a finite number", _finite)]
+"""A finite number of either sign."""
 
 Count = Annotated[int, _read(f"a positive whole number up to {MOST}", _number(MOST))]
 """A positive whole number."""
@@ -149,12 +164,20 @@ def check_plot(path: Path | None) -> None:
         return
     if path.suffix not in (".png", ".pdf", ".svg"):
         raise BadInputError(f"--plot is {str(path)!r}; it must end in .png, .pdf or .svg")
+    check_writable("--plot", path)
+
+
+def check_writable(argument: str, path: Path) -> None:
+    """Raise BadInputError if the file that an argument names cannot be written."""
     try:
+        if path.exists() and not path.is_file():
+            # a pipe would be waited for
+            raise OSError(errno.EINVAL, "it is no file")
         with path.open("ab") as probe:
             fresh = probe.tell() == 0
         if fresh:
             path.unlink()
     except OSError as error:
         raise BadInputError(
-            f"--plot is {str(path)!r}; it must be a file that can be written ({error.strerror})"
+            f"{argument} is {str(path)!r}; it must be a file that can be written ({error.strerror})"
         ) from error

@@ -49,8 +49,8 @@ class Plan:
 
     Attributes
     ----------
-    jobs : sequence of Job
-        In the order of the table.
+    jobs : sequence of Job, or callable
+        In the order of the table; or what makes them, where that takes long.
     settings : mapping
         What all rows depend on beside the code; must be the same whenever a folder is used.
     growing : mapping
@@ -63,7 +63,7 @@ class Plan:
         A label whose values name the tables, where a study has several.
     """
 
-    jobs: Sequence[Job]
+    jobs: Sequence[Job] | Callable[[], Sequence[Job]]
     settings: Mapping[str, Any] = field(default_factory=dict)
     growing: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     ask: Callable[[Job, Source], Response] = ask

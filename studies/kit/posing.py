@@ -1,21 +1,171 @@
-"""From the options of a command line to a block and the motion of its base."""
+"""From the options of a command line to a block, the motion of its base, and how it starts."""
 
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+from cyclopts import Parameter
 
 from analytic.block import STANDARD_GRAVITY, RigidBlock
-from analytic.motion import SinePulse
+from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
-from studies.cases.accelerograms import Baseline, corrected, read_record
+from analytic.simulate import strongest
+from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.paper import PULSES
-from studies.kit.arguments import BadInputError, as_bad_input
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Finite,
+    Place,
+    Positive,
+    as_bad_input,
+    refuse_given,
+)
+
+OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
+OF_A_RECORD = ("units", "scale", "pga", "baseline")
 
 
-def _half_cycles(pulse: str | None, half_cycles: int | None) -> int:
-    if pulse and half_cycles:
-        raise BadInputError(
-            f"--half-cycles is {half_cycles} and --pulse is {pulse}; give one or the other"
-        )
-    return half_cycles or PULSES[pulse or "full-sine"]
+class Posed(NamedTuple):
+    """A motion of the base, and theta [rad] and its rate [rad/s] at t = 0."""
+
+    motion: Motion
+    start: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Excitation:
+    """What happens to a block: a pulse or a record, or a release on ground that does not move.
+
+    Attributes
+    ----------
+    amplitude
+        Amplitude of the ground acceleration [g], positive: the mirror image of a pulse has the
+        mirror image of its response.
+    omega
+        Circular frequency of the pulse [rad/s].
+    pulse
+        half-sine or full-sine; full-sine unless --half-cycles is given.
+    half_cycles
+        Number of half cycles, instead of --pulse.
+    phase
+        Phase [rad] of the pulse at its begin; 1.5708 makes it a cosine.
+    record
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
+        a table of time [s] and acceleration. It is straight between its samples.
+    units
+        Of the record's acceleration, where the file does not state them.
+    scale
+        Factor on the record's acceleration.
+    pga
+        Scale the record to this largest absolute acceleration [g].
+    baseline
+        Correct the record, before it is scaled, by what scipy.signal.detrend takes away: its mean
+        (constant) or the line that fits it best (linear). By default it is taken as it is, and what
+        velocity it leaves the base with is reported.
+    tilt
+        Rotation from which the block starts, in units of α; it stands on the corner that it leans
+        towards, to the right where positive. Without a pulse or record it is released on ground
+        that does not move.
+    rate
+        Angular velocity with which it starts, in units of αp; that of an upright block says about
+        which corner it turns.
+    degrees
+        Angles in degrees: --tilt, --rate [°/s] and --phase, and the rotations in a table.
+    """
+
+    amplitude: Positive | None = None
+    omega: Positive | None = None
+    pulse: Literal["half-sine", "full-sine"] | None = None
+    half_cycles: Count | None = None
+    phase: Finite | None = None
+    record: Place | None = None
+    units: Units | None = None
+    scale: Positive | None = None
+    pga: Positive | None = None
+    baseline: Baseline | None = None
+    tilt: Finite | None = None
+    rate: Finite | None = None
+    degrees: bool = False
+
+    def pose(self, block: RigidBlock) -> Posed:
+        """Return the motion and the start that the options mean for a block.
+
+        Raises
+        ------
+        BadInputError
+            If they contradict one another, or a value is not allowed.
+        """
+        motion = self._motion()
+        return Posed(motion, self._start(block, motion))
+
+    def refuse(self, allowed: str) -> None:
+        """Raise BadInputError if an option was given a value, which is allowed otherwise."""
+        refuse_given(self._given(each.name for each in fields(self)), allowed)
+
+    def _given(self, names: Iterable[str]) -> dict[str, object]:
+        given = {name.replace("_", "-"): getattr(self, name) for name in names}
+        return {name: None if value is False else value for name, value in given.items()}
+
+    def _motion(self) -> Motion:
+        if self.record is not None:
+            refuse_given(self._given(OF_A_PULSE), "only without --record")
+            return _recorded(self.record, self.units, self.scale, self.pga, self.baseline)
+        refuse_given(self._given(OF_A_RECORD), "only with --record")
+        pulse = any(value is not None for value in self._given(OF_A_PULSE).values())
+        released = (self.tilt or self.rate) and not pulse
+        return Still() if released else self._pulse()
+
+    def _pulse(self) -> SinePulse:
+        if self.pulse and self.half_cycles:
+            raise BadInputError(
+                f"--half-cycles is {self.half_cycles} and --pulse is {self.pulse}; "
+                "give one or the other"
+            )
+        if self.amplitude is None or self.omega is None:
+            values = (("--amplitude", self.amplitude), ("--omega", self.omega))
+            missing = " and ".join(name for name, value in values if not value)
+            raise BadInputError(
+                f"{missing} missing; a pulse requires both, or give --record, --tilt or --rate"
+            )
+        with as_bad_input():
+            return SinePulse.in_g(
+                self.amplitude,
+                omega=self.omega,
+                half_cycles=self.half_cycles or PULSES[self.pulse or "full-sine"],
+                phase=self._angle(self.phase or 0.0, 1.0),
+            )
+
+    def _start(self, block: RigidBlock, motion: Motion) -> tuple[float, float]:
+        theta = self._angle(self.tilt or 0.0, block.alpha)
+        rate = self._angle(self.rate or 0.0, block.alpha * block.p)
+        if not abs(theta) < 0.5 * math.pi:
+            side = math.degrees(0.5 * math.pi) if self.degrees else 0.5 * math.pi / block.alpha
+            unit = "°, where" if self.degrees else "α, where"
+            raise BadInputError(
+                f"--tilt is {self.tilt:g}; it must lie between -{side:.6g} and {side:.6g} {unit} "
+                "the side of the block lies on the ground"
+            )
+        if not math.isfinite(rate * rate):
+            raise BadInputError(f"--rate is {self.rate:g}; it must be less, its energy overflows")
+        if abs(theta) == block.alpha and rate == 0.0 == strongest(motion):
+            raise BadInputError(
+                f"--tilt is {self.tilt:g} and nothing moves; it must not be where a block at rest "
+                "balances"
+            )
+        return theta, rate
+
+    def _angle(self, value: float, unit: float) -> float:
+        return math.radians(value) if self.degrees else value * unit
+
+
+Excitation = Annotated[_Excitation, Parameter(name="*")]
+"""The options that say what happens to a block, as the type of a command's parameter."""
+
+DEFAULT_EXCITATION = _Excitation()
+"""Nothing is given."""
 
 
 def posed_block(width: float, height: float) -> RigidBlock:
@@ -24,28 +174,13 @@ def posed_block(width: float, height: float) -> RigidBlock:
         return RigidBlock(width=width, height=height)
 
 
-def posed_pulse(
-    amplitude: float | None, omega: float | None, pulse: str | None, half_cycles: int | None
-) -> SinePulse:
-    """Return the pulse of --amplitude, --omega and either --pulse or --half-cycles."""
-    number = _half_cycles(pulse, half_cycles)
-    if amplitude is None or omega is None:
-        missing = " and ".join(
-            name for name, value in (("--amplitude", amplitude), ("--omega", omega)) if not value
-        )
-        raise BadInputError(f"{missing} missing; a pulse requires both, or give --record instead")
-    with as_bad_input():
-        return SinePulse.in_g(amplitude, omega=omega, half_cycles=number)
-
-
-def posed_record(
+def _recorded(
     path: Path,
     units: str | None,
     scale: float | None,
     pga: float | None,
     baseline: Baseline | None = None,
 ) -> Record:
-    """Return the record of --record and --units, corrected, then scaled by --scale or to --pga."""
     if scale is not None and pga is not None:
         raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
     record = read_record(path, units)

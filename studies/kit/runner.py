@@ -28,7 +28,7 @@ Reduce = Callable[[Job, Response], Row]
 def fill_folder(
     folder: Path,
     study: str,
-    jobs: Sequence[Job],
+    jobs: Sequence[Job] | Callable[[], Sequence[Job]],
     *,
     module: str,
     executor: Executor,
@@ -46,8 +46,9 @@ def fill_folder(
         Results of another version or of other settings are refused.
     study : str
         Its name; the table is `<study>.csv`.
-    jobs : sequence of Job
-        In the order of the table.
+    jobs : sequence of Job, or callable
+        In the order of the table; or what makes them, where that takes long: it is called when the
+        folder is known to be usable.
     module : str
         The study's own, whose code and imports decide the rows.
     executor : Executor
@@ -72,10 +73,11 @@ def fill_folder(
     identity = provenance.identity(study, module, **settings)
     with open_journal(folder, identity, products) as journal:
         _refuse_a_part(folder, journal.rows.values(), growing)
+        asked = jobs() if callable(jobs) else jobs
         path = folder / PROVENANCE
         record = provenance.begin(path, identity, {k: _short(v) for k, v in growing.items()})
         try:
-            rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
+            rows = run_jobs(asked, executor=executor, reduce=reduce, journal=journal)
             journal.check()
             for name in dict.fromkeys(row[tables] for row in rows) if tables else [study]:
                 part = [row for row in rows if row[tables] == name] if tables else rows
@@ -84,7 +86,7 @@ def fill_folder(
             provenance.finish(path, record, began, rows=len(rows))
         except (KeyboardInterrupt, BadInputError, OSError) as stop:
             journal.check()
-            kept = f"{len(journal.rows)} of {len(jobs)} rows are kept in {str(folder)!r}"
+            kept = f"{len(journal.rows)} of {len(asked)} rows are kept in {str(folder)!r}"
             words = f"{stop}; " if str(stop) else ""
             text = f"{words}{kept}; the same command goes on from there"
             if isinstance(stop, KeyboardInterrupt):

@@ -106,6 +106,29 @@ SUMMARIES = {
     "quantile": Column("-", "part of the cases whose |error| is below"),
 }
 
+ESTIMATES = {
+    "half": Column("-", "1 for the run at half the step"),
+    "estimate": Column("-", "relative difference of the peak from that at half the step"),
+    "over": Column("-", "|error| over the estimate; 0 where the error is below 1e-9"),
+    "median_estimate": Column("-", "median of the estimates"),
+    "factor_50": Column("-", "factor on the estimates that bounds half of the errors"),
+    "factor_95": Column("-", "factor on the estimates that bounds 95 % of the errors"),
+    "factor_all": Column("-", "factor on the estimates that bounds all errors"),
+    "within_3": Column("-", "part of the errors that three estimates bound"),
+    "within_10": Column("-", "part of the errors that ten estimates bound"),
+    "told": Column("-", "wrong outcomes with another one at half the step"),
+}
+
+ADVICE = {
+    "target": Column("-", "error of the peak that is to be kept"),
+    "dt_s": Column("s", "step for the block of the advice"),
+    "random_cases": Column("-", "random cases on which the preset was published as it is"),
+    "random_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "extreme_cases": Column("-", "extreme cases, where the reference holds"),
+    "extreme_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "cheapest": Column("", "whether it is the cheapest of the engine's presets"),
+}
+
 METHODS = {
     "method": Column("", "the method of a work-precision diagram"),
     "value": Column(
@@ -233,6 +256,8 @@ GROUPS = {
     "Answers": ANSWERS,
     "Beside the exact solution": REFERENCE,
     "Summaries": SUMMARIES,
+    "Estimates": ESTIMATES,
+    "Advice": ADVICE,
     "Methods and settings": METHODS,
     "Maps": MAPS,
     "Statistics": STATISTICS,

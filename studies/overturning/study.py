@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -23,6 +24,7 @@ from studies.kit.arguments import (
 )
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
+from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
 from studies.kit.provenance import usable_cores
@@ -36,7 +38,11 @@ from studies.sources.groups import core_sources
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
-DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
+DEFAULT_SOURCES = (
+    *("exact", "housner", "modified", "onset-matched"),
+    *core_sources("naive"),
+    *core_sources(),
+)
 STRIP = 250_000
 """Cases that are held at a time."""
 CELL_BYTES, COLUMN_BYTES = 200.0, 3000.0
@@ -170,19 +176,25 @@ def overturning(
     FolderError
         If the folder cannot be used.
     """
-    maps = {model: mapped(window, model) for model in sources if model in MODELS}
     engines = [name for name in sources if name not in MODELS]
-    boundaries = pd.concat([edges for edges, _ in maps.values()])
-    exact = boundaries[boundaries["model"] == "exact"]
-    parts = QUICK_POSITIONS if quick else POSITIONS
-    chosen, _ = chosen_edges(
-        exact, [window.low + part * (window.high - window.low) for part in parts]
-    )
-    count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
+
+    @cache
+    def maps() -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
+        return {model: mapped(window, model) for model in sources if model in MODELS}
+
+    def jobs() -> list[Job]:
+        exact, _ = maps()["exact"]
+        parts = QUICK_POSITIONS if quick else POSITIONS
+        chosen, _ = chosen_edges(
+            exact, [window.low + part * (window.high - window.low) for part in parts]
+        )
+        count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
+        return [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)]
+
     rows = fill_folder(
         folder,
         "overturning",
-        [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)],
+        jobs,
         module=__name__,
         executor=executor,
         reduce=reduce,
@@ -191,9 +203,10 @@ def overturning(
         products=STUDY.products,
         tables="table",
     )
+    boundaries = pd.concat([edges for edges, _ in maps().values()])
     provenance.write_text(folder / "boundaries.csv", boundaries.to_csv(index=False))
     provenance.write_text(folder / "conditioning.csv", conditioned(window).to_csv(index=False))
-    areas = pd.concat([spans for _, spans in maps.values()])
+    areas = pd.concat([spans for _, spans in maps().values()])
     provenance.write_text(folder / "map.csv", areas.to_csv(index=False))
     return rows
 

@@ -28,7 +28,7 @@ class Source:
 
     It can be sent to another process or machine. `engine` and `preset` are names, the preset by
     default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
-    ones an option `accuracy`.
+    ones an option `accuracy`. `model` is the name of the one whose equation it solves.
     """
 
     kind: Kind
@@ -36,6 +36,7 @@ class Source:
     engine: str = ""
     preset: str = ""
     stepping: bool = False
+    model: str = "exact"
 
     @property
     def declared(self) -> Engine:
@@ -93,7 +94,7 @@ def _peer(method: str) -> Source:
 
 
 SOURCES: dict[str, Source] = {
-    **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
+    **{name: Source("model", partial(simulate, model=name), model=name) for name in MODELS},
     "rk4": Source("solver", partial(integrate, method="rk4"), stepping=True),
     "average-acceleration": Source(
         "solver", partial(integrate, method="average-acceleration"), stepping=True

@@ -170,7 +170,7 @@ def report(folder: Path) -> str:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw every figure of a folder from its sweep.csv alone."""
-    from studies.drawing.figures import draw_sweep
+    from studies.sweep.figure import draw_sweep
 
     rows = read(folder)
     return {f"figure-{n}": draw_sweep(rows, int(n)) for n in rows["figure"].unique()}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
+from studies.cases.drawn import draw
 from studies.kit import provenance
 from studies.kit.arguments import Count, Place, Positive, check_sources
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
@@ -27,7 +28,6 @@ from studies.measures.differences import (
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
 from studies.validate import STUDY
-from studies.validate.cases import draw
 from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
 

@@ -8,11 +8,18 @@ STUDY = Study(
     help="""Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
-on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
-findings.txt; resumable. The full study takes about a minute on one core, --quick a quarter of
-one.""",
+on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, two
+pictures and findings.txt; resumable. The full study takes about a minute on one core, --quick a
+quarter of one.""",
     table="validity.csv",
-    products=("validity.csv", "map.csv", "compared.csv", "validity.png", "findings.txt"),
+    products=(
+        "validity.csv",
+        "map.csv",
+        "compared.csv",
+        "validity.png",
+        "friction.png",
+        "findings.txt",
+    ),
     chapters=(
         Chapter(
             folder="validity",

@@ -190,11 +190,14 @@ def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw a folder's figure from its tables alone."""
-    from studies.validity.figure import draw_validity
+    """Draw a folder's figures from its tables alone."""
+    from studies.validity.figure import draw_friction, draw_validity
 
-    tables = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
-    return {"validity": draw_validity(*tables)}
+    table, beside = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
+    drawn = {"validity": draw_validity(table, beside)}
+    if beside["friction_factor"].notna().any():
+        drawn["friction"] = draw_friction(beside)
+    return drawn
 
 
 def headline(folder: Path) -> str:

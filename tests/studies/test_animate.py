@@ -1,18 +1,24 @@
 """Films: what is shown, which case, what is refused."""
 
+import errno
+import io
 import math
+import os
 
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.animation import PillowWriter
 from PIL import Image
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
-from studies.drawing.film import outline
+from studies.drawing import film as film_module
+from studies.drawing.film import Stage, outline
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
+from studies.kit.posing import Posed
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
@@ -33,7 +39,7 @@ def test_a_leaning_block_stands_on_one_corner(theta):
 def test_an_overturned_block_lies():
     pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
     times = np.linspace(0.0, 4.0, 60)
-    rows = shown(BLOCK, pulse, ("exact", "housner"), times, Local(1, 10.0))
+    rows = shown(BLOCK, Posed(pulse, (0.0, 0.0)), ("exact", "housner"), times, Local(1, 10.0))
     assert abs(rows[1]["theta"][-1]) == pytest.approx(math.pi / 2)
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
     flat = outline(BLOCK, float(rows[1]["theta"][-1]))
@@ -71,15 +77,119 @@ def test_a_film_moves(tmp_path):
     assert np.abs(first - later).max() > 100.0
 
 
+def test_a_film_begins_where_the_block_is_released(tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(film_module, "write_film", lambda *given: kept.append(given))
+    release = ["--width", "0.5", "--height", "1.5", "--tilt", "-0.7", "--rate", "0.1"]
+    arguments = [*release, "--sources", "exact", "pybullet", "--out", str(tmp_path / "film.gif")]
+    assert run(["animate", *arguments]) == 0
+    ((_, block, motion, times, rows, _),) = kept
+    assert motion == Still()
+    for row in rows:
+        assert row["theta"][0] == pytest.approx(-0.7 * block.alpha, rel=1e-9)
+        rate = (row["theta"][1] - row["theta"][0]) / times[1]
+        assert 0.0 < rate < 2.0 * block.alpha * block.p
+
+
+def pixels(stage):
+    frame = io.BytesIO()
+    stage.drawing.savefig(frame)
+    return np.frombuffer(frame.getvalue(), np.uint8).astype(int)
+
+
+def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
+    pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    times = np.linspace(0.0, 1.0, 11)
+    rows = [{"source": "exact", "outcome": "rocked", "theta": 0.3 * times}]
+    stage, fresh = (Stage(BLOCK, pulse, times, rows) for _ in range(2))
+    frames = []
+    stage.drawing.still(stage.moving)
+    for frame in (0, 10, 5):
+        stage.show(frame)
+        frames.append(pixels(stage))
+    fresh.show(5)
+    fresh.drawing.still(fresh.moving)
+    assert (frames[-1] == pixels(fresh)).all()
+    assert len(np.unique([np.count_nonzero(frames[0] != frame) for frame in frames])) == 3
+    # drawn whole, only what lies on the clock's line may differ: the frame around it
+    fresh.show(5)
+    for artist in fresh.moving:
+        artist.set_animated(False)
+    fresh.drawing.canvas.draw()
+    whole = np.asarray(fresh.drawing.canvas.buffer_rgba()).astype(int).ravel()
+    assert np.count_nonzero(whole != frames[-1]) < 100
+
+
+COLUMNS = "figure,pulse,excess_g,aspect,width_m,omega_over_p,source,peak_ratio"
+ROW = "8,full-sine,0.1,3,0.5,1.0,exact,"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\n\n",
+        bytes(range(256)),
+        b"a,b\n1,2,3\n",
+        f"{COLUMNS}\n".encode(),
+        f"{COLUMNS.replace('aspect', 'shape')}\n{ROW}0.5".encode(),
+        f"{COLUMNS.replace('source', 'who')}\n{ROW}0.5".encode(),
+        *(f"{COLUMNS}\n{ROW}{peak}".encode() for peak in ("nan", "", "many")),
+        f"{COLUMNS}\n{ROW}0.5\n{ROW}0.6".encode(),
+        *(
+            f"{COLUMNS}\n{ROW.replace(old, new)}0.5".encode()
+            for old, new in (("full", "saw"), (",3,", ",-3,"), (",0.5,", ",,"), ("1.0", "nan"))
+        ),
+        f"{COLUMNS}\n{ROW.replace('exact', 'housner')}0.5".encode(),
+    ],
+)
+def test_what_is_no_table_of_a_sweep_is_one_line(content, tmp_path, capsys):
+    (tmp_path / "sweep.csv").write_bytes(content)
+    film = tmp_path / "film.gif"
+    arguments = ["--results", str(tmp_path), "--sources", "exact", "--out", str(film)]
+    assert run(["animate", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "--results" in error
+    assert not film.exists()
+
+
+def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch, capsys):
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    film = tmp_path / "film.gif"
+    film.write_bytes(b"before")
+    monkeypatch.setattr(PillowWriter, "finish", full)
+    monkeypatch.setattr(PillowWriter, "grab_frame", lambda self, **_: None)
+    arguments = [*CASE, "--sources", "exact", "--slower", "0.1", "--out", str(film)]
+    assert run(["animate", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "No space left" in error
+    assert str(film) in error
+    assert film.read_bytes() == b"before"
+    assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         ([*CASE, "--out", "film.avi"], ("--out", ".gif")),
-        ([*CASE, "--out", "/nowhere/film.gif"], ("--out", "folder")),
+        ([*CASE, "--out", "nowhere/film.gif"], ("--out", "folder")),
         (["--out", "film.gif"], ("--width", "missing")),
         ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
         (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
+        (
+            ["--results", "results", "--tilt", "0.5", "--degrees", "--out", "film.gif"],
+            ("--tilt", "--degrees", "--results"),
+        ),
+        ([*CASE[:4], "--tilt", "5", "--out", "film.gif"], ("--tilt", "between")),
         ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
+        ([*CASE, "--slower", "1e9", "--out", "film.gif"], ("--slower 1e+09", "1500")),
+        ([*CASE, "--slower", "1e308", "--out", "film.gif"], ("--slower 1e+308", "1500")),
+        ([*CASE, "--out", "/dev/full/film.gif"], ("--out", "folder")),
+        ([*CASE, "--out", "/proc/film.gif"], ("--out", "written")),
     ],
 )
 def test_bad_input_is_one_clear_line(arguments, words, tmp_path, monkeypatch, capsys):

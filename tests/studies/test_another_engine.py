@@ -12,12 +12,14 @@ from studies.__main__ import run
 from studies.catalogue import STUDIES
 
 ARGUMENTS = {
+    "advise": ("--engines", "moreau"),
     "sweep": ("--figure", "6", "--accuracy", "loose", "--sources", "exact", "moreau"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
     "free": ("--quick", "--sources", "exact", "moreau"),
     "harmonic": ("--quick", "--sources", "moreau"),
     "literature": ("--sources", "moreau"),
     "validate": ("--cases", "8", "--sources", "moreau"),
+    "estimate": ("--cases", "3", "--sources", "moreau"),
     "precision": ("--quick", "--engines", "moreau"),
     "cost": ("--quick", "--engines", "moreau"),
     "contact": ("--quick", "--engines", "moreau"),

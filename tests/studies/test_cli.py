@@ -1,6 +1,7 @@
 """The command line: bad input, JSON, exit codes, pipes."""
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from analytic import RigidBlock, SinePulse, Still, simulate
 from analytic.response import Response
 from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
@@ -15,8 +17,12 @@ from studies.catalogue import STUDIES
 from studies.sources.registry import SOURCES, Effort, Source
 
 ROOT = Path(__file__).parents[2]
+BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
-FIELDS = ["source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"]
+FIELDS = [
+    *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
+    *("error", "velocity_ratio", "impact_error", "min_normal", "friction_needed", "valid"),
+]
 
 
 def rocking(*arguments, **options):
@@ -62,6 +68,15 @@ BAD_INPUT = [
     (["compare", *CASE, "--jobs", "0"], "--jobs", "'0'", "positive"),
     (["compare", *CASE, "--plot", "a.txt"], "--plot", "'a.txt'", ".png"),
     (["compare", *CASE, "--plot", "/nowhere/a.png"], "--plot", "'/nowhere/a.png'", "written"),
+    (["compare", *CASE, "--tilt", "nan"], "--tilt", "'nan'", "finite"),
+    (["compare", *CASE, "--rate", "fast"], "--rate", "'fast'", "finite"),
+    (["compare", *CASE, "--rate", "1e308"], "--rate", "1e+308", "less"),
+    (["compare", *CASE, "--tilt", "-4.9"], "--tilt", "-4.9", "between -4.88"),
+    (["compare", *CASE, "--tilt", "90", "--degrees"], "--tilt", "90", "between -90 and 90"),
+    (["compare", *CASE[:4], "--tilt", "-1"], "--tilt", "-1", "balances"),
+    (["compare", *CASE[:4], "--tilt", "1", "--omega", "3"], "--amplitude", "", "requires"),
+    (["compare", *CASE[:4], "--tilt", "0"], "--amplitude", "", "--tilt"),
+    (["compare", *CASE, "--phase", "inf"], "--phase", "'inf'", "finite"),
     (["compare", *CASE[2:]], "--width", "", "requires"),
     (["compare", *CASE, "--hight", "2"], "--hight", "", "--height"),
     (["sweep", "--figure", "5", "--out", "DIR"], "--figure", "'5'", "6, 7, 8, 9"),
@@ -116,9 +131,19 @@ def test_json_is_one_object_a_line_and_nothing_else():
     by_source = {row["source"]: row for row in rows}
     assert by_source["housner"]["outcome"] == "overturned"
     assert by_source["housner"]["peak_ratio"] is None
+    assert by_source["housner"]["error"] is None
+    exact = by_source["exact"]
+    late = {name: row["impact_error"] for name, row in by_source.items()}
+    assert max(late["pybullet"], late["mujoco"]) < 1e-4 < late["modified"] < 0.3
+    assert late["housner"] is None
+    assert (exact["error"], exact["impact_error"], exact["valid"]) == (0.0, 0.0, True)
     for name in ("exact", "modified", "pybullet", "mujoco"):
         assert by_source[name]["outcome"] == "rocked"
         assert by_source[name]["peak_ratio"] == pytest.approx(0.3852, rel=0.07)
+        relative = by_source[name]["peak_ratio"] / exact["peak_ratio"] - 1.0
+        assert by_source[name]["error"] == pytest.approx(relative, rel=1e-12)
+        assert by_source[name]["velocity_ratio"] == pytest.approx(0.85, rel=1e-4)
+        assert by_source[name]["friction_needed"] == exact["friction_needed"]
         assert by_source[name]["impacts"] >= 3
         assert by_source[name]["steps"] > 0
         assert by_source[name]["wall_s"] > 0.0
@@ -141,6 +166,66 @@ def test_the_table_fits_the_screen_and_states_its_window(capsys, tmp_path):
     assert "0.850000" in text
     assert "exact " not in text.splitlines()[-3]
     assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def compared(capsys, *options):
+    assert run(["compare", *CASE[:4], *options, "--json"]) == 0
+    return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+
+def test_a_block_is_released_from_a_tilt_in_units_of_alpha(capsys):
+    """Its first impact comes after a quarter period, the same in every source."""
+    options = ["--tilt", "-0.6", "--duration", "2", "--sources"]
+    rows = compared(capsys, *options, "exact", "dop853", "pybullet", "mujoco")
+    assert [row["peak_ratio"] for row in rows] == pytest.approx([0.6] * 4, rel=1e-12)
+    # landing steps of p dt = 1/200 are of second order
+    assert all(row["impact_error"] < 200**-2 for row in rows)
+    start = (-0.6 * BLOCK.alpha, 0.0)
+    exact = simulate(BLOCK, Still(), start=start, duration=2.0)
+    assert rows[0]["impacts"] == len(exact.impacts)
+    assert rows[0]["min_normal"] == exact.min_normal
+
+
+@pytest.mark.parametrize("turned", [[], ["--degrees"]])
+def test_rate_phase_and_degrees(turned, capsys):
+    """0.2 and -0.3 times alpha and alpha p, and a phase: in either unit the same answer."""
+    theta, rate = 0.2 * BLOCK.alpha, -0.3 * BLOCK.alpha * BLOCK.p
+    unit = (BLOCK.alpha, BLOCK.alpha * BLOCK.p, 1.0)
+    if turned:
+        unit = (math.radians(1.0),) * 3
+    tilt, turning, phase = (repr(x / u) for x, u in zip((theta, rate, 2.0), unit, strict=True))
+    start = ["--tilt", tilt, "--rate", turning, "--phase", phase, *turned]
+    (row,) = compared(capsys, *CASE[4:], *start, "--sources", "exact")
+    pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2, phase=2.0)
+    window = pulse.duration + 8.0 / BLOCK.p
+    exact = simulate(BLOCK, pulse, start=(theta, rate), duration=window)
+    assert row["peak_ratio"] == pytest.approx(exact.peak_ratio, rel=1e-9)
+    assert row["impacts"] == len(exact.impacts)
+
+
+def test_the_table_says_how_a_block_started(capsys):
+    arguments = ["compare", *CASE[:4], "--rate", "-0.5", "--sources", "exact", "housner"]
+    assert run(arguments) == 0
+    text = capsys.readouterr().out
+    assert "ground  at rest; observed" in text
+    assert "start   θ = 0 α, θ' = -0.5 αp" in text
+    assert run([*arguments, "--tilt", "3", "--degrees"]) == 0
+    text = capsys.readouterr().out
+    assert "start   θ = 3°, θ' = -0.5°/s" in text
+    assert "θmax [°]" in text
+    assert "3.000000" in text
+
+
+def test_where_the_reference_is_not_valid(capsys):
+    """A squat block would have to be held down; one that falls says nothing."""
+    squat = ["compare", "--width", "1", "--height", "1", "--omega", "15", "--sources", "exact"]
+    assert run([*squat, "--amplitude", "2.5", "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)
+    assert (row["valid"], row["min_normal"] < 0.0) == (False, True)
+    assert run([*squat, "--amplitude", "2.5"]) == 0
+    assert "the pivot would lift off" in capsys.readouterr().out
+    slender = ["--amplitude", "1.0", "--omega", "3", "--sources", "exact"]
+    assert compared(capsys, *slender)[0]["valid"] is None
 
 
 def test_half_cycles_replace_the_pulse(capsys):

@@ -12,7 +12,6 @@ from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
 from studies.contact.report import report as report_of_contact
-from studies.drawing.figures import draw_sweep
 from studies.ensemble import study as ensemble
 from studies.free import study as free
 from studies.kit import runner
@@ -29,6 +28,7 @@ from studies.stability import study as stability
 from studies.stability.largest_step import search
 from studies.stability.remedies import answer
 from studies.sweep import study as sweep
+from studies.sweep.figure import draw_sweep
 from studies.validity import study as validity
 
 AT_ONCE = ("histories", "linearizations")

@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 from analytic import peak_ratios, simulate
+from studies.cases.drawn import LEAST_NORMAL, draw
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
 from studies.measures.differences import with_conditioning
-from studies.validate.cases import LEAST_NORMAL, draw
 from studies.validate.hints import FALSE, KNOWN, leanings
 from studies.validate.study import report, validate
 
