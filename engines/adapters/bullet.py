@@ -16,6 +16,7 @@ from engines.adapters.bullet_calls import (
     block_shape,
     engine_call,
 )
+from engines.adapters.bullet_drop import BOUNCING
 from engines.adapters.bullet_script import script
 from engines.adapters.bullet_settings import (
     FACTORS,
@@ -210,6 +211,7 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     spring=spring,
+    bouncing=BOUNCING,
     factors=FACTORS,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",
