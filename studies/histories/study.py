@@ -217,10 +217,10 @@ def figure_text(figure: int, rows: Sequence[Row], found: Finding) -> str:
 def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
     """Test what the paper says about a figure, of the sources that answered in every panel."""
     failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
-    answered = [row for row in rows if row["source"] not in failed]
-    asked = table if figure == 2 else pd.DataFrame(answered)
-    if not answered:
-        asked = pd.DataFrame({"source": []})
+    summaries = pd.DataFrame(rows, columns=["source"] if not rows else None)
+    asked = (
+        table if figure == 2 and len(table) else summaries.drop(columns="samples", errors="ignore")
+    )
     return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
