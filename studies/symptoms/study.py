@@ -9,8 +9,9 @@ from engines import ENGINES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
 from studies.kit.runner import own_folder
+from studies.measures.published import PUBLISHED
 from studies.symptoms import STUDY
-from studies.symptoms.lines import LADDER, PUBLISHED, VARIANTS, lines_of
+from studies.symptoms.lines import LADDER, VARIANTS, lines_of
 from studies.symptoms.words import first_claim, page, told
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 def command(
     *,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
-    published: Place = PUBLISHED,
+    published: Place | None = None,
     out: Place | None = None,
 ) -> int:
     """Say what users see, what it measures by default, and which setting leaves how much of it.
@@ -34,16 +35,17 @@ def command(
     engines
         Names of engines, without a preset; by default all in the published tables.
     published
-        Folder of the published tables.
+        Folder of the published tables; by default those that come with this project.
     out
         Folder for a table and a figure; none by default.
     """
+    tables = published or PUBLISHED
     for name in (VARIANTS, LADDER):
-        if not (published / name).is_file():
-            raise BadInputError(f"--published is {str(published)!r}; it must hold {name}")
+        if not (tables / name).is_file():
+            raise BadInputError(f"--published is {str(tables)!r}; it must hold {name}")
     asked = tuple(ENGINES) if engines is None else engines
     check_engines(asked)
-    lines = lines_of(published, asked)
+    lines = lines_of(tables, asked)
     if lines.empty:
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
