@@ -27,6 +27,14 @@ class Help(enum.Enum):
     POSITIONS = "positions moved by the adapter, from the engine's velocities"
 
 
+class Miss(enum.Enum):
+    """What an engine gets wrong as it comes, without a word."""
+
+    MIRROR = "shaken the other way, the block does not answer the other way"
+    PEAK = "a block of the paper that survives overturns, or its peak is off by more than 0.3"
+    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
+
+
 class Stepping(enum.Enum):
     """Who chooses the steps of a preset."""
 
@@ -66,6 +74,8 @@ class Preset:
         that is not the step.
     helped_by : mapping
         What helps -> the settings that leave it out; None where it is the preset itself.
+    misses : tuple of Miss
+        What the library's defaults get wrong; no tuned preset may miss anything.
     """
 
     name: str
@@ -78,6 +88,7 @@ class Preset:
     contact_s: float = math.nan
     dial: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
+    misses: tuple[Miss, ...] = ()
 
     def __post_init__(self) -> None:
         given = sum(map(math.isfinite, (self.step, self.step_s)))

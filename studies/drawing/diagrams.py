@@ -81,7 +81,7 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
 
 
 def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame, title: str) -> Name:
-    onset, frequency, saddle = changed
+    onset, frequency, saddle = tuple(changed)
     colour = ONSETS[onset][0]
     axes.plot(
         rows["quantile"],

@@ -8,7 +8,8 @@ import pandas as pd
 from engines import ENGINES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
-from studies.kit.runner import own_folder
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, carry_out
 from studies.measures.published import PUBLISHED
 from studies.symptoms import STUDY
 from studies.symptoms.lines import LADDER, VARIANTS, lines_of
@@ -50,20 +51,20 @@ def command(
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
     text = f"{page(lines)}\n\nFrom {VARIANTS} and {LADDER}."
-    if out is not None:
-        settings = {"engines": list(lines["engine"].unique())}
-        with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
-            _write(out, lines, text)
-    print(text)
-    return 0
+    if out is None:
+        print(text)
+        return 0
+    settings = {"engines": list(lines["engine"].unique())}
+    plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
+    def report(folder: Path) -> str:
+        from studies.drawing.figures import save_all
 
-def _write(folder: Path, lines: pd.DataFrame, text: str) -> None:
-    from studies.drawing.figures import save_all
+        provenance.write_text(folder / "findings.txt", text + "\n")
+        save_all(pictures(folder), folder)
+        return text
 
-    provenance.write_text(folder / "symptoms.csv", lines.to_csv(index=False, na_rep="nan"))
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
 
 def _read(folder: Path) -> pd.DataFrame:

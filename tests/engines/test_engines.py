@@ -16,6 +16,7 @@ from uses import (
     BLOCK,
     FIXED,
     HERE,
+    MIRRORED,
     TUNED,
     TUNED_IN_FRAMES,
     equal_to,
@@ -56,7 +57,7 @@ def test_onset(engine: str, preset: str, frame: str) -> None:
     assert above.peak_ratio > 0.0
 
 
-@every_use
+@pytest.mark.parametrize(("engine", "preset"), MIRRORED)
 def test_mirror(engine: str, preset: str) -> None:
     """Shaking the other way leans the block the other way."""
     times = [0.1 * i for i in range(1, 20)]
