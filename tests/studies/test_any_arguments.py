@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from analytic.response import Reason, Response
 from studies.__main__ import COMMANDS, run
-from studies.kit import runner
+from studies.kit import plan
 from studies.kit.app import make_app
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
@@ -32,6 +32,7 @@ PEER = "\n".join(
 BEGINNINGS = {
     "compare": [(*CASE, "--sources", "exact"), (*RECORD, "--sources", "exact")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
+    "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "redraw": [("FOLDER",)],
     "readme": [()],
 }
@@ -85,7 +86,7 @@ def place(tmp_path_factory):
     kept = Path.cwd()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(runner, "open_journal", refuse)
+        patch.setattr(plan, "open_journal", refuse)
         patch.setattr(Local, "_in_processes", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
