@@ -22,6 +22,21 @@ RELEASED_GROWTH = 80.0
 returned until it grows by no more than this many p dt in a step. Any later, and the time until then
 is one without return, an error of first order."""
 
+MOST_RETURNED = 2.0
+"""Where the base's own velocity gives the pivot's back, a step that is much longer than the one
+before returns no more than this part."""
+
+
+def returned(step: Step, before: float) -> float:
+    """Return the part of a pivot's velocity to give back, after a step of `before` [s].
+
+    For a contact that has taken in all other velocities by the end of each step: what the pivot
+    then has, it got by the turn of the last one.
+    """
+    if not (before and step.side and step.grip in (Grip.SWING, Grip.APPROACH)):
+        return 0.0
+    return min(step.dt_s / before, MOST_RETURNED)
+
 
 class Reflection:
     """Part of a pivot's velocity that is returned with a change of sign, step by step.

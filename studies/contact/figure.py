@@ -1,5 +1,6 @@
 """The largest error of each contact variant, a panel for each engine."""
 
+import math
 from typing import Any
 
 import pandas as pd
@@ -11,12 +12,15 @@ from engines.factors import BEST, DEFAULT
 
 COLOURS = {"landing": "#009E73", BEST: "#0072B2", DEFAULT: "#D55E00"}
 TITLES = {BEST: "one change from the best fixed-step setting", DEFAULT: "one from the defaults"}
+MATTER = 10
+"""How many variants of a preset are drawn one by one."""
+REST = "the rest"
 LOWEST, BROKEN, HIGHEST = 1e-6, 2.0, 4.0
 """Errors below are drawn at the first; failed variants and wrong outcomes at the second."""
 
 
 def draw_contact(lines: pd.DataFrame) -> Figure:
-    """Draw the largest error of the peak of every variant.
+    """Draw the largest error of the peak of the variants that matter most, and count the others.
 
     Parameters
     ----------
@@ -24,18 +28,28 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         The columns of variants.csv.
     """
     engines = list(lines["engine"].unique())
-    most = max(lines.groupby("engine").size())
-    drawing = Figure(figsize=(7.6 * len(engines), 2.0 + 0.2 * most), layout="constrained")
-    panels = drawing.subplots(1, len(engines), squeeze=False)[0]
-    for axes, engine in zip(panels, engines, strict=True):
-        _one_engine(axes, lines[lines["engine"] == engine])
+    shown = {engine: _ordered(lines[lines["engine"] == engine]) for engine in engines}
+    across = min(len(engines), 2)
+    down = math.ceil(len(engines) / across)
+    most = max(map(len, shown.values()))
+    size = (6.4 * across, 1.5 + down * (0.6 + 0.2 * most))
+    drawing = Figure(figsize=size, layout="constrained")
+    panels = list(drawing.subplots(down, across, squeeze=False).flat)
+    for axes, (engine, ordered) in zip(panels, shown.items(), strict=False):
+        _one_engine(axes, ordered)
         axes.set_title(engine)
-    drawing.legend(handles=_handles(), loc="outside lower center", ncols=4, frameon=False)
+    for axes in panels[len(engines) :]:
+        axes.set_visible(False)
+    drawing.suptitle(
+        f"The {MATTER} changes of each preset that matter most, from the smallest error down",
+        fontsize=11,
+    )
+    drawing.legend(handles=_handles(), loc="outside lower center", ncols=4, frameon=False,
+                   fontsize=9)  # fmt: skip
     return drawing
 
 
-def _one_engine(axes: Axes, lines: pd.DataFrame) -> None:
-    ordered = _ordered(lines)
+def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
     axes.set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST), ylim=(len(ordered) - 0.3, -0.7))
     axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
     for place, (_, line) in enumerate(ordered.iterrows()):
@@ -47,16 +61,42 @@ def _one_engine(axes: Axes, lines: pd.DataFrame) -> None:
         text.set(fontsize=8, color=COLOURS[str(line["preset"])])
         if not line["factor"]:
             text.set_fontweight("bold")
+        elif line["factor"] == REST:
+            text.set_fontstyle("italic")
     axes.set_xlabel("relative error  [–]")
     axes.grid(axis="x", alpha=0.25)
 
 
 def _ordered(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return the variants from the most accurate in peak and impact to the failed, by preset."""
+    """Return what is drawn, by preset: it, its variants that matter, and a line for the rest.
+
+    First come those that break it, then those that move a peak or an impact most; they stand from
+    the most accurate in peak and impact to the failed.
+    """
+    broken = lines["worse"] | lines["max_error"].isna()
+    lines = lines.assign(
+        matter=lines[["moved", "ratio_moved"]].max(axis=1).mask(broken, math.inf).fillna(0.0)
+    )
+    parts = []
+    for _, part in lines.groupby("preset", sort=False):
+        varied = part[part["factor"] != ""].sort_values("matter", ascending=False, kind="stable")
+        parts += [part[part["factor"] == ""], varied.head(MATTER)]
+        if len(varied) > MATTER:
+            parts.append(_rest(varied.iloc[MATTER:]))
+    return _by_error(pd.concat(parts, ignore_index=True))
+
+
+def _rest(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return one line that stands for many: the one among them with the largest error."""
+    worst = lines.loc[[lines["max_error"].fillna(math.inf).idxmax()]]
+    return worst.assign(factor=REST, level=f"{len(lines)} changes that matter less", trap="")
+
+
+def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
     broken = lines["worse"] | lines["max_error"].isna()
     keyed = lines.assign(
         first=lines["preset"].map({name: place for place, name in enumerate(COLOURS)}),
-        own=lines["factor"] != "",
+        own=(lines["factor"] != "").astype(int) - (lines["factor"] == REST) * 0.5,
         broken=broken,
         worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
     )
@@ -91,6 +131,8 @@ def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
 
 
 def _label(line: "pd.Series[Any]") -> str:
+    if line["factor"] == REST:
+        return f"{line['level']}, at worst"
     name = f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
     return f"{name}  [trap]" if line["trap"] else name
 

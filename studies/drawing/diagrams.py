@@ -1,13 +1,24 @@
 """Diagrams of errors: against conditioning, their distribution, of free rocking, of omissions."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.figures import LOWEST, style_of
-from studies.measures.differences import conditioning_of
+from studies.drawing.labels import Name, beside
+from studies.drawing.styles import LOWEST, line_of, style_of
+from studies.measures.differences import conditioning_of, scientific
+
+NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
+"""Variants of a linearization that have a name."""
+ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
+"""What a variant takes as the onset -> its colour, and what that is."""
+
+NAMED_AT = 0.9
+"""Part of the cases at which a line is named: at its end, the worst case, lines lie together."""
 
 
 def draw_conditioning(compared: pd.DataFrame) -> Figure:
@@ -18,43 +29,34 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     compared : DataFrame
         The columns of errors.csv.
     """
-    drawing = Figure(figsize=(7.6, 5.2), layout="constrained")
+    drawing = Figure(figsize=(8.6, 5.2), layout="constrained")
     axes = drawing.subplots()
     kappa = conditioning_of(compared)
+    ends = np.array([1.0, float(np.fmax(kappa.max(), 10.0))])
+    bounds = []
     for source, rows in compared.groupby("source", sort=False):
         style = style_of(str(source))
-        axes.plot(
-            kappa[rows.index],
-            rows["error"].abs().clip(lower=LOWEST),
-            linestyle="none",
-            marker=style.marker or ".",
-            markersize=4,
-            markerfacecolor="none",
-            color=style.colour,
-            label=str(source),
-        )
-    axes.set(xscale="log", yscale="log")
+        axes.plot(kappa[rows.index], rows["error"].abs().clip(lower=LOWEST), **style.points(4.0))
+        bound = float((rows["error"].abs() / kappa[rows.index]).max())
+        if math.isnan(bound):
+            continue
+        axes.plot(ends, bound * ends, color=style.colour, linewidth=1.0, zorder=-1)
+        words = f"{source}: none beyond {scientific(bound)} κ"
+        bounds.append(Name(words, float(ends[1]), bound * float(ends[1]), style.colour))
+    axes.set(xscale="log", yscale="log", xlim=(0.8, 1.2 * ends[1]))
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
-    slope = np.array([1.0, max(float(kappa.max()), 10.0)])
-    for level in (1e-6, 1e-4):
-        axes.plot(slope, level * slope, color="#999999", linewidth=0.8, zorder=-1)
-        middle = float(np.sqrt(slope[1]))
-        axes.annotate(
-            f"{level:.0e} κ",
-            (middle, 1.4 * level * middle),
-            fontsize=8,
-            color="#666666",
-            ha="right",
-        )
-    axes.set_ylim(top=10.0 * float(compared["error"].abs().max()))
-    axes.legend(loc="upper left", frameon=False)
+    if not bounds:
+        axes.set_title("no case that both survive")
     axes.grid(alpha=0.25)
+    beside(axes, bounds, 9.0)
     return drawing
 
 
 def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
-    """Draw which part of the cases errs by less than what, a panel for each grid.
+    """Draw by how much a part of the cases errs at most, a panel for each grid.
+
+    The colour of a line is its onset, its dash its frequency, its width its saddle.
 
     Parameters
     ----------
@@ -63,29 +65,42 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
     titles : mapping
         Names of the lines by `changed`.
     """
-    known = {"000": "housner", "100": "onset-matched", "111": "modified"}
     grids = list(quantiles["grid"].unique())
-    drawing = Figure(figsize=(10.0, 5.6), layout="constrained")
+    drawing = Figure(figsize=(11.0, 5.6), layout="constrained")
     panels = drawing.subplots(1, len(grids), sharex=True, sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, grids, strict=True):
-        for changed, rows in quantiles[quantiles["grid"] == name].groupby("changed", sort=False):
-            style = style_of(known.get(str(changed), ""))
-            axes.plot(
-                rows["error"],
-                rows["quantile"],
-                color=style.colour,
-                linestyle=style.line or (0, (1 + int(str(changed)[1]) * 4, 2)),
-                linewidth=2.0 if changed in known else 0.9,
-                label=titles[str(changed)],
-            )
-        axes.set(xscale="log", xlim=(1e-4, 1e1), title=f"{name} grid")
-        axes.set_xlabel("relative error of the peak  [–]")
+        part = quantiles[quantiles["grid"] == name]
+        ends = [
+            _one_variant(axes, str(changed), rows, titles[str(changed)])
+            for changed, rows in part.groupby("changed", sort=False)
+        ]
+        axes.set(yscale="log", xlim=(0.0, 1.0), ylim=(1e-4, 1e1), title=f"{name} grid")
+        axes.set_xlabel("part of the surviving cases  [–]")
         axes.grid(alpha=0.25)
-    panels[0].set_ylabel("part of the surviving cases that errs by less  [–]")
-    drawing.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False
-    )
+    for key, (colour, words) in ONSETS.items():
+        panels[0].text(0.97, 0.1 - 0.05 * int(key), words, color=colour, ha="right",
+                       transform=panels[0].transAxes)  # fmt: skip
+    beside(panels[-1], ends)
+    panels[0].set_ylabel("relative error of the peak, at most  [–]")
     return drawing
+
+
+def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame, title: str) -> Name:
+    onset, frequency, saddle = tuple(changed)
+    colour = ONSETS[onset][0]
+    axes.plot(
+        rows["quantile"],
+        rows["error"],
+        color=colour,
+        linestyle=(0, (4, 2)) if frequency == "1" else "-",
+        linewidth=0.9 + 0.9 * (changed in NAMED),
+        alpha=1.0 if saddle == "0" or changed in NAMED else 0.6,
+    )
+    # the onset is the colour
+    words = title.partition(", ")[2].partition(" (")[0]
+    name = f"{NAMED[changed]}: {words}" if changed in NAMED else words
+    named = rows[rows["quantile"] <= NAMED_AT].sort_values("quantile").iloc[-1]
+    return Name(name, float(named["quantile"]), float(named["error"]), colour)
 
 
 def draw_free(rows: pd.DataFrame) -> Figure:
@@ -96,7 +111,7 @@ def draw_free(rows: pd.DataFrame) -> Figure:
     rows : DataFrame
         The columns of free.csv.
     """
-    drawing = Figure(figsize=(12.0, 4.6), layout="constrained")
+    drawing = Figure(figsize=(12.0, 4.8), layout="constrained")
     panels = drawing.subplots(1, 3, sharex=True, sharey=True)
     titles = {
         "period_error": "time between two impacts",
@@ -104,31 +119,25 @@ def draw_free(rows: pd.DataFrame) -> Figure:
         "drift_p": "drift over 20 impacts  [1/p]",
     }
     for axes, (column, title) in zip(panels, titles.items(), strict=True):
+        ends = []
         for source, part in rows.groupby("source", sort=False):
             style = style_of(str(source))
             worst = part[column].abs().groupby(part["tilt"]).max().clip(lower=LOWEST)
-            axes.plot(
-                worst.index,
-                worst,
-                style.line or "-",
-                color=style.colour,
-                marker=style.marker or ".",
-                linewidth=style.width if style.line else 0.8,
-                markerfacecolor="none",
-                label=str(source),
-            )
+            look = {**style.points(), "linestyle": line_of(str(source)), "linewidth": style.width}
+            axes.plot(worst.index, worst, **look)
+            ends.append(Name(str(source), worst.index[-1], float(worst.iloc[-1]), style.colour))
         axes.set(yscale="log", title=title)
         axes.set_xlabel("rotation from which the block falls  θ0/α  [–]")
         axes.grid(alpha=0.25)
-    panels[0].set_ylabel("largest error over H/B, relative but for the drift")
-    drawing.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False
-    )
+    panels[0].set_ylabel("error, relative but for the drift")
+    beside(panels[-1], ends)
+    drawing.suptitle("Off from the closed form of each one's equations, the largest over all H/B",
+                     fontsize=11)  # fmt: skip
     return drawing
 
 
 def draw_scenes(scenes: pd.DataFrame) -> Figure:
-    """Draw what each thing put back into a scene costs and changes, a colour for each engine.
+    """Draw what each thing put back into a scene costs and changes, a dot for each engine.
 
     Parameters
     ----------
@@ -137,21 +146,23 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     """
     names = list(scenes["scene"].unique())
     engines = list(scenes["engine"].unique())
-    drawing = Figure(figsize=(9.6, 1.4 + 0.45 * len(names)), layout="constrained")
+    drawing = Figure(figsize=(9.6, 1.4 + 0.4 * len(names)), layout="constrained")
     costs, errors = drawing.subplots(1, 2, sharey=True)
-    thick = 0.8 / len(engines)
     for number, engine in enumerate(engines):
         rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
-        places = np.arange(len(names)) + (number - 0.5 * (len(engines) - 1)) * thick
-        colour = style_of(engine).colour
-        costs.barh(places, rows["wall_s"] / rows["wall_s"].iloc[0], thick, color=colour)
-        errors.barh(places, rows["error"].abs(), thick, color=colour, label=engine)
+        places = np.arange(len(names)) + 0.7 * ((number + 0.5) / len(engines) - 0.5)
+        factor, look = rows["wall_s"] / rows["wall_s"].iloc[0], style_of(engine).points(6.5)
+        costs.hlines(places, 1.0, factor, color=look["color"], linewidth=1.2)
+        costs.plot(factor, places, **look)
+        errors.plot(rows["error"].abs().clip(lower=LOWEST), places, **look, label=engine)
     costs.set_yticks(range(len(names)), names)
     costs.invert_yaxis()
-    costs.set_xscale("log")
+    costs.set(xscale="log", xlabel="run time over the scene as it is  [–]")
     costs.axvline(1.0, color="#555555", linewidth=0.8)
-    costs.set_xlabel("run time over the scene as it is  [–]")
-    errors.set_xscale("log")
-    errors.set_xlabel("relative error of the peak  [–]")
+    costs.set_xticks([0.5, 1, 2, 5, 10, 20], ["½", "1", "2", "5", "10", "20"])
+    costs.set_xticks([], minor=True)
+    errors.set(xscale="log", xlabel="relative error of the peak  [–]")
+    for axes in (costs, errors):
+        axes.grid(alpha=0.25)
     drawing.legend(loc="outside lower center", ncols=len(engines), frameon=False)
     return drawing

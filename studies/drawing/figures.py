@@ -1,8 +1,7 @@
-"""Colours, markers and panels; every figure is drawn from the columns of its CSV alone."""
+"""Time histories over each other, and how a figure is written to a file."""
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,133 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from engines import ENGINES
+from studies.drawing.styles import LOWEST, Style, line_of, style_of
 from studies.kit.drafts import draft
 
-LOWEST = 1e-16
-"""Errors below are drawn here, on the floor of double precision."""
 OVERTURNED = "overturned"
-TOP = 1.2
-"""Upper end of the scale of abs(theta)/theta_cr; overturned cases stand in a band above it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Style:
-    """How a source is drawn: colour, its line (models and solvers) or its marker (engines)."""
-
-    colour: str
-    line: str = ""
-    marker: str = ""
-    width: float = 1.4
-
-
-# the palette of Okabe and Ito, which colour-blind readers tell apart
-STYLES = {
-    "exact": Style("#000000", "-", width=2.2),
-    "housner": Style("#D55E00", "--"),
-    "modified": Style("#0072B2", "-."),
-    "onset-matched": Style("#CC79A7", ":", width=1.8),
-    "rk4": Style("#56B4E9", "-", width=1.0),
-    "average-acceleration": Style("#E69F00", "--", width=1.0),
-}
-
-# from Tol's muted palette, but for the first two
-ENGINE_COLOURS = (
-    *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
-)
-MARKERS = {"": "o^", "fixed": "sv", "naive": "x+"}
-"""Preset -> markers of engines, in turn; the empty name is the best there is."""
-
-
-def engine_style(engine: str, preset: str) -> Style:
-    """Return colour and marker of an engine, by its place among all."""
-    number = list(ENGINES).index(engine)
-    markers = MARKERS.get(preset, MARKERS[""])
-    colour = ENGINE_COLOURS[number % len(ENGINE_COLOURS)]
-    return Style(colour, marker=markers[number % len(markers)])
-
-
-def style_of(source: str) -> Style:
-    """Return the style of a source; one without a style of its own is grey."""
-    plain, _, preset = source.partition(":")
-    if plain in ENGINES:
-        return engine_style(plain, preset)
-    return STYLES.get(plain) or Style("#777777", marker="D")
-
-
-def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
-    """Draw one of figures 6 to 9 in the paper's arrangement.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        The columns of sweep.csv.
-    figure : int
-    """
-    rows = rows[rows["figure"] == figure]
-    aspects, widths = sorted(rows["aspect"].unique()), sorted(rows["width_m"].unique())
-    sources = list(rows["source"].unique())
-    drawing = Figure(figsize=(10.0, 3.1 * len(aspects) + 1.2), layout="constrained")
-    grid = drawing.subplots(len(aspects), len(widths), sharex=True, sharey=True, squeeze=False)
-    for i, aspect in enumerate(aspects):
-        for j, width_m in enumerate(widths):
-            panel = rows[(rows["aspect"] == aspect) & (rows["width_m"] == width_m)]
-            _sweep_panel(grid[i, j], panel, sources)
-            grid[i, j].set_title(f"H/B = {aspect:g},  B = {width_m:g} m", fontsize=10)
-    for axes in grid[-1]:
-        axes.set_xlabel("frequency of the pulse  ω/p  [–]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("largest rotation  |θ|/θcr  [–]")
-    first = rows.iloc[0]
-    drawing.suptitle(
-        f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    )
-    _legend_below(drawing, sources)
-    return drawing
-
-
-def _sweep_panel(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
-    row_height = 0.075
-    for number, source in enumerate(sources):
-        style = style_of(source)
-        points = panel[panel["source"] == source].sort_values("omega_over_p")
-        survived = points["peak_ratio"].where(points["outcome"].isin(["rocked", "at rest"]))
-        axes.plot(
-            points["omega_over_p"],
-            survived,
-            color=style.colour,
-            linestyle=style.line or "none",
-            linewidth=style.width,
-            marker=style.marker or ".",
-            markersize=4.5 if style.marker else 2.5,
-            markerfacecolor="none" if style.marker else style.colour,
-            zorder=4 if style.marker else 3,
-        )
-        _beyond_the_scale(axes, points["omega_over_p"], survived, style)
-        lost = points.loc[points["outcome"] == OVERTURNED, "omega_over_p"]
-        level = TOP + row_height * (len(sources) - number - 0.5)
-        axes.plot(lost, [level] * len(lost), "s", color=style.colour, markersize=2.6)
-        failed = points.loc[points["outcome"] == "failed", "omega_over_p"]
-        axes.plot(failed, [0.02] * len(failed), "*", color=style.colour)
-    top = TOP + row_height * len(sources)
-    axes.axhspan(TOP, top, color="#eeeeee", zorder=0)
-    axes.text(4.05, TOP + 0.015, OVERTURNED, ha="right", fontsize=8, color="#555555")
-    axes.set(xlim=(0.0, 4.1), ylim=(0.0, top), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-    axes.axhline(1.0, color="#999999", linewidth=0.6, zorder=1)
-    axes.grid(alpha=0.25)
-
-
-def _beyond_the_scale(
-    axes: Axes, omega_over_p: "pd.Series[float]", survived: "pd.Series[float]", style: Style
-) -> None:
-    """Point to survivors above the scale: beyond θcr, and brought back by the ground."""
-    for x, peak in zip(omega_over_p[survived > TOP], survived[survived > TOP], strict=True):
-        axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
-        axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
-
-
-def draw_histories(samples: pd.DataFrame, title: str) -> Figure:
-    """Draw time histories, one column of panels for each value of `panel`.
+def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
+    """Draw time histories over each other, a panel for each value of `panel`.
 
     Parameters
     ----------
@@ -145,13 +25,21 @@ def draw_histories(samples: pd.DataFrame, title: str) -> Figure:
         Columns panel, pulse, width_m, height_m, amplitude_g, source, outcome, time_s, ground_g,
         theta_ratio.
     title : str
+    errors : bool
+        Whether to draw under each panel how far its lines are from the exact one.
     """
     panels = list(samples["panel"].unique())
     sources = list(samples["source"].unique())
-    drawing = Figure(figsize=(10.0, 2.9 * len(panels) + 1.3), layout="constrained")
-    grid = drawing.subplots(len(panels), 1, squeeze=False)[:, 0]
-    for axes, name in zip(grid, panels, strict=True):
-        _history_panel(axes, samples[samples["panel"] == name])
+    heights = (1.5, 1.0) if errors else (1.0,)
+    size = (10.0, (3.6 if errors else 2.9) * len(panels) + 1.3)
+    drawing = Figure(figsize=size, layout="constrained")
+    grid = drawing.subplots(len(panels) * len(heights), height_ratios=heights * len(panels),
+                            squeeze=False)[:, 0]  # fmt: skip
+    for place, name in enumerate(panels):
+        part = samples[samples["panel"] == name]
+        _history_panel(grid[place * len(heights)], part)
+        if errors:
+            _error_panel(grid[2 * place + 1], part)
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
     _legend_below(drawing, sources, ground=bool(samples["amplitude_g"].any()))
@@ -170,6 +58,8 @@ def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
     axes.axhline(0.0, color="#999999", linewidth=0.6)
     axes.set(ylim=(-limit, limit), ylabel="rotation  θ/θcr  [–]")
     axes.set_xlim(0.0, float(motion["time_s"].max()))
+    if limit > 1.0:
+        _name_the_bounds(axes)
     axes.set_title(_caption(panel.iloc[0]), fontsize=10)
     axes.grid(alpha=0.25)
 
@@ -181,6 +71,28 @@ def _ground(axes: Axes, motion: pd.DataFrame) -> None:
     ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
     axes.set_zorder(ground.get_zorder() + 1)
     axes.patch.set_visible(False)
+
+
+def _name_the_bounds(axes: Axes) -> None:
+    """Draw the rotations beyond which a block at rest falls, and name them."""
+    end = axes.get_xlim()[1]
+    for side, name in ((1.0, "θcr"), (-1.0, "−θcr")):
+        axes.axhline(side, color="#999999", linewidth=0.8, linestyle=(0, (5, 4)))
+        axes.text(0.995 * end, 0.97 * side, name, ha="right", fontsize=8, color="#666666",
+                  va="top" if side > 0.0 else "bottom")  # fmt: skip
+
+
+def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
+    """Draw how far each source is from the exact one at each time, over θcr."""
+    found = panel.pivot_table(index="time_s", columns="source", values="theta_ratio")
+    for source in [name for name in panel["source"].unique() if name != "exact"]:
+        style = style_of(source)
+        off = (found[source] - found["exact"]).abs()
+        # the smallest of a stretch would be the zeros between two swings
+        worst = off.rolling(max(len(off) // 60, 1), center=True, min_periods=1).max()
+        axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=style.colour)
+    axes.set(yscale="log", ylabel="off from exact\nby  [θcr]", xlim=(0.0, found.index.max()))
+    axes.grid(alpha=0.25)
 
 
 def _caption(row: "pd.Series[Any]") -> str:
@@ -208,13 +120,13 @@ def _one_history(axes: Axes, points: pd.DataFrame, style: Style) -> None:
     axes.plot(
         points["time_s"],
         points["theta_ratio"],
-        color=style.colour,
-        linestyle=style.line or "-",
+        **{
+            **style.points(),
+            "marker": style.marker,
+            "linestyle": line_of(str(points["source"].iloc[0])),
+        },
         linewidth=style.width if style.line else 0.7,
-        marker=style.marker or None,
         markevery=max(len(points) // 40, 1),
-        markersize=4.5,
-        markerfacecolor="none",
     )
 
 
@@ -237,7 +149,7 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
 def _handle(source: str) -> Line2D:
     style = style_of(source)
     handle = Line2D([], [], color=style.colour, linewidth=style.width, label=source)
-    handle.set(linestyle=style.line or "none", marker=style.marker, markerfacecolor="none")
+    handle.set(linestyle=line_of(source), marker=style.marker, fillstyle=style.fill)
     return handle
 
 

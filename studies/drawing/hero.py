@@ -11,7 +11,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from studies.drawing.block import GROUND, INK, SOFT, outline
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 MAGNIFIED = 2.5
 """How many times their size the rotations of the outlines are drawn."""

@@ -9,7 +9,7 @@ STUDY = Study(
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
 the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
-agreement.csv, confusion.csv, ensemble.png and findings.txt; resumable. The full study takes about a
+agreement.csv, confusion.csv, two pictures and findings.txt; resumable. The full study takes about a
 quarter of an hour on one core, --quick half a minute.""",
     table="ensemble.csv",
     products=(
@@ -19,6 +19,7 @@ quarter of an hour on one core, --quick half a minute.""",
         "agreement.csv",
         "confusion.csv",
         "ensemble.png",
+        "singles.png",
         "findings.txt",
     ),
     chapters=(
@@ -27,6 +28,17 @@ quarter of an hour on one core, --quick half a minute.""",
             question="Are statistics predicted where single responses are not?",
             tables=("agreement.csv", "confusion.csv"),
             minutes=(0.5, 15.0),
+            weaker="Fewer motions and intensities, and one block.",
         ),
     ),
+    captions={
+        "ensemble": (
+            "Share of motions that overturn a block over their intensity, by each source, and "
+            "under it the capacity by each over the exact one with its interval."
+        ),
+        "singles": (
+            "Peak of each single response by a source over the exact one: on the diagonal they "
+            "agree."
+        ),
+    },
 )

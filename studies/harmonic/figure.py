@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 LABELS = {
     "frequency": "frequency of the shaking  ω/p  [–]",

@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -58,7 +58,7 @@ class Job:
     def key(self) -> str:
         """The identity of the job: everything that its result depends on."""
         preset = resolve(self.source).preset
-        parts = [asdict(self), type(self.motion).__name__, preset]
+        parts = [_plain(self), type(self.motion).__name__, preset]
         text = json.dumps(parts, default=_plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
@@ -73,7 +73,8 @@ class Job:
 
 def _plain(value: Any) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
-        return asdict(value)
+        # one level: what is inside comes here again
+        return {part.name: getattr(value, part.name) for part in fields(value)}
     if isinstance(value, np.ndarray):
         return [str(value.dtype), value.shape, hashlib.sha256(value.tobytes()).hexdigest()]
     if isinstance(value, Mapping):

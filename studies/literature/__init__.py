@@ -22,4 +22,10 @@ literature.csv, agreement.csv, literature.png and findings.txt; resumable. Less 
             minutes=(0.5, 0.5),
         ),
     ),
+    captions={
+        "literature": (
+            "Answers beside the numbers printed in the literature, a line for each; inside the "
+            "band they agree to every printed digit."
+        ),
+    },
 )

@@ -3,8 +3,9 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
 WIDEST = 12.0
 """Answers further than this from the print, in units of its half interval, stand at the edge."""
@@ -23,19 +24,16 @@ def draw_literature(table: pd.DataFrame) -> Figure:
         off=((table["value"] - middle) / half).clip(-WIDEST, WIDEST),
         height=[-places.index(pair) for pair in zip(table["problem"], table["side"], strict=True)],
     )
-    for number, (source, rows) in enumerate(table.groupby("source", sort=False)):
-        style = style_of(str(source))
+    sources = list(table["source"].unique())
+    for number, source in enumerate(sources):
+        rows, style = table[table["source"] == source], style_of(source)
         printed = rows["model"] == source
-        nudge = 0.12 * (number % 3 - 1)
-        for filled, part in ((True, rows[printed]), (False, rows[~printed])):
-            axes.scatter(
+        nudge = 0.6 * ((number + 0.5) / len(sources) - 0.5)
+        for filled, part in (("full", rows[printed]), ("none", rows[~printed])):
+            axes.plot(
                 part["off"],
-                part["height"] + nudge,
-                marker=style.marker or "D",
-                s=30,
-                facecolor=style.colour if filled else "none",
-                edgecolor=style.colour,
-                label=NAMES.get(str(source), str(source)) if filled == printed.any() else None,
+                part["height"] - nudge,
+                **{**style.points(6.0), "marker": style.marker or "D", "fillstyle": filled},
                 zorder=3,
             )
     labels = table.drop_duplicates(["problem", "side"])
@@ -49,5 +47,12 @@ def draw_literature(table: pd.DataFrame) -> Figure:
     axes.set_xlabel("answer less print, in units of half of what the print's digits allow")
     axes.set_title("Inside the band: agrees to every printed digit", fontsize=10)
     axes.grid(axis="y", color="#EEEEEE")
-    axes.legend(loc="upper right", fontsize=8, title="filled: the model of the print")
+    looks = ({**style_of(name).points(6.0), "fillstyle": "full"} for name in sources)
+    handles = [
+        Line2D([], [], **{**look, "marker": style_of(name).marker or "D"},
+               label=NAMES.get(name, name))
+        for name, look in zip(sources, looks, strict=True)
+    ]  # fmt: skip
+    drawing.legend(handles=handles, loc="outside lower center", fontsize=9, ncols=len(sources),
+                   title="filled: the model of the print; open: others", frameon=False)  # fmt: skip
     return drawing

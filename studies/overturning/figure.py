@@ -12,11 +12,13 @@ from matplotlib.patches import Patch
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 from studies.measures.differences import conditioning_of
 from studies.overturning.areas import modes_at, no_impact_line, with_exact
 
 PIXELS = 900
+KAPPA_SHOWN = 1e2
+"""Upper end of the colours of κ: what is beyond needs no telling apart."""
 # the palette of Okabe and Ito, lightened where a whole area is filled
 MODE_COLOURS = {
     "survives": "#FFFFFF",
@@ -27,7 +29,7 @@ MODE_COLOURS = {
 }
 DIFFERENCE_COLOURS = {
     "both survive": "#FFFFFF",
-    "both overturn": "#D9D9D9",
+    "both overturn": "#CCCCCC",
     "false overturning": "#E69F00",
     "missed overturning": "#0072B2",
     "failed": "#000000",
@@ -64,42 +66,54 @@ def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
 
 
 def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window) -> Figure:
-    """Draw where each source differs from exact, from the columns of map.csv and engines.csv."""
+    """Draw where each source differs from exact, from the columns of map.csv and engines.csv.
+
+    Engines that differ in no cell are named instead of drawn.
+    """
     models = [name for name in areas["model"].unique() if name != "exact"]
     cells = with_exact(engines, window) if len(engines) else engines
-    sources = list(cells["source"].unique()) if len(cells) else []
-    count = len(models) + len(sources)
-    across = min(count, 3)
-    down = math.ceil(count / across)
-    drawing = Figure(figsize=(3.9 * across, 3.5 * down + 0.6), layout="constrained")
-    grid = drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    parts = dict(iter(cells.groupby("source", sort=False))) if len(cells) else {}
+    off = {name: int((part["verdict"] != "right").sum()) for name, part in parts.items()}
+    drawn = [*models, *(name for name in parts if off[name])]
+    # without any that differs, the first shows what all of them say
+    drawn += list(parts)[:1] if not any(off.values()) else []
+    across = min(len(drawn), 3)
+    down = math.ceil(len(drawn) / across)
+    drawing = Figure(figsize=(3.9 * across, 3.4 * down + 0.8), layout="constrained")
+    panels = list(drawing.subplots(down, across, squeeze=False).flat)
     right = picture(areas[areas["model"] == "exact"], window)
-    panels = list(grid.flat)
-    for axes, model in zip(panels, models, strict=False):
-        found = picture(areas[areas["model"] == model], window)
-        codes = np.where(found >= 0, np.where(right >= 0, 1, 2), np.where(right >= 0, 3, 0))
+    for place, (axes, source) in enumerate(zip(panels, drawn, strict=False)):
+        if source in models:
+            found = picture(areas[areas["model"] == source], window)
+            codes = np.where(found >= 0, np.where(right >= 0, 1, 2), np.where(right >= 0, 3, 0))
+            wrong = f"{np.isin(codes, (2, 3)).mean():.1%}".replace("%", " %")
+        else:
+            codes = _cell_codes(parts[source])
+            wrong = f"{off[source]} of {len(parts[source])} cells"
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
-        axes.set_title(model, fontsize=10)
-    for axes, source in zip(panels[len(models) :], sources, strict=False):
-        part = cells[cells["source"] == source]
-        _paint(axes, _cell_codes(part), DIFFERENCE_COLOURS, window)
-        axes.set_title(f"{source}, {len(part)} cells", fontsize=10)
-    for axes in panels[count:]:
+        axes.set_title(f"{source}: {wrong} wrong", fontsize=10)
+        _frame(axes, window, below=place + across >= len(drawn), left=place % across == 0)
+    for axes in panels[len(drawn) :]:
         axes.set_visible(False)
-    for number, axes in enumerate(panels[:count]):
-        _frame(axes, window, below=number + across >= count, left=number % across == 0)
-    drawing.suptitle(f"Difference from the exact solution: {window.title}", fontsize=11)
+    alike = [str(name) for name in parts if not off[name]]
+    words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
+    drawing.suptitle(f"Beside the exact map, {window.title}{words}", fontsize=11)
+    shown = [name for name in DIFFERENCE_COLOURS if name != "failed" or _any_failed(cells)]
     drawing.legend(
         handles=[
-            Patch(facecolor=colour, edgecolor="#888888", label=name)
-            for name, colour in DIFFERENCE_COLOURS.items()
+            Patch(facecolor=DIFFERENCE_COLOURS[name], edgecolor="#888888", label=name)
+            for name in shown
         ],
         loc="outside lower center",
-        ncols=5,
+        ncols=len(shown),
         frameon=False,
         fontsize=9,
     )
     return drawing
+
+
+def _any_failed(cells: pd.DataFrame) -> bool:
+    return len(cells) > 0 and bool((cells["verdict"] == "failed").any())
 
 
 def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
@@ -124,7 +138,7 @@ def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
         interpolation="nearest",
         extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
         cmap="viridis",
-        norm=LogNorm(1.0, 1e4),
+        norm=LogNorm(1.0, KAPPA_SHOWN),
     )
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
     _frame(axes, window)

@@ -1,5 +1,6 @@
 """Draw a results folder again, from its CSVs alone."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,13 +23,23 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
         Format of the files.
     """
     kept = [study for study in STUDIES if study.table]
-    found = [study for study in kept if any(folder.glob(study.table))]
+    left = _recorded(folder)
+    found = [study for study in kept if any(folder.glob(study.table)) or study.name == left]
     if not found:
         tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
     for study in found:
         print(*draw(study, folder, f".{suffix}"), sep="\n")
     return 0
+
+
+def _recorded(folder: Path) -> str:
+    """Return the name of the study that left a folder, which may hold its smaller tables only."""
+    path = folder / "provenance.json"
+    try:
+        return str(json.loads(path.read_text(encoding="utf-8"))["study"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
 
 
 def draw(study: Study, folder: Path, suffix: str) -> list[Path]:

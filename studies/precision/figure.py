@@ -1,13 +1,16 @@
 """Work-precision diagrams: error against run time, a line for each method."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
+from analytic.motion import FloatArray
 from engines import ENGINES
-from studies.drawing.figures import LOWEST, Style, engine_style
+from studies.drawing.labels import Name, around, beside
+from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),
@@ -23,8 +26,10 @@ STYLES = {
     "onset-matched, closed form": Style("#CC79A7", "", "*"),
 }
 
-LINES = {"naive": (":", 1.4), "fixed": ("--", 1.4), "iterations": ("-.", 0.8)}
-"""What is varied of an engine -> its line and how thick that is; the best preset's is full."""
+AIMS = (1e-4, 1e-2)
+"""Errors between which most applications are content: shaded."""
+WRONG = 10.0
+"""Where methods that fail or get outcomes wrong are drawn."""
 
 
 def style_of(method: str) -> Style:
@@ -33,9 +38,11 @@ def style_of(method: str) -> Style:
     if method in STYLES or engine not in ENGINES:
         return STYLES.get(method, Style("#777777", "-", "."))
     preset, _, dial = varied.partition(", ")
-    line, width = LINES.get(dial or preset, ("-", 2.0))
     look = engine_style(engine, preset)
-    return Style(look.colour, line, "+" if dial else look.marker, width)
+    if dial:
+        return Style(look.colour, "-.", "+", 0.8)
+    width = 1.4 if preset in PRESET_LINES else 2.0
+    return Style(look.colour, PRESET_LINES.get(preset, "-"), look.marker, width, look.fill)
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:
@@ -46,7 +53,7 @@ def draw_precision(table: pd.DataFrame) -> Figure:
     table : DataFrame
         The columns of work-precision.csv.
     """
-    drawing = Figure(figsize=(11.0, 7.6), layout="constrained")
+    drawing = Figure(figsize=(12.0, 7.0), layout="constrained")
     sets = list(table["set"].unique())
     panels = drawing.subplots(1, len(sets), sharey=True, squeeze=False)[0]
     for axes, kind in zip(panels, sets, strict=True):
@@ -54,10 +61,46 @@ def draw_precision(table: pd.DataFrame) -> Figure:
         axes.set_title(f"{kind} cases")
         axes.set_xlabel("run time of a case, set-up apart  [s]")
     panels[0].set_ylabel("median relative error of the peak  [–]")
-    handles = [_handle(str(name)) for name in table["method"].unique()]
-    handles.append(Line2D([], [], color="#FFD54A", linewidth=5, alpha=0.6, label="Pareto front"))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    _name_methods(panels, table)
     return drawing
+
+
+def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
+    """Write the engines at the right of the last panel, all other methods into the first."""
+    is_engine = table["method"].str.partition(" ")[0].isin(list(ENGINES))
+    finite = np.isfinite(table["median_error"])
+    sets = table["set"].unique()
+    others = table[finite & ~is_engine & (table["set"] == sets[0])]
+    first = table[finite & (table["set"] == sets[0])]
+    taken = np.vstack([_along(line) for _, line in first.groupby("method", sort=False)])
+    around(panels[0], [_end(*group) for group in others.groupby("method", sort=False)], taken)
+    _name_the_front(panels[0], pareto(first))
+    engines = table[finite & is_engine & (table["set"] == sets[-1])]
+    beside(panels[-1], [_end(*group) for group in engines.groupby("method", sort=False)])
+
+
+def _along(line: pd.DataFrame) -> FloatArray:
+    """Return points along the line of a method, also between its runs; shape (n, 2)."""
+    runs = np.log(line[["wall_s", "median_error"]].clip(lower=LOWEST).to_numpy(np.float64))
+    places = np.linspace(0.0, len(runs) - 1.0, 12 * len(runs))
+    x, y = (np.interp(places, np.arange(len(runs)), column) for column in runs.T)
+    points: FloatArray = np.exp(np.column_stack([x, y]))
+    return points
+
+
+def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:
+    middle = front.iloc[len(front) // 2]
+    spot = (middle["wall_s"], max(middle["median_error"], LOWEST))
+    axes.annotate("nothing is faster\nand more accurate", spot, (30, -70), fontsize=7.5,
+                  textcoords="offset points", color="#8a6d00",
+                  arrowprops={"arrowstyle": "-", "color": "#c9a800", "linewidth": 0.8})  # fmt: skip
+
+
+def _end(method: object, line: pd.DataFrame) -> Name:
+    """Return the name of a method where its line ends, at its longest run."""
+    last = line.sort_values("wall_s").iloc[-1]
+    error = max(float(last["median_error"]), LOWEST)
+    return Name(str(method), float(last["wall_s"]), error, style_of(str(method)).colour)
 
 
 def _one_set(axes: Axes, table: pd.DataFrame) -> None:
@@ -74,26 +117,25 @@ def _one_set(axes: Axes, table: pd.DataFrame) -> None:
     )
     for name, line in table.groupby("method", sort=False):
         style = style_of(str(name))
+        look = style.points(9.0 if style.marker == "*" else 4.5)
         whole = line[np.isfinite(line["median_error"])]
         axes.plot(
             whole["wall_s"],
             whole["median_error"].clip(lower=LOWEST),
-            color=style.colour,
-            linestyle=style.line or "none",
-            marker=style.marker,
-            linewidth=style.width,
-            markersize=9 if style.marker == "*" else 4.5,
+            **{**look, "linestyle": style.line or "none", "linewidth": style.width},
         )
-        broken = line[~np.isfinite(line["median_error"])]
+        # a case that was given up before it was timed has no place on the scale
+        broken = line[~np.isfinite(line["median_error"]) & (line["wall_s"] > 0.0)]
         axes.plot(
             broken["wall_s"],
-            np.full(len(broken), 10.0),
-            color=style.colour,
-            linestyle="none",
-            marker="X",
-            markersize=8,
+            np.full(len(broken), WRONG),
+            **{**look, "marker": "X", "fillstyle": "full"},
         )
+    axes.axhspan(*AIMS, color="#e8f1e4", zorder=-1)
     axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
+    for level, words in ((AIMS[0], "1e-4"), (AIMS[1], "1 %")):
+        axes.text(0.985, level, words, transform=axes.get_yaxis_transform(), fontsize=7.5,
+                  color="#5b7a4d", ha="right", va="center")  # fmt: skip
     axes.text(0.98, 0.985, "failed, or wrong outcomes", ha="right", va="top", fontsize=8,
               color="#666666", transform=axes.transAxes)  # fmt: skip
     axes.grid(alpha=0.25)
@@ -105,10 +147,3 @@ def pareto(table: pd.DataFrame) -> pd.DataFrame:
     best = ordered["median_error"].cummin().shift(fill_value=np.inf)
     front: pd.DataFrame = ordered[ordered["median_error"] < best]
     return front
-
-
-def _handle(name: str) -> Line2D:
-    style = style_of(name)
-    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name)
-    handle.set(linestyle=style.line or "none", marker=style.marker, markersize=5)
-    return handle

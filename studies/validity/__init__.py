@@ -8,16 +8,34 @@ STUDY = Study(
     help="""Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
-on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, validity.png and
-findings.txt; resumable. The full study takes about a minute on one core, --quick a quarter of
-one.""",
+on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, two
+pictures and findings.txt; resumable. The full study takes about a minute on one core, --quick a
+quarter of one.""",
     table="validity.csv",
-    products=("validity.csv", "map.csv", "compared.csv", "validity.png", "findings.txt"),
+    products=(
+        "validity.csv",
+        "map.csv",
+        "compared.csv",
+        "validity.png",
+        "friction.png",
+        "findings.txt",
+    ),
     chapters=(
         Chapter(
             folder="validity",
             question="Where is the reference itself valid, and what do engines do beyond?",
             minutes=(0.5, 3.0),
+            weaker="Every other case of the engines, and fewer frictions.",
         ),
     ),
+    captions={
+        "validity": (
+            "Amplitude over frequency for four H/B: where the reference holds, where its pivot "
+            "would lift off, and symbols for what engines do there."
+        ),
+        "friction": (
+            "How far the pivot slides over the friction given, in parts of what the reference "
+            "needs, for four H/B."
+        ),
+    },
 )

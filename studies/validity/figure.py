@@ -1,80 +1,109 @@
 """The map of validity drawn, with the engines' verdicts on it and their slips under it."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from studies.drawing.figures import style_of
+from studies.drawing.styles import style_of
 
-VERDICTS = {
-    "held": "#ffffff",
-    "lifted off": "#F0E442",
-    "slid": "#56B4E9",
-    "slid and lifted off": "#E69F00",
-    "slid away": "#D55E00",
-    "flew off": "#CC79A7",
-    "failed": "#000000",
+SYMBOLS = {
+    "held": "•",
+    "lifted off": "↑",
+    "slid": "→",
+    "slid and lifted off": "↗",
+    "slid away": "»",
+    "flew off": "⇑",
+    "failed": "✕",
 }
-"""Verdict -> colour of its marker."""
+"""Verdict -> its symbol."""
 
-LEAST = -2.0
-"""Normal force over weight at the foot of the colours."""
+HOLDS, ENDS = "#e8f0f5", "#f4d3bd"
+"""Colours of where the reference is valid, and of where its pivot would need to be pulled."""
 
 SMALLEST_SLIP = 1e-9
 
 
 def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
-    """Draw the smallest normal force over amplitude and frequency, a panel for each H/B.
+    """Draw over amplitude and frequency where the reference holds, and what engines do there.
 
     Parameters
     ----------
     table, beside : DataFrame
         map.csv and compared.csv.
     """
-    aspects = sorted(table["aspect"].unique())
-    sources = list(beside["source"].unique())
-    drawing = Figure(figsize=(3.7 * len(aspects), 8.2), layout="constrained")
-    top, foot = drawing.subplots(2, len(aspects), squeeze=False, height_ratios=(1.25, 1.0))
-    for column, (aspect, upper, lower) in enumerate(zip(aspects, top, foot, strict=True)):
-        here = beside[beside["aspect"] == aspect]
-        shades = _map(upper, table[table["aspect"] == aspect])
-        _verdicts(upper, here[here["friction_factor"].isna()], sources)
-        upper.set_title(f"H/B = {aspect:g}", fontsize=11)
-        _slips(lower, here[here["friction_factor"].notna()], sources)
-        if column == 0:
-            upper.set_ylabel("amplitude  a_p / (g tan α)  [–]")
-            lower.set_ylabel("slide of the pivot over B  [–]")
-    drawing.colorbar(shades, ax=list(top), label="smallest normal force  N/mg  [–]", shrink=0.9)
+    aspects, sources = sorted(table["aspect"].unique()), list(beside["source"].unique())
+    drawing = Figure(figsize=(3.1 * len(aspects), 4.6), layout="constrained")
+    panels = drawing.subplots(1, len(aspects), sharey=True, squeeze=False)[0]
+    own = beside[beside["friction_factor"].isna()]
+    for axes, aspect in zip(panels, aspects, strict=True):
+        _map(axes, table[table["aspect"] == aspect])
+        _verdicts(axes, own[own["aspect"] == aspect], sources)
+        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+    panels[0].set_ylabel("amplitude  a_p / (g tan α)  [–]")
     drawing.suptitle(
-        "Full-sine pulses. Above: the reference lifts off beyond the black line; dashed: it "
-        "overturns; markers: what engines do.\nBelow: engines with a part of the friction that the "
-        "reference needs.",
-        fontsize=11,
+        "Full-sine pulses: where the reference holds, and what engines do", fontsize=11
     )
-    drawing.legend(
-        handles=_handles(sources, list(beside["verdict"].unique())),
-        loc="outside lower center",
-        ncols=5,
-        frameon=False,
-    )
+    seen = [verdict for verdict in SYMBOLS if verdict in set(own["verdict"])]
+    handles = [
+        Patch(facecolor=HOLDS, edgecolor="#888888", label="the reference holds"),
+        Patch(facecolor=ENDS, edgecolor="#888888", label="its pivot would lift off"),
+        Line2D([], [], color="#444444", linestyle="--", linewidth=1.0, label="it overturns"),
+        *(
+            Line2D([], [], linestyle="none", color="black", marker=f"${SYMBOLS[verdict]}$",
+                   markersize=9 if verdict != "held" else 5, label=verdict)
+            for verdict in seen
+        ),
+    ]  # fmt: skip
+    drawing.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False,
+                   fontsize=9, title=_whose(sources), title_fontsize=9)  # fmt: skip
     return drawing
 
 
-def _map(axes: Axes, table: pd.DataFrame) -> QuadMesh:
+def _whose(sources: list[str]) -> str:
+    """Say whose symbols stand where."""
+    if len(sources) == 1:
+        return f"symbols: {sources[0]}"
+    return f"black symbols: all alike; where they differ, from the left {', '.join(sources)}"
+
+
+def draw_friction(beside: pd.DataFrame) -> Figure:
+    """Draw how far pivots slide under a part of the friction that the reference needs.
+
+    Parameters
+    ----------
+    beside : DataFrame
+        compared.csv.
+    """
+    aspects, sources = sorted(beside["aspect"].unique()), list(beside["source"].unique())
+    drawing = Figure(figsize=(2.8 * len(aspects), 4.2), layout="constrained")
+    panels = drawing.subplots(1, len(aspects), sharey=True, squeeze=False)[0]
+    rows = beside[beside["friction_factor"].notna()]
+    for axes, aspect in zip(panels, aspects, strict=True):
+        _slips(axes, rows[rows["aspect"] == aspect], sources)
+        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+    panels[0].set_ylabel("slide of the pivot over B  [–]")
+    drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
+    handles = [Line2D([], [], **style_of(name).points(6.0), label=name) for name in sources]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=len(sources), frameon=False)
+    return drawing
+
+
+def _map(axes: Axes, table: pd.DataFrame) -> None:
     normal = table.pivot(index="onsets", columns="omega_over_p", values="min_normal")
     overturned = table.assign(over=(table["outcome"] == "overturned").astype(float)).pivot(
         index="onsets", columns="omega_over_p", values="over"
     )
     x, y = normal.columns.to_numpy(float), normal.index.to_numpy(float)
-    shades = axes.pcolormesh(
-        x, y, normal.to_numpy(), cmap="RdBu", vmin=LEAST, vmax=-LEAST, shading="nearest"
-    )
-    axes.contour(x, y, normal.to_numpy(), levels=[0.0], colors="black", linewidths=2.0)
+    values = normal.to_numpy()
+    ends = [min(float(values.min()), -1.0), 0.0, max(float(values.max()), 1.0)]
+    axes.contourf(x, y, values, levels=ends, colors=[ENDS, HOLDS])
+    axes.contour(x, y, values, levels=[0.0], colors="black", linewidths=1.5)
     axes.contour(
         x, y, overturned.to_numpy(), levels=[0.5], colors="#444444", linewidths=1, linestyles="--"
     )
@@ -83,23 +112,21 @@ def _map(axes: Axes, table: pd.DataFrame) -> QuadMesh:
     axes.yaxis.set_ticks([1.2, 1.6, 2.4, 3.6, 5.4], ["1.2", "1.6", "2.4", "3.6", "5.4"])
     for scale in (axes.xaxis, axes.yaxis):
         scale.set_ticks([], minor=True)
-    return shades
 
 
 def _verdicts(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
-    for number, source in enumerate(sources):
-        beside = 1.0 + 0.11 * (number - 0.5 * (len(sources) - 1))
-        for verdict, group in rows[rows["source"] == source].groupby("verdict"):
-            axes.plot(
-                beside * group["omega_over_p"],
-                group["onsets"],
-                linestyle="none",
-                marker=style_of(source).marker or "D",
-                markersize=6.5,
-                markerfacecolor=VERDICTS[str(verdict)],
-                markeredgecolor="black",
-                markeredgewidth=0.8,
-            )
+    """Write one symbol where all engines do the same, and one of each side by side elsewhere."""
+    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 12}
+    for _, here in rows.groupby(["omega_over_p", "onsets"]):
+        x, y = (float(here[name].iloc[0]) for name in ("omega_over_p", "onsets"))
+        found = here.set_index("source")["verdict"]
+        if found.nunique() == 1:
+            axes.text(x, y, SYMBOLS[str(found.iloc[0])], color="black", **style)
+            continue
+        for number, source in enumerate(name for name in sources if name in found):
+            place = x * 1.16 ** (number - 0.5 * (len(found) - 1))
+            symbol = SYMBOLS[str(found[source])]
+            axes.text(place, y, symbol, color=style_of(source).colour, fontweight="bold", **style)
 
 
 def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
@@ -111,11 +138,7 @@ def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
         axes.plot(
             beside * group["friction_factor"],
             slip,
-            linestyle="none",
-            marker=style_of(source).marker or "D",
-            markersize=4.5,
-            markerfacecolor="none",
-            color=style_of(source).colour,
+            **style_of(source).points(4.5),
         )
     axes.axvline(1.0, color="#999999", linewidth=1.0)
     axes.set(yscale="log", xlabel="friction / friction needed  [–]")
@@ -124,18 +147,3 @@ def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
     axes.yaxis.set_ticks([*ticks, 0.2], [f"$10^{{{math.log10(t):.0f}}}$" for t in ticks] + ["away"])
     axes.yaxis.set_ticks([], minor=True)
     axes.grid(alpha=0.25)
-
-
-def _handles(sources: list[str], verdicts: list[str]) -> list[Line2D]:
-    engines = [
-        Line2D([], [], linestyle="none", marker=style_of(source).marker or "D", label=source,
-               color=style_of(source).colour, markerfacecolor="none")
-        for source in sources
-    ]  # fmt: skip
-    seen = [
-        Line2D([], [], linestyle="none", marker="s", label=verdict, markersize=8,
-               markerfacecolor=VERDICTS[verdict], markeredgecolor="black")
-        for verdict in VERDICTS
-        if verdict in verdicts
-    ]  # fmt: skip
-    return engines + seen

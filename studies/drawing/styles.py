@@ -1,0 +1,92 @@
+"""How each source is drawn, in one place: colour, line and marker of models, solvers, engines."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from engines import ENGINES
+
+LOWEST = 1e-16
+"""Errors below are drawn here, on the floor of double precision."""
+
+Fill = Literal["none", "left", "full"]
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How a source is drawn: its colour, and its line (models and solvers) or marker (engines).
+
+    Attributes
+    ----------
+    colour : str
+    line : str
+        Empty for sources that are drawn as points.
+    marker : str
+        Empty for sources that are drawn as lines.
+    width : float
+    fill : str
+        How much of the marker is filled.
+    """
+
+    colour: str
+    line: str = ""
+    marker: str = ""
+    width: float = 1.4
+    fill: Fill = "none"
+
+    def points(self, size: float = 4.5) -> dict[str, Any]:
+        """Return how its points are drawn, as arguments of `Axes.plot`."""
+        return {
+            "color": self.colour,
+            "linestyle": "none",
+            "marker": self.marker or ".",
+            "markersize": size,
+            "fillstyle": self.fill if self.marker else "full",
+        }
+
+
+# the palette of Okabe and Ito, which colour-blind readers tell apart
+STYLES = {
+    "exact": Style("#000000", "-", width=2.2),
+    "housner": Style("#D55E00", "--"),
+    "modified": Style("#0072B2", "-."),
+    "onset-matched": Style("#CC79A7", ":", width=1.8),
+    "rk4": Style("#56B4E9", "-", width=1.0),
+    "average-acceleration": Style("#E69F00", "--", width=1.0),
+}
+
+# from Tol's muted palette, but for the first two; an engine has a marker of its own besides,
+# because no eight colours stay apart for every reader
+ENGINE_COLOURS = (
+    *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
+)
+ENGINE_MARKERS = "o^sDvPXp"
+FILLS: dict[str, Fill] = {"naive": "full", "fixed": "left"}
+"""Preset -> how much of an engine's marker is filled; open is the best there is."""
+PRESET_LINES = {"naive": ":", "fixed": "--"}
+"""Preset -> line, where an engine is drawn as one; the best there is has a full line."""
+
+OTHER = Style("#777777", marker="D")
+"""Of a source without a style of its own."""
+
+
+def engine_style(engine: str, preset: str) -> Style:
+    """Return colour and marker of an engine, by its place among all, and the preset's fill."""
+    place = list(ENGINES).index(engine)
+    return Style(
+        ENGINE_COLOURS[place % len(ENGINE_COLOURS)],
+        marker=ENGINE_MARKERS[place % len(ENGINE_MARKERS)],
+        fill=FILLS.get(preset, "none"),
+    )
+
+
+def style_of(source: str) -> Style:
+    """Return the style of a source; one without a style of its own is grey."""
+    plain, _, preset = source.partition(":")
+    if plain in ENGINES:
+        return engine_style(plain, preset)
+    return STYLES.get(plain, OTHER)
+
+
+def line_of(source: str) -> str:
+    """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
+    return style_of(source).line or PRESET_LINES.get(source.partition(":")[2], "-")

@@ -1,0 +1,130 @@
+"""Figures: who is told from whom, names that do not cover each other, what is left out."""
+
+import itertools
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.__main__ import run
+from studies.contact.figure import MATTER, REST, draw_contact
+from studies.drawing.diagrams import ONSETS
+from studies.drawing.labels import spread
+from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS, STYLES
+from studies.overturning.figure import DIFFERENCE_COLOURS
+
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+
+# Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
+VISIONS = {
+    "all three cones": np.eye(3),
+    "protanopia": np.array(
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
+    ),
+    "deuteranopia": np.array(
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
+    ),
+    "tritanopia": np.array(
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
+    ),
+}
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+APART = 15.0
+"""Distance in CIELAB from which two colours are told apart at a glance; 2.3 is just seen."""
+
+
+def seen(colour, vision):
+    """Return a colour in CIELAB, as somebody with that vision sees it."""
+    rgb = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    xyz = TO_XYZ @ (VISIONS[vision] @ linear).clip(0.0, 1.0) / TO_XYZ.sum(axis=1)
+    x, y, z = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
+    return np.array([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
+
+
+def distance(one, other, vision):
+    return np.linalg.norm(seen(one, vision) - seen(other, vision))
+
+
+def test_white_is_far_from_black_and_red_is_near_green_without_a_cone():
+    assert distance("#ffffff", "#000000", "all three cones") == pytest.approx(100.0, abs=0.1)
+    assert distance("#c00000", "#5a5a00", "all three cones") > 50.0
+    assert distance("#c00000", "#5a5a00", "protanopia") < 25.0
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+def test_sources_are_told_apart_by_colour_line_or_marker(vision):
+    looks = {name: (style.colour, style.line) for name, style in STYLES.items()}
+    looks |= {
+        f"engine {i}": pair
+        for i, pair in enumerate(zip(ENGINE_COLOURS, ENGINE_MARKERS, strict=True))
+    }
+    alike = [
+        (first, second)
+        for first, second in itertools.combinations(looks, 2)
+        if looks[first][1] == looks[second][1]
+        and distance(looks[first][0], looks[second][0], vision) < APART
+    ]
+    assert alike == []
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+def test_filled_areas_and_families_of_lines_are_told_apart(vision):
+    areas = [colour for name, colour in DIFFERENCE_COLOURS.items() if name != "failed"]
+    for colours in (areas, [colour for colour, _ in ONSETS.values()]):
+        assert min(distance(*pair, vision) for pair in itertools.combinations(colours, 2)) > APART
+
+
+def test_eight_engines_have_eight_looks():
+    assert len(set(ENGINE_COLOURS)) == len(set(ENGINE_MARKERS)) == 8
+
+
+def test_names_stay_where_there_is_room():
+    levels = [0.9, 0.1, 0.5]
+    assert spread(levels, 0.2) == pytest.approx(levels)
+
+
+def test_names_that_are_too_near_are_moved_apart_alike():
+    moved = spread([0.5, 0.5, 0.52, 0.9], 0.1)
+    assert np.diff(moved[:3]) == pytest.approx([0.1, 0.1])
+    assert moved[:3].mean() == pytest.approx(np.mean([0.5, 0.5, 0.52]))
+    assert moved[3] == 0.9
+
+
+def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
+    lines = pd.read_csv(
+        PUBLISHED / "contact" / "variants.csv", keep_default_na=False, na_values="nan"
+    )
+    drawn = draw_contact(lines)
+    axes = next(panel for panel in drawn.axes if panel.get_title() == "mujoco")
+    words = [label.get_text() for label in axes.get_yticklabels()]
+    mine = lines[(lines["engine"] == "mujoco") & (lines["factor"] != "")]
+    counts = mine.groupby("preset").size()
+    rest = [word for word in words if "matter less" in word]
+    assert sorted(int(word.split()[0]) for word in rest) == sorted(counts - MATTER)
+    assert len(words) == (mine["preset"].nunique() + 1) + 2 * (MATTER + 1)
+    broken = mine[mine["max_error"].isna()]
+    assert all(any(level in word for word in words) for level in broken["level"])
+    assert REST not in "".join(words)
+
+
+@pytest.mark.parametrize("study", ["contact", "validate", "precision"])
+def test_published_results_without_their_largest_table_are_drawn_again(study, tmp_path, capsys):
+    folder = Path(shutil.copytree(PUBLISHED / study, tmp_path / study))
+    (folder / f"{study}.png").unlink()
+    assert run(["redraw", str(folder)]) == 0
+    assert (folder / f"{study}.png").stat().st_size > 10_000
