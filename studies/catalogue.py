@@ -17,6 +17,7 @@ from studies import (
     literature,
     overturning,
     precision,
+    score,
     stability,
     sweep,
     throughput,
@@ -46,6 +47,7 @@ STUDIES: tuple[Study, ...] = (
     validity.STUDY,
     ensemble.STUDY,
     throughput.STUDY,
+    score.STUDY,
 )
 """In the order in which the help lists them and a report shows them."""
 
@@ -68,6 +70,7 @@ if TYPE_CHECKING:
     from studies.overturning import study as _overturning
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
+    from studies.score import study as _score
     from studies.stability import study as _stability
     from studies.sweep import study as _sweep
     from studies.validate import study as _validate
@@ -76,6 +79,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _estimate),
+        *(_advise, _estimate, _score),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )
