@@ -21,6 +21,7 @@ OWN = {
     "pymunk": "engines.adapters.pymunk:ENGINE",
     "box2d": "engines.adapters.box2d:ENGINE",
     "dart": "engines.adapters.dart:ENGINE",
+    "rapier": "engines.adapters.rapier:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

@@ -9,10 +9,11 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import Engine, Precision
-from studies.advise.evidence import LADDER, PUBLISHED
+from studies.advise.evidence import LADDER
 from studies.kit import provenance
 from studies.kit.journal import PROVENANCE
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
+from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, out_of, part
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision

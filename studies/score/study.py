@@ -13,12 +13,12 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES
-from studies.kit.arguments import BadInputError, Count, Place, Positive
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import BadInputError, Place
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, by_label, carry_out
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
@@ -43,8 +43,7 @@ def command(
     *,
     out: Place,
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Score one engine.
 
@@ -57,18 +56,9 @@ def command(
         Folder for the results; made if there is none.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
-    jobs
-        Processes for the engine; by default the number of cores. Times are quieter with 1.
-    time_limit
-        Wall-clock time [s] after which a case is given up.
     """
-    name = known(engine)
-    executor = choose(
-        jobs, time_limit, None, functools.partial(put, quick=quick, time_limit_s=time_limit)
-    )
-    rows = score(name, out, quick=quick, executor=executor)
-    print(report(out))
-    return exit_code([row for row in rows if row["table"] == SWEEP])
+    chosen = plan(known(engine), quick, running.time_limit)
+    return carry_out(STUDY, chosen, out, running, report)
 
 
 def known(engine: str) -> str:
@@ -91,25 +81,15 @@ def known(engine: str) -> str:
         raise BadInputError(f"ENGINE: {error}") from error
 
 
-def score(name: str, folder: Path, *, quick: bool, executor: Executor) -> list[Row]:
-    """Run what the folder does not hold yet, and write its three tables.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        folder,
-        STUDY.name,
-        score_jobs(name, quick),
-        module=__name__,
-        executor=executor,
-        reduce=reduce,
+def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
+    """Return the plan of the three tables."""
+    return Plan(
+        jobs=score_jobs(name, quick),
         settings={"engine": name, "adapter": adapter(name), "quick": quick, "bands": BANDS},
-        growing={},
-        products=STUDY.products,
-        tables="table",
+        ask=functools.partial(put, quick=quick, time_limit_s=time_limit_s),
+        reduce=reduce,
+        tabulate=by_label("table"),
+        needed=lambda rows: [row for row in rows if row["table"] == SWEEP],
     )
 
 

@@ -12,6 +12,7 @@ from engines.declaration import Stepping
 from engines.registry import FURTHER, announce
 from studies import respond
 from studies.__main__ import run
+from studies.kit.options import Running
 from studies.score import study as score
 from studies.sources.registry import SOURCES, resolve
 
@@ -86,8 +87,8 @@ def some_of(jobs):
             yield job
 
 
-def in_this_process(jobs, time_limit_s, cluster, ask):
-    """Choose an executor that starts no process."""
+def in_this_process(running, ask):
+    """Return an executor that starts no process."""
 
     def executor(asked):
         for number, job in enumerate(asked):
@@ -102,7 +103,7 @@ def test_the_page(alone, monkeypatch, tmp_path, capsys):
     everything = score.score_jobs
     monkeypatch.setattr(score, "score_jobs", lambda *asked: list(some_of(everything(*asked))))
     monkeypatch.setattr(score, "answer", lambda case, job, source, limit: score.plain(job, source))
-    monkeypatch.setattr(score, "choose", in_this_process)
+    monkeypatch.setattr(Running, "executor", in_this_process)
     assert run(["score", MINE, "--quick", "--out", str(tmp_path)]) in (0, 1)
     page = capsys.readouterr().out
     assert page.strip() == (tmp_path / "score.txt").read_text().strip()
