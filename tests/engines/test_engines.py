@@ -12,6 +12,7 @@ import sys
 from dataclasses import replace
 
 import pytest
+from declared import equal_to
 from uses import (
     BLOCK,
     FIXED,
@@ -19,7 +20,6 @@ from uses import (
     MIRRORED,
     TUNED,
     TUNED_IN_FRAMES,
-    equal_to,
     every_fixed_use,
     every_tuned_use,
     every_use,
@@ -186,7 +186,8 @@ def test_geometry_can_be_put_back(engine: str) -> None:
 
 @every_fixed_use
 def test_history(engine: str) -> None:
-    """Samples stand where the exact ones do, within the first-order error of one impact."""
+    """Samples stand where the exact ones do, within the first-order error of one impact, whose time
+    is off by up to p dt, and its velocity by that times the acceleration, some ten times it."""
     motion = pulse(1.3, 3.0, 2)
     times = [0.05 * i for i in range(60)]
     response = run(engine, scene(motion, preset="fixed", duration=3.0, times=times))
@@ -194,7 +195,8 @@ def test_history(engine: str) -> None:
     assert response.history is not None
     assert exact.history is not None
     assert response.history.time == pytest.approx(times)
-    assert response.history.theta == pytest.approx(exact.history.theta, abs=1e-2 * BLOCK.alpha)
+    within = 20.0 * HERE[engine].preset("fixed").step * BLOCK.alpha
+    assert response.history.theta == pytest.approx(exact.history.theta, abs=within)
 
 
 @every_fixed_use

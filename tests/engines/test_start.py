@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from declared import rounding
 from uses import BLOCK, HERE, LANDING, band, every_fixed_use, every_landing_use
 
 from analytic import simulate
@@ -39,7 +40,8 @@ def test_quarter_period_and_decay(engine: str, preset: str, frame: str, side: fl
     response = run(engine, released((side * TILT, 0.0), preset=preset, frame=frame))
     times = [impact.time for impact in response.impacts]
     assert response.outcome is Outcome.ROCKED
-    assert response.peak_ratio == pytest.approx(0.4, rel=1e-12)  # where it was released
+    # where it was released, as the engine's numbers have it
+    assert response.peak_ratio == pytest.approx(0.4, rel=rounding(engine))
     assert not response.crossed
     assert response.uplifts == ()
     assert times[0] == pytest.approx(quarter_period(BLOCK, TILT), rel=band(engine))
@@ -160,7 +162,7 @@ def test_beyond_alpha_and_back(engine: str) -> None:
     barrier = BLOCK.p * math.sqrt(2.0 * (1.0 - math.cos(BLOCK.alpha - tilt)))
     back = run(engine, released((tilt, -1.1 * barrier)))
     assert (back.outcome, back.crossed) == (Outcome.ROCKED, True)
-    assert back.peak_ratio == pytest.approx(1.2, rel=1e-12)
+    assert back.peak_ratio == pytest.approx(1.2, rel=rounding(engine))
     for rate in (0.0, -0.9 * barrier):
         assert run(engine, released((tilt, rate))).outcome is Outcome.OVERTURNED
 
@@ -169,7 +171,7 @@ def test_beyond_alpha_and_back(engine: str) -> None:
 def test_a_small_release_comes_to_rest(engine: str) -> None:
     response = run(engine, released((1e-3 * BLOCK.alpha, 0.0)))
     assert response.outcome is Outcome.ROCKED
-    assert response.peak_ratio == pytest.approx(1e-3, rel=1e-12)
+    assert response.peak_ratio == pytest.approx(1e-3, rel=rounding(engine))
     assert response.uplifts == ()
 
 

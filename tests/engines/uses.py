@@ -12,9 +12,6 @@ from engines.declaration import Miss, Stepping
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 
-STEPS_ADD_UP = 1e4
-"""Steps over whose roundings the errors of two runs may add up that should be equal."""
-
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset != "naive"]
@@ -42,11 +39,6 @@ every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
 def in_both_frames(uses: list[tuple[str, str]]) -> list[tuple[str, str]]:
     """Return the uses of engines whose base can also move in the world."""
     return [use for use in uses if set(FRAMES) <= set(HERE[use[0]].frames)]
-
-
-def equal_to(engine: str, exactly: float = 1e-9) -> float:
-    """Return within what two numbers agree that only the engine's rounding may tell apart."""
-    return max(exactly, STEPS_ADD_UP * HERE[engine].precision.value)
 
 
 def band(engine: str) -> float:
