@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
@@ -54,7 +55,7 @@ def _panel(axes: Axes, group: pd.DataFrame, colour: str) -> list[Name]:
         for place, (value, rows) in enumerate(group[group["varied"] == name].groupby(column)):
             found = rows.groupby("wanted")["found"].median()
             shown = found.where(found < TOP)
-            shade = shades(0.55 + 0.35 * place)
+            shade = to_hex(shades(0.55 + 0.35 * place))
             axes.plot(shown.index, shown, color=shade, linestyle=line, linewidth=1.1)
             lost = found[~(found < TOP)]
             axes.plot(lost.index, [TOP - 0.05] * len(lost), "x", color=shade, markersize=5)
