@@ -190,6 +190,8 @@ def summary_text(compared: pd.DataFrame) -> str:
         right = f"{int(group['agrees'].sum())}/{len(group)}"
         failed = int((group["outcome"] == "failed").sum())
         lines.append([source, right, failed, *(scientific(value) for value in quantiles)])
+    if not lines:
+        return "no such case"
     columns = ["source", "outcomes", "failed", "median", "p90", "p99", "max"]
     return pd.DataFrame(lines, columns=columns).to_string(index=False)
 
