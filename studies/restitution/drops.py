@@ -33,7 +33,7 @@ def drops() -> Iterator[tuple[str, Drop]]:
 
 
 def measured(engines: Sequence[str]) -> pd.DataFrame:
-    """Return a row for each engine, way and drop; found is nan where the library went wrong."""
+    """Return a row for each engine, way and drop; speed_ratio is nan where the library went wrong."""
     rows: list[Row] = []
     for engine in engines:
         for way in ENGINES[engine].bouncing:
@@ -44,7 +44,7 @@ def measured(engines: Sequence[str]) -> pd.DataFrame:
                         "way": way.name,
                         "varied": varied,
                         **{_column(name): value for name, value in asdict(drop).items()},
-                        "found": way.dropped(drop),
+                        "speed_ratio": way.dropped(drop),
                         "literal": way.setting(drop),
                     }
                 )
@@ -73,7 +73,11 @@ def kept(rows: pd.DataFrame) -> pd.DataFrame:
     """
     table = []
     for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
-        off = (group["found"] - group["wanted"]).abs().where(group["found"] < 10.0, math.inf)
+        off = (
+            (group["speed_ratio"] - group["wanted"])
+            .abs()
+            .where(group["speed_ratio"] < 10.0, math.inf)
+        )
         mine = {
             f"off_{name}" if name else "off": off[group["varied"] == name].max() for name in VARIED
         }

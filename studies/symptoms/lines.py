@@ -62,7 +62,7 @@ def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
         "tuned": math.nan,
         "landing": math.nan,
         **values,
-        "threads": ", ".join(threads),
+        "asked_in": ", ".join(threads),
         "command": f"rocking {study} --engines {engine} --out DIR",
     }
 
