@@ -55,7 +55,7 @@ def page(lines: pd.DataFrame) -> str:
     parts = []
     for symptom, group in lines.groupby("symptom", sort=False):
         head = f"{symptom} ({_measure(str(group.iloc[0]['measure']))})"
-        asked = f"  asked in {group.iloc[0]['threads']}"
+        asked = f"  asked in {group.iloc[0]['asked_in']}"
         parts.append("\n".join([head, asked, *map(_line, group.to_dict("records"))]))
     return "\n\n".join(parts)
 
