@@ -14,7 +14,7 @@ from studies.kit.journal import Row
 WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 """Coefficients of restitution."""
 
-PHASES = (0.1, 0.3, 0.5, 0.7, 0.9)
+PHASES = (0.1, 0.5, 0.9)
 """Parts of a step after which the sphere meets the base."""
 
 BASE = Drop(restitution=0.0)
