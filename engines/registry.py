@@ -14,6 +14,7 @@ OWN = {
     "mujoco": "engines.adapters.mujoco:ENGINE",
     "pymunk": "engines.adapters.pymunk:ENGINE",
     "dart": "engines.adapters.dart:ENGINE",
+    "rapier": "engines.adapters.rapier:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 
