@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from analytic.block import RigidBlock
+from engines.drop import Bouncing
 from engines.factors import Factor
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
+from engines.script import Script
 from engines.world import ROUNDINGS, Resolution, World
 
 
@@ -23,6 +25,14 @@ class Help(enum.Enum):
     MARGIN = "the pivot kept in contact over the gap by which it rises in a step"
     PRELOAD = "the pivot pressed by its load from the start of a step"
     POSITIONS = "positions moved by the adapter, from the engine's velocities"
+
+
+class Miss(enum.Enum):
+    """What an engine gets wrong as it comes, without a word."""
+
+    MIRROR = "shaken the other way, the block does not answer the other way"
+    PEAK = "a block of the paper that survives overturns, or its peak is off by more than 0.3"
+    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 
 class Stepping(enum.Enum):
@@ -64,6 +74,8 @@ class Preset:
         that is not the step.
     helped_by : mapping
         What helps -> the settings that leave it out; None where it is the preset itself.
+    misses : tuple of Miss
+        What the library's defaults get wrong; no tuned preset may miss anything.
     """
 
     name: str
@@ -76,6 +88,7 @@ class Preset:
     contact_s: float = math.nan
     dial: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
+    misses: tuple[Miss, ...] = ()
 
     def __post_init__(self) -> None:
         given = sum(map(math.isfinite, (self.step, self.step_s)))
@@ -130,9 +143,14 @@ class Engine:
     precision : Precision
     shortest_step : float
         p dt below which a step has no effect that is resolved.
+    script : callable or None
+        ``(scene, settings, dt_s) -> Script``: a scene on a base at rest in the library's own words,
+        in the ordinary steps dt_s [s]. Without it an engine can be neither exported nor quoted.
     spring : callable or None
         ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
         m/time^2 with critical damping, both arguments in units of 1/p.
+    bouncing : tuple of Bouncing
+        Ways to ask it for a coefficient of restitution; none where it was not tried.
     factors : tuple of Factor
         What its contact can be set to.
     remedy : mapping
@@ -154,7 +172,9 @@ class Engine:
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
     shortest_step: float = 1e-12
+    script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
+    bouncing: tuple[Bouncing, ...] = ()
     factors: tuple[Factor, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)
     own_step: str = ""

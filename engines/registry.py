@@ -12,6 +12,9 @@ GROUP = "rocking.engines"
 OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
+    "pymunk": "engines.adapters.pymunk:ENGINE",
+    "dart": "engines.adapters.dart:ENGINE",
+    "rapier": "engines.adapters.rapier:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

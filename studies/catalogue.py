@@ -3,10 +3,13 @@
 from typing import TYPE_CHECKING
 
 from studies import (
+    advise,
     animate,
     compare,
     contact,
     ensemble,
+    estimate,
+    export,
     free,
     harmonic,
     histories,
@@ -14,8 +17,10 @@ from studies import (
     literature,
     overturning,
     precision,
+    restitution,
     stability,
     sweep,
+    symptoms,
     throughput,
     validate,
     validity,
@@ -23,8 +28,10 @@ from studies import (
 from studies.kit.study import Chapter, Study
 
 STUDIES: tuple[Study, ...] = (
+    advise.STUDY,
     compare.STUDY,
     animate.STUDY,
+    export.STUDY,
     sweep.STUDY,
     histories.STUDY,
     linearizations.STUDY,
@@ -32,9 +39,12 @@ STUDIES: tuple[Study, ...] = (
     harmonic.STUDY,
     literature.STUDY,
     validate.STUDY,
+    estimate.STUDY,
     precision.STUDY,
     precision.COST,
     contact.STUDY,
+    symptoms.STUDY,
+    restitution.STUDY,
     stability.STUDY,
     overturning.STUDY,
     validity.STUDY,
@@ -49,8 +59,10 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 """Every study's places in a report, in its order."""
 
 if TYPE_CHECKING:
+    from studies.advise import study as _advise
     from studies.contact import study as _contact
     from studies.ensemble import study as _ensemble
+    from studies.estimate import study as _estimate
     from studies.free import study as _free
     from studies.harmonic import study as _harmonic
     from studies.histories import study as _histories
@@ -60,13 +72,16 @@ if TYPE_CHECKING:
     from studies.overturning import study as _overturning
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
+    from studies.restitution import study as _restitution
     from studies.stability import study as _stability
     from studies.sweep import study as _sweep
+    from studies.symptoms import study as _symptoms
     from studies.validate import study as _validate
     from studies.validity import study as _validity
 
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
+        *(_advise, _estimate, _symptoms, _restitution),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

@@ -5,11 +5,23 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from engines.adapters.bullet_calls import (
+    Call,
+    Constant,
+    base_body,
+    base_call,
+    base_shape,
+    block_body,
+    block_call,
+    block_shape,
+    engine_call,
+)
+from engines.adapters.bullet_drop import BOUNCING
+from engines.adapters.bullet_script import script
 from engines.adapters.bullet_settings import (
     FACTORS,
     LANDING,
     LIBRARY_BREAKING_THRESHOLD,
-    SOLVERS,
     TUNED,
     BulletSettings,
     spring,
@@ -17,15 +29,8 @@ from engines.adapters.bullet_settings import (
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
-from engines.parts.settings import given
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import GEOMETRIES, Scene
 from engines.world import Grip, Moment, Pose, Step
-
-KEPT_GAP = 4.0
-"""Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot
-rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
-must be let go: an anchor that is still kept at the next impact pulls it back to where it stood."""
 
 
 class BulletWorld:
@@ -49,12 +54,13 @@ class BulletWorld:
         self._ground = (0.0, 0.0, 0.0)
         if settings.base_geometry == "box":
             self._ground = (0.0, 0.0, -scene.block.height)
-        self._base = self._add(0.0, self._floor(scene), False, self._ground)
-        centre = (0.0, 0.0, 0.5 * scene.block.height)
-        self._body = self._add(scene.mass, self._shape(scene), not settings.multibody, centre)
+        floor = self._do(base_shape(scene, settings))
+        self._base = int(self._do(base_body(floor, self._ground)))
+        shape = self._do(block_shape(scene, settings))
+        self._body = int(self._do(block_body(scene, settings, shape)))
         self._fault = self._set_bodies(scene)
-        if not scene.beginning.at_rest:
-            self._put(scene)
+        self._take_inertia(scene)
+        self._put(scene)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
@@ -90,13 +96,19 @@ class BulletWorld:
         )
         self._p.disconnect(self._client)
 
-    def _put(self, scene: Scene) -> None:
-        """Let the block set out from where the scene begins."""
-        p, client, start = self._p, self._client, scene.beginning
-        # a body takes its inertia with its first step, which therefore is one far from the base
+    def _take_inertia(self, scene: Scene) -> None:
+        """Take a step far from the base: only after its first has a body the inertia that was set.
+
+        With the shape's own a block that is lifted or released at once would turn too fast.
+        """
+        p, client = self._p, self._client
         aloft, upright = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
         p.resetBasePositionAndOrientation(self._body, aloft, upright, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+
+    def _put(self, scene: Scene) -> None:
+        """Let the block set out from where the scene begins."""
+        p, client, start = self._p, self._client, scene.beginning
         turned = (0.0, math.sin(0.5 * start.theta), 0.0, math.cos(0.5 * start.theta))
         place, velocity = (start.x, 0.0, start.z), (start.velocity_x, 0.0, start.velocity_z)
         p.resetBasePositionAndOrientation(self._body, place, turned, physicsClientId=client)
@@ -123,77 +135,26 @@ class BulletWorld:
         )
 
     def _set_engine(self, scene: Scene) -> None:
-        s, block = self._s, scene.block
-        threshold = s.breaking_threshold
-        if s.gap_by_step:
-            threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * self._ordinary) ** 2
-        wanted = {
-            "numSolverIterations": s.iterations,
-            "solverResidualThreshold": s.residual,
-            "contactERP": s.contact_erp,
-            "frictionERP": s.friction_erp,
-            "contactSlop": s.contact_slop,
-            "contactBreakingThreshold": threshold,
-            "constraintSolverType": s.solver and getattr(self._p, SOLVERS[s.solver]),
-            "warmStartingFactor": s.warm_starting,
-            "useSplitImpulse": s.split_impulse,
-            "enableConeFriction": s.cone_friction,
-            "enableSAT": s.separating_axis,
-        }
         # the library announces a solver past Python
-        with silence() if s.solver is not None else contextlib.nullcontext():
-            self._p.setPhysicsEngineParameter(**given(wanted), physicsClientId=self._client)
+        with silence() if self._s.solver is not None else contextlib.nullcontext():
+            self._do(engine_call(scene, self._s, self._ordinary))
 
-    def _floor(self, scene: Scene) -> int:
-        if self._s.base_geometry == "box":
-            return self._collision(self._p.GEOM_BOX, halfExtents=floor_half_size(scene))
-        return self._collision(self._p.GEOM_PLANE, planeNormal=(0.0, 0.0, 1.0))
+    def _do(self, call: Call) -> Any:
+        """Make a call in this world's client."""
+        arguments = {name: self._value(value) for name, value in call.arguments.items()}
+        return getattr(self._p, call.name)(**arguments, physicsClientId=self._client)
 
-    def _shape(self, scene: Scene) -> int:
-        p, s = self._p, self._s
-        if s.geometry == "box":
-            return self._collision(p.GEOM_BOX, halfExtents=half_size(scene))
-        if s.geometry == "hull":
-            return self._collision(p.GEOM_MESH, vertices=hull_points(scene))
-        radius = s.corner_radius * scene.block.width
-        corners = corner_spheres(scene, radius, planar=s.planar)
-        spheres = p.createCollisionShapeArray(
-            shapeTypes=[p.GEOM_SPHERE] * len(corners),
-            radii=[radius] * len(corners),
-            collisionFramePositions=corners,
-            physicsClientId=self._client,
-        )
-        return int(spheres)
-
-    def _collision(self, kind: int, **shape: Any) -> int:
-        return int(self._p.createCollisionShape(kind, **shape, physicsClientId=self._client))
-
-    def _add(self, mass: float, shape: int, rigid: bool, position: tuple[float, ...]) -> int:
-        body = self._p.createMultiBody(
-            baseMass=mass,
-            baseCollisionShapeIndex=shape,
-            basePosition=position,
-            useMaximalCoordinates=rigid,
-            physicsClientId=self._client,
-        )
-        return int(body)
+    def _value(self, value: Any) -> Any:
+        if isinstance(value, Constant):
+            return getattr(self._p, value)
+        return [self._value(item) for item in value] if isinstance(value, list) else value
 
     def _set_bodies(self, scene: Scene) -> str:
         """Set the bodies' dynamics and say where reading them back disagrees."""
-        s, p = self._s, scene.block.p
-        wanted: dict[str, Any] = {
-            # without its mass in the same call, a block in maximal coordinates becomes NaN
-            "mass": scene.mass,
-            "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
-            "linearDamping": s.damping,
-            "angularDamping": s.damping,
-        }
-        if s.contact_stiffness is not None and s.contact_damping is not None:
-            wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
-            wanted["contactDamping"] = s.contact_damping * scene.mass * p
-        self._change(self._body, lateralFriction=s.friction, **given(wanted))
-        self._change(self._base, lateralFriction=1.0)
-        return self._read_back(scene, wanted)
+        call = block_call(scene, self._s, self._body)
+        self._do(call)
+        self._do(base_call(self._s, self._base))
+        return self._read_back(scene, call.arguments)
 
     def _read_back(self, scene: Scene, wanted: Mapping[str, Any]) -> str:
         s = self._s
@@ -212,11 +173,6 @@ class BulletWorld:
             pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
             pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
         return disagreement(pairs)
-
-    def _change(self, body: int, **wanted: Any) -> None:
-        if self._s.friction_anchor:
-            wanted["frictionAnchor"] = 1
-        self._p.changeDynamics(body, -1, physicsClientId=self._client, **wanted)
 
     def _dynamics(self, body: int) -> tuple[Any, ...]:
         return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
@@ -253,7 +209,9 @@ ENGINE = Engine(
     core=True,
     geometries=GEOMETRIES,
     spatial=True,
+    script=script,
     spring=spring,
+    bouncing=BOUNCING,
     factors=FACTORS,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",

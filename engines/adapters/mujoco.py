@@ -1,20 +1,22 @@
 """MuJoCo: how a scene is built, set, read back and stepped."""
 
 import math
-from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.adapters.mujoco_model import OPTIONS, model_xml
+from engines.adapters.mujoco_drop import BOUNCING
+from engines.adapters.mujoco_model import OPTIONS, direct_reference, model_xml
+from engines.adapters.mujoco_script import script
 from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
     FACTORS,
     LANDING,
     TUNED,
     MujocoSettings,
+    kept,
     spring,
 )
 from engines.declaration import Engine, Help, Preset, Stepping
@@ -28,10 +30,6 @@ LIBRARY_STEP_S = 0.002
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
-
-NARROWEST_CONE = 0.1
-"""Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
-one."""
 
 LEAST_HELD = 1e-3
 """Part of what the whole weight would press a corner by, up to which landing holds one at rest."""
@@ -127,10 +125,9 @@ class MujocoWorld:
         back = self._reflection.part(step) if s.reflection else 0.0
         firm = FEEBLE if s.by_phase and (step.side or step.grip is not Grip.REST) else s.stiffness
         self._sliding = s.sliding_damping + back
-        # the library divides both numbers by the impedance, the first one twice
-        k, unit = -firm * (self._impedance / dt) ** 2, -self._impedance / dt
-        model.pair_solref[:] = (k, unit * (s.damping + back))
-        model.pair_solreffriction[:] = (k, unit * self._sliding)
+        held = self._impedance, dt, firm
+        model.pair_solref[:] = direct_reference(*held, s.damping + back)
+        model.pair_solreffriction[:] = direct_reference(*held, self._sliding)
         if s.carry is not None:
             self._reach(step, s.carry * self._width)
 
@@ -235,10 +232,7 @@ class MujocoWorld:
 
 def build(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
     """Build a scene; a preset's impratio is kept to what the friction allows."""
-    s = settings
-    if s.impratio is not None and "impratio" not in scene.settings:
-        s = replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
-    return MujocoWorld(scene, s, dt_s)
+    return MujocoWorld(scene, kept(scene, settings), dt_s)
 
 
 def _ignore(message: str) -> None:
@@ -279,7 +273,9 @@ ENGINE = Engine(
     core=True,
     geometries=GEOMETRIES,
     spatial=True,
+    script=script,
     spring=spring,
+    bouncing=BOUNCING,
     factors=FACTORS,
     remedy={"impratio": 100.0},
     own_step="mujoco:mj_step",

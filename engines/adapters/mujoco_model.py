@@ -1,5 +1,7 @@
 """A scene in MuJoCo's own language."""
 
+from xml.etree import ElementTree
+
 from engines.adapters.mujoco_settings import MujocoSettings
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
@@ -81,6 +83,34 @@ def _pair(name: str, s: MujocoSettings, margin: float) -> str:
         f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
         f'solimp="{_row(s.impedance or ())}" {reference}/>'
     )
+
+
+def direct_reference(
+    impedance: float, dt_s: float, stiffness: float, damping: float
+) -> tuple[float, float]:
+    """Return the two numbers of a direct reference with k dt^2 and b dt, at a step dt_s [s].
+
+    The library divides both by the impedance, the first one twice.
+    """
+    unit = impedance / dt_s
+    return -stiffness * unit**2, -unit * damping
+
+
+def stepped_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
+    """Return the model of a scene with what the adapter sets at a step dt_s [s], a line each."""
+    root = ElementTree.fromstring(model_xml(scene, s))
+    option = root.find("option")
+    if option is not None:
+        option.set("timestep", repr(dt_s))
+    if s.solref is not None:
+        for item in (*root.iter("geom"), *root.iter("pair")):
+            item.set("solref", _row((s.solref[0] * dt_s, s.solref[1])))
+    for pair in root.iter("pair") if s.damping is not None else ():
+        held = (1.0 if s.impedance is None else s.impedance[1], dt_s, s.stiffness or 0.0)
+        pair.set("solref", _row(direct_reference(*held, s.damping or 0.0)))
+        pair.set("solreffriction", _row(direct_reference(*held, s.sliding_damping or 0.0)))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
 def _row(numbers: tuple[float, ...]) -> str:

@@ -5,10 +5,14 @@ from typing import Any
 
 from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
 from engines.parts.settings import check, setting
-from engines.scene import GEOMETRIES
+from engines.scene import GEOMETRIES, Scene
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
 """Integrators of the library."""
+
+NARROWEST_CONE = 0.1
+"""Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
+one."""
 
 DEFAULT_CONTACT_S = 0.02
 """Time constant [s] of the library's own contact, which does not follow the step."""
@@ -191,6 +195,13 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+
+def kept(scene: Scene, s: MujocoSettings) -> MujocoSettings:
+    """Return settings with a preset's impratio kept to what the friction allows."""
+    if s.impratio is None or "impratio" in scene.settings:
+        return s
+    return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
 
 
 def spring(time: float, step: float) -> dict[str, float]:

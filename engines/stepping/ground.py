@@ -1,13 +1,12 @@
 """The base's mean velocity over a step, cheap enough to be asked at every step.
 
-A base that has its mean velocity during each step is where it should be at the end of each.
+A base that has its mean velocity during each step is where it should be at the end of each. An
+exported scene takes this file along as it stands: it needs Python alone.
 """
 
 import bisect
 import math
-from collections.abc import Callable
-
-from analytic.motion import Motion
+from collections.abc import Callable, Iterable
 
 MeanVelocity = Callable[[float, float], float]
 
@@ -15,13 +14,18 @@ SMALL = 0.05
 """Below this angle [rad] a series keeps more digits of 1 - sin(x)/x than the formula does."""
 
 
-def mean_velocity_of(motion: Motion) -> MeanVelocity:
+def mean_velocity_of(segments: Iterable[Iterable[float]]) -> MeanVelocity:
     """Return the base's mean velocity [m/s] between two times [s], as a function of both.
 
-    It is the integral of the analytic segments of the motion, from rest; after the last segment
-    the base keeps its velocity.
+    Parameters
+    ----------
+    segments : iterable of seven numbers each
+        start, end [s], amplitude [m/s2], omega [rad/s], phase [rad], offset [m/s2], slope [m/s3]:
+        from start to end the base's acceleration is
+        amplitude sin(omega (t - start) + phase) + offset + slope (t - start). The base is at rest
+        before the first, and keeps its velocity after the last.
     """
-    rows = [tuple(map(float, row)) for row in motion.segments()]
+    rows = [tuple(map(float, row)) for row in segments]
     end = rows[-1][1]
     rows.append((end, math.inf, 0.0, 1.0, 0.0, 0.0, 0.0))
     starts = [row[0] for row in rows]

@@ -89,7 +89,9 @@ class LandingSteps:
         self._fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
         self._swing_part = min(SWING_PART * block.p * dt_s, COARSEST)
         self._load_part = min(LOAD_PART * block.p * dt_s, COARSEST)
-        self._shortest = max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST)
+        # a swing that rises by no more than the engine's numbers tell apart
+        unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * self._fall))
+        self._shortest = max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen)
         self._least = max(NEAR * dt_s, resolution.time_s)
         self._touching = max(TOUCHING * block.width, resolution.length_m)
         self._settled = max(SETTLED, resolution.part)

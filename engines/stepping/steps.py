@@ -42,7 +42,7 @@ class Stepper:
 
     def __init__(self, policy: Policy, scene: Scene, moment: Moment = Moment.MIDDLE) -> None:
         self._policy = policy
-        self._mean_velocity = mean_velocity_of(scene.motion)
+        self._mean_velocity = mean_velocity_of(scene.motion.segments())
         self._gravity, self._felt = scene.block.gravity, scene.frame == "base"
         self._moment, self._part = moment, moment.value
         self._velocity = self._place = self._last_dt = 0.0

@@ -14,7 +14,7 @@ from analytic.response import Outcome
 from studies.cases.paper import Case, free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
 from studies.kit.executors import Executor, choose
-from studies.kit.jobs import Job, summary
+from studies.kit.jobs import Job, one_line, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -24,6 +24,8 @@ from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 FRAMES_A_SECOND = 25
+MOST_FRAMES = 1500
+"""A minute of film, which holds up to 3 GB of memory while it is drawn."""
 CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 
 
@@ -73,7 +75,11 @@ def command(
         case = most_different(results, sources)
         block, posed = case.block, Posed(case.motion, (0.0, 0.0))
     window = free_rocking_window(block, posed.motion)
-    times = np.linspace(0.0, window, math.ceil(window * slower * FRAMES_A_SECOND) + 1)
+    frames = window * slower * FRAMES_A_SECOND
+    if not frames < MOST_FRAMES:
+        seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
+        raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
+    times = np.linspace(0.0, window, math.ceil(frames) + 1)
     executor = choose(running.jobs, running.time_limit, running.cluster)
     rows = shown(block, posed, sources, times, executor)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
@@ -97,16 +103,37 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
     path = results / "sweep.csv"
     if not path.is_file():
         raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
+    try:
+        peaks = _peaks(path)
+        missing = sorted(set(sources) - set(peaks.columns))
+        if missing:
+            raise ValueError(f"it lacks {', '.join(missing)}")
+        case = _furthest_apart(peaks[list(sources)])
+        _ = case.block, case.motion
+    except OSError:
+        raise
+    except Exception as error:
+        # a table that was edited may be anything
+        problem = "no case of its sweep.csv can be shown"
+        words = f"{problem} ({one_line(error)})"
+        raise BadInputError(f"--results is {str(results)!r}; {words}") from error
+    return case
+
+
+def _peaks(path: Path) -> pd.DataFrame:
+    """Return the peaks of a sweep, a row for each case and a column for each source."""
     rows = pd.read_csv(path)
-    missing = sorted(set(sources) - set(rows["source"]))
-    if missing:
-        raise BadInputError(f"--results is {str(results)!r}; it lacks {', '.join(missing)}")
-    peaks = rows[rows["source"].isin(sources)].pivot(
-        index=list(CASE), columns="source", values="peak_ratio"
-    )
-    least, most = peaks.min(axis=1), peaks.max(axis=1)
+    return rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
+
+
+def _furthest_apart(peaks: pd.DataFrame) -> Case:
+    answered = peaks.dropna()
+    least, most = answered.min(axis=1), answered.max(axis=1)
     apart = np.isinf(most) & np.isfinite(least)
-    place: Any = least[apart].idxmin() if apart.any() else (most / least).idxmax()
+    ratios = (most / least).where(most > least, 1.0)
+    if ratios.empty:
+        raise ValueError("in each of them a source failed")
+    place: Any = least[apart].idxmin() if apart.any() else ratios.idxmax()
     return Case(**dict(zip(CASE, place, strict=True)))
 
 

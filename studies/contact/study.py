@@ -13,9 +13,9 @@ from engines import ENGINES, core_engines
 from engines.declaration import Stepping
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.cases.variants import OWN_STEP, Variant, variants
 from studies.contact import STUDY
 from studies.contact.report import headline, paragraph, pictures, report
-from studies.contact.variants import OWN_STEP, Variant, variants
 from studies.kit.arguments import Place, check_engines, several
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row

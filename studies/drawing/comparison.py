@@ -24,7 +24,9 @@ DRIFT = 1e-6
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")
-"""Columns of a comparison that its JSON has; a number that is not finite is null there."""
+ESTIMATED = ("estimate", "bound")
+"""Columns of a comparison that its JSON has, the last where asked for; a number that is not finite
+is null there."""
 
 
 def json_lines(rows: list[Row], note: str = "") -> str:
@@ -35,7 +37,7 @@ def json_lines(rows: list[Row], note: str = "") -> str:
     objects: list[dict[str, Any]] = []
     for row in rows:
         exact = row["exact"]
-        item = {name: row[name] for name in (*SHARED, *BESIDE)}
+        item = {name: row[name] for name in (*SHARED, *BESIDE, *ESTIMATED) if name in row}
         item["message"] = "; ".join(words for words in (item["message"], note) if words)
         item |= {name: getattr(exact, name) for name in ("min_normal", "friction_needed")}
         objects.append({**item, "valid": valid(exact)})
@@ -66,6 +68,7 @@ def table_text(
             "outcome": [row["outcome"] for row in rows],
             "θmax [°]" if degrees else "θmax/θcr": [_peak(row, scale) for row in rows],
             "vs exact": [_difference(row) for row in rows],
+            **_estimates(rows),
             "impacts": [row["impacts"] for row in rows],
             "late·p": [_part(row["impact_error"]) for row in rows],
             "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
@@ -92,6 +95,13 @@ def table_text(
             *notes,
         ]
     )
+
+
+def _estimates(rows: list[Row]) -> dict[str, list[str]]:
+    """Return the columns of estimates, where they were asked for."""
+    columns = {"estimate": "estimate", "bound 95 %": "bound"}
+    asked = {head: name for head, name in columns.items() if name in rows[0]}
+    return {head: [_part(row[name]) for row in rows] for head, name in asked.items()}
 
 
 def _start(block: RigidBlock, posed: Posed, degrees: bool) -> str:

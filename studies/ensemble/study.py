@@ -27,6 +27,7 @@ from studies.kit.arguments import (
     refuse_repeats,
     several_or_none,
 )
+from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -57,6 +58,9 @@ DEFAULT_SOURCES = (
     *core_sources("naive"),
     *core_sources(),
 )
+
+MOTION_BYTES = 1.2e4
+"""About what a motion scaled to an intensity holds."""
 
 TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
 
@@ -138,6 +142,7 @@ def command(
     sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
+    yes: bool = False,
 ) -> int:
     """Shake blocks by many motions of rising intensity, through every named source.
 
@@ -164,8 +169,11 @@ def command(
         Who is asked beside the exact solution.
     quick
         One block and three intensities.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
+    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     if records is not None:
         refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
         refuse_repeats("--records", records)
@@ -173,8 +181,12 @@ def command(
     else:
         refuse_given({"units": units, "baseline": baseline}, "only with --records")
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
+        many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
+        asked = f"--motions is {count}"
+        refuse_excess(asked, many * (MOTION_BYTES + len(everyone) * CASE_BYTES))
+        duration = expected_s(many, everyone, jobs=running.jobs, time_limit_s=running.time_limit)
+        refuse_days(asked, duration, yes)
         ground = drawn(name, count, seed or 1)
-    sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
     origin = [path.name for path in records] if records else [name, str(seed or 1)]
     settings: dict[str, object] = {

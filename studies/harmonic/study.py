@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
@@ -13,11 +14,13 @@ from studies.harmonic import STUDY
 from studies.harmonic.report import headline, paragraph, pictures, report
 from studies.harmonic.sweeps import Shaking, State, sweep
 from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
+from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, by_label, carry_out
+from studies.kit.posing import posed_block
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -34,6 +37,8 @@ PERIODS, QUICK_PERIODS = 400, 200
 ENGINE_POINTS, QUICK_ENGINE_POINTS = 12, 3
 ENGINE_PERIODS = 60
 """Forcing periods that an engine runs from the state of the exact orbit."""
+PERIOD_S, POINT_BYTES = 3e-5, 2e3
+"""About how long a period of a point takes [s], and what a point of both sweeps holds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,6 +67,7 @@ def command(
     sources: Annotated[tuple[str, ...], several_engines] = core_sources(),
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
+    yes: bool = False,
 ) -> int:
     """Sweep a sustained harmonic motion up and down, and read the steady states.
 
@@ -94,6 +100,8 @@ def command(
         Engines that start on the exact orbit at some points.
     quick
         Fewer points, periods and runs of engines.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
     if not abs(tilt) < 1.0:
@@ -109,16 +117,21 @@ def command(
     if not begin < end:
         raise BadInputError(f"--low is {begin}; it must be less than --high, {end}")
     fixed = (onsets if over == "frequency" else omega_over_p) or FIXED[over]
-    block = RigidBlock(width=width, height=height)
+    block = posed_block(width, height)
     count = points or (QUICK_POINTS if quick else POINTS)
     cycles = periods or (QUICK_PERIODS if quick else PERIODS)
-    grid = np.linspace(begin, end, count).tolist()
-    branches = sweeps(block, over, grid, fixed, tilt, cycles)
-    jobs = [
-        engine_job(branch, source)
-        for branch in chosen(branches, QUICK_ENGINE_POINTS if quick else ENGINE_POINTS)
-        for source in sources
-    ]
+    asked = f"--points is {count} and --periods is {cycles}"
+    refuse_excess(asked, count * POINT_BYTES)
+    refuse_days(asked, 2.0 * count * cycles * PERIOD_S, yes)
+
+    @cache
+    def branches() -> list[Branch]:
+        return sweeps(block, over, np.linspace(begin, end, count).tolist(), fixed, tilt, cycles)
+
+    def jobs() -> list[Job]:
+        some = chosen(branches(), QUICK_ENGINE_POINTS if quick else ENGINE_POINTS)
+        return [engine_job(branch, source) for branch in some for source in sources]
+
     settings = {
         "block": asdict(block),
         **{"over": over, "low": begin, "high": end, "fixed": fixed, "tilt": tilt},
@@ -126,7 +139,7 @@ def command(
     }
 
     def tabulate(rows: Sequence[Row]) -> Tables:
-        return {STUDY.name: pd.DataFrame(map(row_of, branches)), **by_label("table")(rows)}
+        return {STUDY.name: pd.DataFrame(map(row_of, branches())), **by_label("table")(rows)}
 
     plan = Plan(
         jobs=jobs,

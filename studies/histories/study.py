@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import pandas as pd
 
-from analytic.response import Response
+from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
 from studies.histories import STUDY
@@ -215,9 +215,13 @@ def figure_text(figure: int, rows: Sequence[Row], found: Finding) -> str:
 
 
 def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
-    """Test what the paper says about a figure."""
-    summaries = pd.DataFrame(rows).drop(columns="samples")
-    return CLAIMS[figure].finding(table if figure == 2 and len(table) else summaries)
+    """Test what the paper says about a figure, of the sources that answered in every panel."""
+    failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
+    summaries = pd.DataFrame(rows, columns=["source"] if not rows else None)
+    asked = (
+        table if figure == 2 and len(table) else summaries.drop(columns="samples", errors="ignore")
+    )
+    return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
 def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:

@@ -1,5 +1,6 @@
 """What the command line accepts: numbers with their range, sources, paths; one line if not."""
 
+import errno
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -163,12 +164,20 @@ def check_plot(path: Path | None) -> None:
         return
     if path.suffix not in (".png", ".pdf", ".svg"):
         raise BadInputError(f"--plot is {str(path)!r}; it must end in .png, .pdf or .svg")
+    check_writable("--plot", path)
+
+
+def check_writable(argument: str, path: Path) -> None:
+    """Raise BadInputError if the file that an argument names cannot be written."""
     try:
+        if path.exists() and not path.is_file():
+            # a pipe would be waited for
+            raise OSError(errno.EINVAL, "it is no file")
         with path.open("ab") as probe:
             fresh = probe.tell() == 0
         if fresh:
             path.unlink()
     except OSError as error:
         raise BadInputError(
-            f"--plot is {str(path)!r}; it must be a file that can be written ({error.strerror})"
+            f"{argument} is {str(path)!r}; it must be a file that can be written ({error.strerror})"
         ) from error

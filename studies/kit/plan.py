@@ -41,8 +41,9 @@ class Plan:
 
     Attributes
     ----------
-    jobs : sequence of Job, optional
-        In the order of the rows; none where the tables are made in one go.
+    jobs : sequence of Job, or callable, optional
+        In the order of the rows; none where the tables are made in one go. What takes long to make
+        is made by a callable, once the folder is known to be usable.
     settings : mapping, optional
         What all rows depend on beside the code; must be the same whenever a folder is used.
     growing : mapping, optional
@@ -58,7 +59,7 @@ class Plan:
         The rows whose failure is the study's; by default all.
     """
 
-    jobs: Sequence[Job] = ()
+    jobs: Sequence[Job] | Callable[[], Sequence[Job]] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     growing: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     ask: Callable[[Job, Source], Response] = ask
@@ -92,13 +93,14 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
         path = out / PROVENANCE
         asked = {column: _short(values) for column, values in plan.growing.items()}
         record = provenance.begin(path, identity, asked)
-        with _going_on(journal, out, len(plan.jobs)):
-            rows = run_jobs(plan.jobs, executor=executor, reduce=plan.reduce, journal=journal)
+        jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
+        with _going_on(journal, out, len(jobs)):
+            rows = run_jobs(jobs, executor=executor, reduce=plan.reduce, journal=journal)
             journal.check()
             tabulate = plan.tabulate or partial(_whole, study.name)
             for name, table in tabulate(rows).items():
                 write_table(out / f"{name}.csv", table)
-            counted = {"rows": len(rows)} if plan.jobs else {}
+            counted = {"rows": len(rows)} if jobs else {}
             provenance.finish(path, record, began, **counted)
     return rows
 

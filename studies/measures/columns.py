@@ -106,6 +106,58 @@ SUMMARIES = {
     "quantile": Column("-", "part of the cases whose |error| is below"),
 }
 
+ESTIMATES = {
+    "half": Column("-", "1 for the run at half the step"),
+    "estimate": Column("-", "relative difference of the peak from that at half the step"),
+    "over": Column("-", "|error| over the estimate; 0 where the error is below 1e-9"),
+    "median_estimate": Column("-", "median of the estimates"),
+    "factor_50": Column("-", "factor on the estimates that bounds half of the errors"),
+    "factor_95": Column("-", "factor on the estimates that bounds 95 % of the errors"),
+    "factor_all": Column("-", "factor on the estimates that bounds all errors"),
+    "within_3": Column("-", "part of the errors that three estimates bound"),
+    "within_10": Column("-", "part of the errors that ten estimates bound"),
+    "told": Column("-", "wrong outcomes with another one at half the step"),
+}
+
+SYMPTOMS = {
+    "symptom": Column("", "what a user of an engine sees"),
+    "measure": Column("", "column of variants.csv that measures it"),
+    "shown_by": Column("", "settings that show it"),
+    "before": Column("-", "the measure with these; inf where there is no result"),
+    "setting": Column("", "the one setting that helps most; empty where none halves it"),
+    "literal": Column("", "what it changes in the library's words, B = 0.5 m, H = 1.5 m"),
+    "after": Column("-", "the measure with this setting alone"),
+    "tuned": Column("-", "the measure with a tuned contact and a fixed step"),
+    "landing": Column("-", "the measure with steps that land on impacts"),
+    "threads": Column("", "threads of trackers in which it is asked"),
+    "command": Column("", "what makes the table that says so"),
+}
+
+RESTITUTION = {
+    "way": Column("", "how the coefficient of restitution is asked for"),
+    "varied": Column("", "what differs from 1 ms, 1 m/s and a radius of 0.1 m"),
+    "wanted": Column("-", "coefficient of restitution that is asked for"),
+    "speed_m_s": Column("m/s", "speed with which a sphere sets out"),
+    "radius_m": Column("m", "radius of the sphere"),
+    "phase": Column("-", "part of a step after which it meets the base"),
+    "found": Column("-", "speed after over before; nan where the library went wrong"),
+    "off": Column("-", "largest |found - wanted| wherever in a step the impact falls"),
+    "off_dt_s": Column("-", "the same at other steps"),
+    "off_speed": Column("-", "the same at other speeds"),
+    "off_radius": Column("-", "the same at other radii"),
+    "broken": Column("-", "drops that the library did not survive"),
+}
+
+ADVICE = {
+    "target": Column("-", "error of the peak that is to be kept"),
+    "dt_s": Column("s", "step for the block of the advice"),
+    "random_cases": Column("-", "random cases on which the preset was published as it is"),
+    "random_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "extreme_cases": Column("-", "extreme cases, where the reference holds"),
+    "extreme_off": Column("-", "of these, other outcomes, or errors above the target"),
+    "cheapest": Column("", "whether it is the cheapest of the engine's presets"),
+}
+
 METHODS = {
     "method": Column("", "the method of a work-precision diagram"),
     "value": Column(
@@ -233,6 +285,10 @@ GROUPS = {
     "Answers": ANSWERS,
     "Beside the exact solution": REFERENCE,
     "Summaries": SUMMARIES,
+    "Estimates": ESTIMATES,
+    "Symptoms": SYMPTOMS,
+    "Restitution": RESTITUTION,
+    "Advice": ADVICE,
     "Methods and settings": METHODS,
     "Maps": MAPS,
     "Statistics": STATISTICS,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
@@ -20,6 +21,7 @@ from studies.kit.arguments import (
     refuse_given,
 )
 from studies.kit.estimates import refuse_days, refuse_excess
+from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
 from studies.kit.options import Running
@@ -168,24 +170,29 @@ def check_mapped(sources: Sequence[str]) -> None:
 
 
 def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
-    """Map the models; return the plan of the engines' runs, at a grid and beside exact edges."""
-    maps = {model: mapped(window, model) for model in sources if model in MODELS}
+    """Return the plan of the models' maps, and of the engines at a grid and beside exact edges."""
     engines = [name for name in sources if name not in MODELS]
-    boundaries = pd.concat([edges for edges, _ in maps.values()])
-    areas = pd.concat([spans for _, spans in maps.values()])
-    exact = boundaries[boundaries["model"] == "exact"]
-    parts = QUICK_POSITIONS if quick else POSITIONS
-    chosen, _ = chosen_edges(
-        exact, [window.low + part * (window.high - window.low) for part in parts]
-    )
-    count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
+
+    @cache
+    def maps() -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
+        return {model: mapped(window, model) for model in sources if model in MODELS}
+
+    def jobs() -> list[Job]:
+        exact, _ = maps()["exact"]
+        parts = QUICK_POSITIONS if quick else POSITIONS
+        chosen, _ = chosen_edges(
+            exact, [window.low + part * (window.high - window.low) for part in parts]
+        )
+        count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
+        return [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)]
 
     def tabulate(rows: Sequence[Row]) -> Tables:
-        maps = {"boundaries": boundaries, "conditioning": conditioned(window), "map": areas}
-        return {**by_label("table")(rows), **maps}
+        boundaries, areas = (pd.concat(part) for part in zip(*maps().values(), strict=True))
+        mapped = {"boundaries": boundaries, "conditioning": conditioned(window), "map": areas}
+        return {**by_label("table")(rows), **mapped}
 
     return Plan(
-        jobs=[*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)],
+        jobs=jobs,
         settings={"window": asdict(window), "quick": quick},
         growing={"source": engines},
         ask=put,

@@ -86,6 +86,7 @@ def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:
 
 def precision_jobs(quick: bool, engines: Sequence[str]) -> list[Job]:
     """Return a job for every method, setting and case."""
+    chosen = chosen_cases(quick)
     return [
         Job(
             labels={"method": name, "value": value, "set": kind, **asdict(case)},
@@ -98,7 +99,7 @@ def precision_jobs(quick: bool, engines: Sequence[str]) -> list[Job]:
         )
         for name, method in methods_of(engines).items()
         for value in (quick_values(method) if quick else method.values)
-        for kind, cases in chosen_cases(quick).items()
+        for kind, cases in chosen.items()
         for case in cases
     ]
 

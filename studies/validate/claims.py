@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.measures.differences import conditioning_of, scientific
 from studies.measures.words import listed, out_of, part
-from studies.validate.cases import LEAST_NORMAL, everything
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""

@@ -12,7 +12,7 @@ from studies.measures.differences import conditioning_of, scientific
 from studies.sources.registry import Effort, resolve
 
 if TYPE_CHECKING:
-    from studies.validate.cases import RandomCase
+    from studies.cases.drawn import RandomCase
 
 HINTED = 30
 """Cases, the first ones, that are asked with false hints, ..."""

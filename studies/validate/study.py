@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
+from studies.cases.drawn import draw
 from studies.kit import provenance
 from studies.kit.arguments import Count, Place, check_sources
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
@@ -28,7 +29,6 @@ from studies.measures.differences import (
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
-from studies.validate.cases import draw
 from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
 
@@ -190,6 +190,8 @@ def summary_text(compared: pd.DataFrame) -> str:
         right = f"{int(group['agrees'].sum())}/{len(group)}"
         failed = int((group["outcome"] == "failed").sum())
         lines.append([source, right, failed, *(scientific(value) for value in quantiles)])
+    if not lines:
+        return "no such case"
     columns = ["source", "outcomes", "failed", "median", "p90", "p99", "max"]
     return pd.DataFrame(lines, columns=columns).to_string(index=False)
 

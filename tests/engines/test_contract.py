@@ -60,6 +60,7 @@ def test_a_declaration_is_whole(name: str) -> None:
     assert engine.presets[0].step_source
     assert not engine.presets[0].helped_by
     assert type(engine.presets[0].settings)() == engine.presets[0].settings  # the library's own
+    assert not any(preset.misses for preset in engine.presets[1:])
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)
         for left_out in filter(None, preset.helped_by.values()):

@@ -16,6 +16,7 @@ from uses import (
     BLOCK,
     FIXED,
     HERE,
+    MIRRORED,
     TUNED,
     TUNED_IN_FRAMES,
     equal_to,
@@ -31,6 +32,7 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, FRAMES, Scene, core_engines, run
+from engines.adapters.bullet_calls import Call
 from engines.declaration import Stepping
 from engines.drive import build, simulate_world
 from engines.world import Moment, Pose, Step, World
@@ -55,7 +57,7 @@ def test_onset(engine: str, preset: str, frame: str) -> None:
     assert above.peak_ratio > 0.0
 
 
-@every_use
+@pytest.mark.parametrize(("engine", "preset"), MIRRORED)
 def test_mirror(engine: str, preset: str) -> None:
     """Shaking the other way leans the block the other way."""
     times = [0.1 * i for i in range(1, 20)]
@@ -294,12 +296,13 @@ def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
     """A library that takes a setting and does not keep it makes a failed response."""
     from engines.adapters import bullet
 
-    change = bullet.BulletWorld._change
+    do = bullet.BulletWorld._do
 
-    def forgetful(self: bullet.BulletWorld, body: int, **wanted: object) -> None:
-        change(self, body, **{**wanted, "lateralFriction": 0.5})
+    def forgetful(self: bullet.BulletWorld, call: Call) -> object:
+        forgotten = {"lateralFriction": 0.5} if call.name == "changeDynamics" else {}
+        return do(self, replace(call, arguments={**call.arguments, **forgotten}))
 
-    monkeypatch.setattr(bullet.BulletWorld, "_change", forgetful)
+    monkeypatch.setattr(bullet.BulletWorld, "_do", forgetful)
     response = run("pybullet", scene(pulse(1.3, 1.0), preset="fixed"))
     assert response.outcome is Outcome.FAILED
     assert response.message == "friction of the block was set to 10.0 but reads 0.5"

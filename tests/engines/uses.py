@@ -3,11 +3,12 @@
 import math
 
 import pytest
+from declared import held_to
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import Stepping
+from engines.declaration import Miss, Stepping
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 
@@ -29,6 +30,8 @@ LANDING = [
     if use.stepping is Stepping.LANDING
 ]
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in HERE[use[0]].frames]
+
+MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]
 
 every_use = pytest.mark.parametrize(("engine", "preset"), USES)
 every_tuned_use = pytest.mark.parametrize(("engine", "preset"), TUNED)

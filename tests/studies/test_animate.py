@@ -1,18 +1,21 @@
 """Films: what is shown, which case, what is refused."""
 
+import errno
 import io
 import math
+import os
 
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.animation import PillowWriter
 from PIL import Image
 
 from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
-from studies.drawing.film import Stage, outline
+from studies.drawing.film import Stage, outline, verdict
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
@@ -41,6 +44,33 @@ def test_an_overturned_block_lies():
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
     flat = outline(BLOCK, float(rows[1]["theta"][-1]))
     assert flat[:, 1].max() == pytest.approx(0.5)
+
+
+def test_a_verdict_is_given_when_it_happens():
+    theta = BLOCK.alpha * np.array([0.0, 0.2, 0.5, 0.3, 0.1])
+    fallen = BLOCK.alpha * np.array([0.0, 1.1, 0.9, 1.2, 4.0])
+    rows = [{"source": "mujoco:naive", "outcome": "rocked", "theta": 0.8 * theta},
+            {"source": "housner", "outcome": "overturned", "theta": fallen},
+            {"source": "exact", "outcome": "rocked", "theta": theta},
+            {"source": "exact", "outcome": "at rest", "theta": 0.0 * theta}]  # fmt: skip
+    told = [verdict(row, theta, BLOCK.alpha) for row in rows]
+    assert told == [(2, "peak −20.0 %"), (3, "overturned"), (2, "peak 0.50 θcr"), (4, "at rest")]
+
+
+def test_the_exact_outline_is_drawn_over_every_other_block():
+    times = np.linspace(0.0, 1.0, 5)
+    rows = [
+        {"source": "exact", "outcome": "rocked", "theta": 0.1 * times},
+        {"source": "housner", "outcome": "rocked", "theta": 0.3 * times},
+    ]
+    stage = Stage(BLOCK, Still(), times, rows)
+    stage.show(4)
+    panel = stage.drawing.axes[1]
+    corners = [patch.get_xy()[:4] for patch in panel.patches if len(patch.get_xy()) == 5]
+    assert corners == [
+        pytest.approx(outline(BLOCK, 0.3)),
+        pytest.approx(outline(BLOCK, 0.1)),
+    ]
 
 
 def sweep(folder, peaks):
@@ -117,6 +147,58 @@ def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
     assert np.count_nonzero(whole != frames[-1]) < 100
 
 
+COLUMNS = "figure,pulse,excess_g,aspect,width_m,omega_over_p,source,peak_ratio"
+ROW = "8,full-sine,0.1,3,0.5,1.0,exact,"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\n\n",
+        bytes(range(256)),
+        b"a,b\n1,2,3\n",
+        f"{COLUMNS}\n".encode(),
+        f"{COLUMNS.replace('aspect', 'shape')}\n{ROW}0.5".encode(),
+        f"{COLUMNS.replace('source', 'who')}\n{ROW}0.5".encode(),
+        *(f"{COLUMNS}\n{ROW}{peak}".encode() for peak in ("nan", "", "many")),
+        f"{COLUMNS}\n{ROW}0.5\n{ROW}0.6".encode(),
+        *(
+            f"{COLUMNS}\n{ROW.replace(old, new)}0.5".encode()
+            for old, new in (("full", "saw"), (",3,", ",-3,"), (",0.5,", ",,"), ("1.0", "nan"))
+        ),
+        f"{COLUMNS}\n{ROW.replace('exact', 'housner')}0.5".encode(),
+    ],
+)
+def test_what_is_no_table_of_a_sweep_is_one_line(content, tmp_path, capsys):
+    (tmp_path / "sweep.csv").write_bytes(content)
+    film = tmp_path / "film.gif"
+    arguments = ["--results", str(tmp_path), "--sources", "exact", "--out", str(film)]
+    assert run(["animate", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "--results" in error
+    assert not film.exists()
+
+
+def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch, capsys):
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    film = tmp_path / "film.gif"
+    film.write_bytes(b"before")
+    monkeypatch.setattr(PillowWriter, "finish", full)
+    monkeypatch.setattr(PillowWriter, "grab_frame", lambda self, **_: None)
+    arguments = [*CASE, "--sources", "exact", "--slower", "0.1", "--out", str(film)]
+    assert run(["animate", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "No space left" in error
+    assert str(film) in error
+    assert film.read_bytes() == b"before"
+    assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -131,6 +213,10 @@ def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
         ),
         ([*CASE[:4], "--tilt", "5", "--out", "film.gif"], ("--tilt", "between")),
         ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
+        ([*CASE, "--slower", "1e9", "--out", "film.gif"], ("--slower 1e+09", "1500")),
+        ([*CASE, "--slower", "1e308", "--out", "film.gif"], ("--slower 1e+308", "1500")),
+        ([*CASE, "--out", "/dev/full/film.gif"], ("--out", "folder")),
+        ([*CASE, "--out", "/proc/film.gif"], ("--out", "written")),
     ],
 )
 def test_bad_input_is_one_clear_line(arguments, words, tmp_path, monkeypatch, capsys):

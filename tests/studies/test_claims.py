@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.contact import claims as contact
 from studies.ensemble import claims as ensemble
 from studies.histories.study import CLAIMS
@@ -17,7 +18,6 @@ from studies.precision.choices import choices
 from studies.stability import findings as stability
 from studies.sweep import claims as sweep
 from studies.validate import claims as validate
-from studies.validate.cases import LEAST_NORMAL, everything
 from studies.validity import report as validity
 
 

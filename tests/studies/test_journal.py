@@ -158,7 +158,7 @@ def test_what_is_no_file_is_refused_and_never_waited_for(name, kind, tmp_path):
 def test_a_draft_follows_no_link(tmp_path):
     target, path = tmp_path / "target", tmp_path / "table.csv"
     target.write_text("mine")
-    (tmp_path / ".table.csv.part").symlink_to(target)
+    (tmp_path / ".part.table.csv").symlink_to(target)
     with draft(path) as file:
         file.write(b"a,b\n")
     assert path.read_text() == "a,b\n"

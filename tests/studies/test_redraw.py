@@ -77,7 +77,7 @@ def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
 
 def test_a_picture_that_cannot_be_written_is_named(tmp_path, capsys, monkeypatch):
     folder = Path(shutil.copytree(PUBLISHED / "free", tmp_path / "free"))
-    (folder / ".free.png.part").mkdir()
+    (folder / ".part.free.png").mkdir()
     assert run(["redraw", str(folder)]) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1

@@ -8,12 +8,12 @@ import pandas as pd
 import pytest
 
 from analytic import peak_ratios, simulate
+from studies.cases.drawn import LEAST_NORMAL, draw
 from studies.kit.journal import FolderError
 from studies.kit.options import Running
 from studies.kit.plan import fill
 from studies.measures.differences import with_conditioning
 from studies.validate import STUDY
-from studies.validate.cases import LEAST_NORMAL, draw
 from studies.validate.hints import FALSE, KNOWN, leanings
 from studies.validate.study import plan, report
 

@@ -1,0 +1,257 @@
+"""Box2D: how a scene is built, set, read back and stepped.
+
+The library computes in single precision and is made for lengths of metres: in metres a block rises
+by less than it tells apart, so a tuned preset counts in centimetres. Contacts lie halfway between
+the surfaces of two shapes, so that half of the pivot's margin is the corner's radius, and half is
+the height by which its floor is raised.
+"""
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any
+
+from engines.declaration import Engine, Help, Precision, Preset, Stepping
+from engines.factors import MOVING_BASE, factor, level
+from engines.parts.readback import disagreement
+from engines.parts.settings import check, setting
+from engines.parts.shapes import FLOOR_HEIGHTS
+from engines.scene import Scene
+from engines.world import Grip, Moment, Pose, Step
+
+MOST_REFLECTION = 2.0
+"""A step that is much longer than the one before gives back no more than this part."""
+
+LIBRARY_STEP_S = 1.0 / 60.0
+MANUAL = "the library's own hello world, 1/60 s with 6 and 2 iterations"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box2DSettings:
+    """Settings of Box2D, by default those of its own first example.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on another, or "corners": circles at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations, position_iterations : int
+        Of the solver, for velocities and for positions.
+    unit : float
+        Units of length in a metre.
+    continuous : bool
+        Whether the library looks for impacts within a step.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, above=0.0)
+    iterations: int = setting(6, least=1)
+    position_iterations: int = setting(2, least=0)
+    unit: float = setting(1.0, above=0.0)
+    continuous: bool = True
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class Box2DWorld:
+    """A block on one kinematic body, or on one for each corner."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
+        self.settings = settings
+        self._box2d, self._unit = imported(), settings.unit
+        self._moving = scene.frame == "world"
+        self._dt = self._speed = self._place = 0.0
+        block = scene.block
+        self._half = (0.5 * block.width * self._unit, 0.5 * block.height * self._unit)
+        fall = (block.alpha * block.p * dt_s) ** 2 * block.height
+        self._reach = 0.5 * (settings.margin or 0.0) * fall * self._unit
+        self._world = self._box2d.b2World(gravity=(0.0, 0.0), doSleep=False)
+        self._world.continuousPhysics = settings.continuous
+        self._far = FLOOR_HEIGHTS * block.height * self._unit
+        self._body = self._built(scene)
+        self._floors = [self._floor(number) for number in range(self._pairs)]
+        self._fault = self._read_back(scene)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        self._world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
+        base = step.base_velocity * self._unit if self._moving else 0.0
+        back, before, self._dt = 0.0, self._dt, step.dt_s
+        if self.settings.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
+            back = min(step.dt_s / before, MOST_REFLECTION)
+        at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._moving else 0.0
+        felt = base if self.settings.base_velocity else 0.0
+        for side, floor in zip((-1.0, 1.0), self._floors, strict=False):
+            pivot = step.grip is Grip.REST or step.side in (side, 0.0)
+            floor.position = (at, self._reach if pivot else -self._reach)
+            velocity = (felt, 0.0)
+            if back and pivot and step.side:
+                x, z = self._body.GetLinearVelocityFromLocalPoint(
+                    (side * self._half[0], -self._half[1])
+                )
+                velocity = (felt - back * (x - self._speed), -back * z)
+            floor.linearVelocity = velocity
+        self._world.Step(step.dt_s, self.settings.iterations, self.settings.position_iterations)
+        self._speed, self._place = felt, step.base_x if self._moving else 0.0
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        body, (x, z) = self._body, self._body.position
+        return Pose(
+            x / self._unit - self._place, z / self._unit, -body.angle, -body.angularVelocity
+        )
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        return self._fault
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        for body in (self._body, *self._floors):
+            self._world.DestroyBody(body)
+
+    @property
+    def _pairs(self) -> int:
+        return 2 if self.settings.geometry == "corners" else 1
+
+    def _built(self, scene: Scene) -> Any:
+        b2, s, begin, unit = self._box2d, self.settings, scene.beginning, self._unit
+        body = self._world.CreateDynamicBody(
+            position=(begin.x * unit, begin.z * unit), angle=-begin.theta
+        )
+        if s.geometry == "box":
+            body.CreateFixture(
+                shape=b2.b2PolygonShape(box=self._half), friction=s.friction, restitution=0.0
+            )
+        else:
+            for number, side in enumerate((-1.0, 1.0)):
+                body.CreateFixture(
+                    shape=b2.b2CircleShape(
+                        pos=(side * self._half[0], -self._half[1]), radius=self._reach
+                    ),
+                    friction=s.friction,
+                    restitution=0.0,
+                    filter=b2.b2Filter(categoryBits=1 << number, maskBits=4 << number),
+                )
+        body.massData = b2.b2MassData(
+            mass=scene.mass, center=(0.0, 0.0), I=scene.inertia[1] * unit**2
+        )
+        body.linearVelocity = (begin.velocity_x * unit, begin.velocity_z * unit)
+        body.angularVelocity = -begin.rate
+        return body
+
+    def _floor(self, number: int) -> Any:
+        """Make a floor; the skin that the library gives a polygon ends at the level of the base."""
+        b2, far = self._box2d, self._far
+        if self.settings.geometry == "box":
+            top, meets = 0.0, b2.b2Filter()
+        else:
+            top = -b2.b2_polygonRadius
+            meets = b2.b2Filter(categoryBits=4 << number, maskBits=1 << number)
+        floor = self._world.CreateKinematicBody(position=(0.0, 0.0))
+        corners = [(-far, -far), (far, -far), (far, top), (-far, top)]
+        floor.CreateFixture(
+            shape=b2.b2PolygonShape(vertices=corners),
+            friction=self.settings.friction,
+            filter=meets,
+        )
+        return floor
+
+    def _read_back(self, scene: Scene) -> str:
+        body, s = self._body, self.settings
+        return disagreement(
+            {
+                "mass": (scene.mass, body.mass),
+                "inertia": (scene.inertia[1] * self._unit**2, body.inertia),
+                "friction": (s.friction, body.fixtures[0].friction),
+                "continuous": (s.continuous, self._world.continuousPhysics),
+            },
+            Precision.SINGLE.value,
+        )
+
+
+def imported() -> Any:
+    """Import the library; its own warnings would be errors where warnings are."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import Box2D
+
+        return Box2D
+
+
+def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
+    """Build a scene."""
+    return Box2DWorld(scene, settings, dt_s)
+
+
+TUNED = Box2DSettings(
+    geometry="corners",
+    iterations=100,
+    position_iterations=0,
+    unit=100.0,
+    continuous=False,
+    margin=10.0,
+)
+LANDING = replace(TUNED, reflection=True)
+
+ENGINE = Engine(
+    name="box2d",
+    title="Box2D",
+    library="Box2D",
+    packages=("Box2D",),
+    install="rocking[box2d]",
+    build=build,
+    presets=(
+        Preset(
+            name="naive",
+            title="the library's defaults",
+            settings=Box2DSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source=MANUAL,
+        ),
+        Preset(
+            name="fixed",
+            title="best at a fixed step",
+            settings=TUNED,
+            step=1e-3,
+            helped_by={Help.MARGIN: {"margin": None}},
+        ),
+        Preset(
+            name="landing",
+            title="steps that land on impacts",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    precision=Precision.SINGLE,
+    shortest_step=1e-5,
+    factors=(
+        factor("geometry"),
+        factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
+        factor("position_iterations", level("2", position_iterations=2)),
+        factor("unit", level("1", unit=1.0), level("10", unit=10.0)),
+        factor("continuous"),
+        factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
+        MOVING_BASE,
+    ),
+)

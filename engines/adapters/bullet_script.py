@@ -1,0 +1,65 @@
+"""A scene in PyBullet's own words, for a script that needs the library alone."""
+
+from textwrap import fill
+from typing import Any
+
+from engines.adapters.bullet_calls import (
+    Call,
+    Constant,
+    base_body,
+    base_call,
+    base_shape,
+    block_body,
+    block_call,
+    block_shape,
+    engine_call,
+)
+from engines.adapters.bullet_settings import BulletSettings
+from engines.scene import Scene
+from engines.script import Script
+
+FLOOR, SHAPE, BASE, BLOCK = map(Constant, ("floor", "shape", "base", "block"))
+"""Variables of the script."""
+
+
+def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of PyBullet; see `engines.script`."""
+    ground = (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
+    engine, bodies = engine_call(scene, s, dt_s), (block_call(scene, s, BLOCK), base_call(s, BASE))
+    shape, body = block_shape(scene, s), block_body(scene, s, SHAPE)
+    settings = (engine, shape, body, *bodies)
+    return Script(
+        imports=("import pybullet as p",),
+        settings=(f"p.setTimeStep({dt_s!r})", *map(written, settings)),
+        build=(
+            "p.connect(p.DIRECT)",
+            written(engine),
+            f"floor = {written(base_shape(scene, s))}",
+            f"base = {written(base_body(FLOOR, ground))}",
+            f"shape = {written(shape)}",
+            f"block = {written(body)}",
+            *map(written, bodies),
+            "p.setTimeStep(DT)",
+        ),
+        step=("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
+        pose=(
+            "q = p.getBasePositionAndOrientation(block)[1]",
+            "theta = 2.0 * math.atan2(q[1], q[3])",
+            "rate = p.getBaseVelocity(block)[1][1]",
+        ),
+    )
+
+
+def written(call: Call) -> str:
+    """Return a call as Python."""
+    arguments = ", ".join(f"{name}={_value(value)}" for name, value in call.arguments.items())
+    text = f"p.{call.name}({arguments})"
+    return fill(text, 99, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Constant):
+        return str(value) if value.islower() else f"p.{value}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    return repr(value)

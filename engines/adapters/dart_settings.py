@@ -1,0 +1,117 @@
+"""What DART can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass, replace
+
+from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.parts.settings import check, setting
+
+DETECTORS = ("DART", "FCL", "BULLET", "ODE")
+"""The library's collision detectors, by its own names."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DartSettings:
+    """Settings of DART, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": small spheres where the corners at the base are.
+    planar : bool
+        Give the block a planar joint, and two corners in the middle plane, instead of a free joint
+        and four corners at the edges.
+    aside : bool
+        Let the base slide out of the plane. Else nothing moves a block in the plane that way, its
+        friction there has no mass, the Dantzig solver fails on it, and the library takes what its
+        other solver makes of the contact in a few iterations, without a word.
+    friction : float
+        Coefficient between block and base, of which the library takes the smaller; its own is 1.
+    exact_inertia : bool
+        Set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
+    collision : str or None
+        Collision detector, one of `DETECTORS`; by default FCL.
+    split_impulse : bool or None
+        Correct penetration without giving it a velocity.
+    sleeping : bool or None
+        Whether a block that has hardly moved for half a second is no longer simulated.
+    unit : float
+        Units of length in a metre. The library corrects a penetration by 1 % of it a step, up to
+        1e-3 units/s.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    margin : float or None
+        Depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered, so
+        that it stays in contact.
+    reflection : bool
+        Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
+        impact and the first one after it.
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    aside: bool = False
+    friction: float = 1.0
+    exact_inertia: bool = True
+    collision: str | None = setting(names=DETECTORS)
+    split_impulse: bool | None = None
+    sleeping: bool | None = None
+    unit: float = setting(1.0, above=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)
+    margin: float | None = setting(above=0.0)
+    reflection: bool = False
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+TUNED = DartSettings(
+    geometry="corners",
+    planar=True,
+    aside=True,
+    friction=10.0,
+    collision="DART",
+    sleeping=False,
+    unit=1e5,
+    margin=0.5,
+)
+
+LANDING = replace(TUNED, reflection=True)
+
+MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
+UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
+
+FACTORS = (
+    factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
+    factor("unit", level("1e3 a metre", unit=1e3), name="unit of length"),
+    factor("split_impulse", level("on", BOTH, split_impulse=True)),
+    factor("sleeping"),
+    Factor(
+        "geometry",
+        ("geometry", "planar", "aside", "margin"),
+        (
+            level("4 corners", planar=False, aside=False),
+            level("planar box", geometry="box", margin=None),
+        ),
+    ),
+    factor(
+        "collision",
+        level("FCL", collision="FCL"),
+        level("Bullet", BOTH, collision="BULLET"),
+        level("ODE", BOTH, collision="ODE"),
+        level("DART", (DEFAULT,), collision="DART"),
+        name="collision detector",
+    ),
+    factor(
+        "exact_inertia",
+        level("of 1 kg m²", BOTH, trap=UNIT_INERTIA, exact_inertia=False),
+        name="inertia",
+    ),
+    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor("margin", level("0.1", margin=0.1), level("10", margin=10.0)),
+    factor("friction"),
+    MOVING_BASE,
+)
+"""What its contact can be set to."""

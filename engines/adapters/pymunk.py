@@ -1,0 +1,276 @@
+"""pymunk (Chipmunk2D): how a scene is built, set, read back and stepped.
+
+The library moves positions before it changes velocities, and scales cached impulses by the ratio
+of two steps: a short step before a long one would throw the block. A tuned preset therefore keeps
+the library's step as it is, gives each step its own gravity, and moves the positions itself, by the
+library's own function, from the library's own velocities.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.factors import MOVING_BASE, factor, level
+from engines.parts.quiet import imported
+from engines.parts.readback import disagreement
+from engines.parts.settings import check, setting
+from engines.parts.shapes import FLOOR_HEIGHTS
+from engines.scene import Scene
+from engines.world import Grip, Moment, Pose, Step
+
+UNIT_S = 1e-3
+"""Step [s] that the library is told where the positions are not its own to move."""
+
+MOST_REFLECTION = 2.0
+"""A step that is much longer than the one before gives back no more than this part."""
+
+LEVEL = 1e-9
+"""A block that leans by less [rad] stands on both corners: held to the margin while it falls, the
+free corner would come to rest above the base."""
+
+LIBRARY_STEP_S = 0.02
+README = "the library's own first example, space.step(0.02)"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PymunkSettings:
+    """Settings of pymunk; None leaves the library's default.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on one segment, or "corners": points at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations, slop, bias : optional
+        `Space.iterations`, `collision_slop` [m] and `collision_bias`.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), in place of `iterations`: the impulses of the two corners
+        on which a block stands converge the slower, the more slender it is.
+    positions : bool
+        Move the positions after the velocities, by the adapter.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact; slop is then beyond it.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by elasticity and surface
+        velocity.
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, above=0.0)
+    iterations: int | None = setting(None, least=1)
+    slop: float | None = setting(None, least=0.0)
+    bias: float | None = setting(None, least=0.0, most=1.0)
+    sweeps: float | None = setting(None, above=0.0)
+    positions: bool = False
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class PymunkWorld:
+    """A block on a body that does not move by itself."""
+
+    def __init__(self, scene: Scene, settings: PymunkSettings, dt_s: float) -> None:
+        self.settings = settings
+        self._pm: Any = imported("pymunk")
+        self._half = (0.5 * scene.block.width, 0.5 * scene.block.height)
+        fall = (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
+        self._margin = (settings.margin or 0.0) * fall
+        self._moving, self._dt = scene.frame == "world", 0.0
+        self._iterations = settings.iterations
+        if settings.sweeps is not None:
+            self._iterations = math.ceil(settings.sweeps / math.sin(scene.block.alpha) ** 2)
+        self._space = self._pm.Space()
+        self._base = self._pm.Body(body_type=self._pm.Body.KINEMATIC)
+        self._body = self._pm.Body(scene.mass, scene.inertia[1])
+        self._set(scene)
+        self._space.add(self._base, self._body, *self._shapes(scene))
+        self._fault = self._read_back(scene)
+
+    @property
+    def moment(self) -> Moment:
+        """At which moment of a step the velocity of a pose holds."""
+        return Moment.MIDDLE if self.settings.positions else Moment.NEXT
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        own = self.settings.positions
+        dt = UNIT_S if own else step.dt_s
+        self._space.gravity = (step.pull_x * step.dt_s / dt, step.pull_z * step.dt_s / dt)
+        if self.settings.geometry == "corners":
+            self._hold(step)
+        if self._moving and self.settings.base_velocity:
+            self._base.velocity = (step.base_velocity, 0.0)
+        self._space.step(dt)
+        if self._moving:
+            self._base.position = (step.base_x, 0.0)
+        if own:
+            self._pm.Body.update_position(self._body, step.dt_s)
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        body, (base_x, _) = self._body, self._base.position
+        x, z = body.position
+        return Pose(x - base_x, z, -body.angle, -body.angular_velocity)
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        return self._fault
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self._space.remove(*self._space.shapes, *self._space.bodies)
+
+    def _set(self, scene: Scene) -> None:
+        s, begin = self.settings, scene.beginning
+        space, body = self._space, self._body
+        slop = s.slop if s.margin is None else 10.0 * self._margin
+        for name, value in {
+            "iterations": self._iterations,
+            "collision_slop": slop,
+            "collision_bias": s.bias,
+        }.items():
+            if value is not None:
+                setattr(space, name, value)
+        body.position, body.angle = (begin.x, begin.z), -begin.theta
+        body.velocity = (begin.velocity_x, begin.velocity_z)
+        body.angular_velocity = -begin.rate
+        self._base.position_func = _stay
+        if s.positions:
+            body.position_func = _stay
+
+    def _shapes(self, scene: Scene) -> list[Any]:
+        """Make what touches what; a corner and the polygon under it meet no other."""
+        pm, s, (x, z) = self._pm, self.settings, self._half
+        far = FLOOR_HEIGHTS * scene.block.height
+        if s.geometry == "box":
+            box = pm.Poly(self._body, [(-x, -z), (x, -z), (x, z), (-x, z)])
+            floor = pm.Segment(self._base, (-far, 0.0), (far, 0.0), 0.0)
+            self._corners, self._floors = [box], [floor]
+        else:
+            deep = [(-far, -far), (far, -far), (far, 0.0), (-far, 0.0)]
+            self._corners = [pm.Circle(self._body, 0.0, (at, -z)) for at in (-x, x)]
+            # the radius that a floor is made with bounds the ones that it is given later
+            self._floors = [pm.Poly(self._base, deep, radius=self._margin) for _ in range(2)]
+        for number, pair in enumerate(zip(self._corners, self._floors, strict=True)):
+            for shape in pair:
+                shape.friction = math.sqrt(s.friction)
+                bit = 1 << number
+                shape.filter = pm.ShapeFilter(categories=bit, mask=bit)
+        return [*self._corners, *self._floors]
+
+    def _hold(self, step: Step) -> None:
+        """Keep the pivot in contact, and give its velocity back while the block turns about it."""
+        back, before, self._dt = 0.0, self._dt, step.dt_s
+        turning = step.grip in (Grip.SWING, Grip.APPROACH)
+        if self.settings.reflection and before and turning:
+            back = min(step.dt_s / before, MOST_REFLECTION)
+        about = step.side or -self._body.angle  # equal steps do not say
+        for side, corner, floor in zip((-1.0, 1.0), self._corners, self._floors, strict=True):
+            pivot = step.grip is Grip.REST or side * about >= -LEVEL
+            floor.unsafe_set_radius(self._margin if pivot else 0.0)
+            returned = back if pivot and step.side else 0.0
+            corner.elasticity, floor.elasticity = 1.0, returned
+            slip = 0.0
+            if returned:
+                at = (side * self._half[0], -self._half[1])
+                slip = self._body.velocity_at_local_point(at)[0] - self._base.velocity[0]
+            corner.surface_velocity = (returned * slip, 0.0)
+
+    def _read_back(self, scene: Scene) -> str:
+        s, space = self.settings, self._space
+        return disagreement(
+            {
+                "mass": (scene.mass, self._body.mass),
+                "moment": (scene.inertia[1], self._body.moment),
+                "friction": (s.friction, self._corners[0].friction * self._floors[0].friction),
+                "iterations": (self._iterations, space.iterations),
+                "slop": (None if s.margin else s.slop, space.collision_slop),
+                "bias": (s.bias, space.collision_bias),
+            }
+        )
+
+
+def _stay(body: Any, dt: float) -> None:
+    """Leave a body where it is: the adapter moves it."""
+
+
+def build(scene: Scene, settings: PymunkSettings, dt_s: float) -> PymunkWorld:
+    """Build a scene."""
+    return PymunkWorld(scene, settings, dt_s)
+
+
+NO_JAM = 1.3
+"""Just below 4/3, from which on the pivot of a homogeneous block may jam (Painlevé's paradox): the
+solver finds no force then, and the pivot falls through the base."""
+
+TUNED = PymunkSettings(
+    geometry="corners",
+    friction=NO_JAM,
+    sweeps=20.0,
+    bias=0.0,
+    positions=True,
+    margin=10.0,
+)
+LANDING = replace(TUNED, reflection=True)
+
+ENGINE = Engine(
+    name="pymunk",
+    title="pymunk",
+    library="pymunk",
+    packages=("pymunk",),
+    install="rocking[pymunk]",
+    build=build,
+    presets=(
+        Preset(
+            name="naive",
+            title="the library's defaults",
+            settings=PymunkSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source=README,
+            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+        ),
+        Preset(
+            name="fixed",
+            title="best at a fixed step",
+            settings=TUNED,
+            step=2.5e-4,
+            helped_by={
+                Help.POSITIONS: {"positions": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+        Preset(
+            name="landing",
+            title="steps that land on impacts",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.POSITIONS: {"positions": False},
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    factors=(
+        factor("geometry"),
+        factor("positions"),
+        factor("iterations", level("10", iterations=10), level("100", iterations=100)),
+        factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
+        factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
+        factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
+        factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
+        MOVING_BASE,
+    ),
+)

@@ -1,0 +1,205 @@
+"""Rapier: how a scene is built, set, stepped and read back.
+
+The library computes in single precision: where a block stands is known to 6e-8 of its size, so that
+a step of less than some 1e-6/p has the noise of its contact for a velocity.
+"""
+
+import math
+from typing import Any
+
+from engines.adapters.rapier_settings import FACTORS, LANDING, TUNED, RapierSettings
+from engines.declaration import Engine, Help, Precision, Preset, Stepping
+from engines.parts.quiet import imported
+from engines.parts.readback import disagreement
+from engines.parts.reflection import returned
+from engines.parts.settings import given
+from engines.parts.shapes import corner_spheres, floor_half_size, half_size
+from engines.scene import Scene
+from engines.world import Grip, Moment, Pose, Step
+
+NO_CORRECTION = 1e5
+"""Damping ratio of a contact that leaves its position where it is, at the frequency of the step."""
+
+FROZEN = 1e-5
+"""A block that sleeps while it leans by more than this part of alpha would do so for ever."""
+
+
+class RapierWorld:
+    """A block on a kinematic box, whether that moves or not."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene: Scene, settings: RapierSettings, dt_s: float) -> None:
+        self._s, self._alpha = settings, scene.block.alpha
+        self._rapier = imported("rapier3d")
+        self._moving = scene.frame == "world"
+        self._driven = self._moving or settings.reflection
+        self._dt = self._speed = self._place = 0.0
+        self._short: bool | None = None
+        self._world = self._rapier.PhysicsWorld()
+        self._parameters = self._world.integration_parameters
+        self._set_parameters()
+        self._half = half_size(scene)
+        self._base = self._add_base(scene)
+        self._body = self._add_block(scene)
+        self._fault = self._read_back(scene)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        if step.dt_s != self._dt:
+            self._parameters.dt = step.dt_s
+        if self._s.by_phase:
+            self._hold(step)
+        self._world.gravity = (step.pull_x, 0.0, step.pull_z)
+        if self._driven:
+            self._drive(step)
+        self._world.step()
+        self._dt = step.dt_s
+        if self._moving:
+            self._place = step.base_x
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        at, turn = self._body.translation, self._body.rotation
+        theta = 2.0 * math.atan2(turn.j, turn.w)
+        return Pose(at.x - self._place, at.z, theta, self._body.angvel.y)
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that the block sleeps where none can rest."""
+        if self._body.is_sleeping and abs(self.pose().theta) > FROZEN * self._alpha:
+            return (
+                "the library put the block to sleep aloft, and gravity that changes wakes nothing"
+            )
+        step = {"dt": (self._dt or None, self._parameters.dt)}
+        return self._fault or disagreement(step, Precision.SINGLE.value)
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self._world.clear()
+
+    def _hold(self, step: Step) -> None:
+        """Correct positions in ordinary steps alone: a short one would make a velocity of noise."""
+        short = step.grip in (Grip.APPROACH, Grip.STRIKE)
+        if short:
+            self._soften(1.0 / (2.0 * math.pi * step.dt_s), NO_CORRECTION)
+        elif short is not self._short:
+            self._soften(self._s.frequency, self._s.damping_ratio)
+        self._short = short
+
+    def _soften(self, frequency: float | None, damping_ratio: float | None) -> None:
+        spring = self._rapier.SpringCoefficients(frequency, damping_ratio)
+        self._parameters.contact_softness = spring
+        self._parameters.static_contact_softness = spring
+
+    def _drive(self, step: Step) -> None:
+        """Set the base's place and velocity, by which the pivot is given its own back, too."""
+        back = returned(step, self._dt) if self._s.reflection else 0.0
+        speed = step.base_velocity if self._moving and self._s.base_velocity else 0.0
+        slip = 0.0
+        if back:
+            corner = (step.side * self._half[0], 0.0, -self._half[2])
+            at = self._body.position.transform_point(corner)
+            slip = self._body.velocity_at_point(at).x - self._speed
+        self._base.translation = (self._place, 0.0, 0.0)
+        self._base.linvel = (speed - back * slip, 0.0, 0.0)
+        self._speed = speed
+
+    def _set_parameters(self) -> None:
+        s, model = self._s, self._rapier.FrictionModel
+        wanted = {
+            "num_solver_iterations": s.substeps,
+            "num_internal_pgs_iterations": s.iterations,
+            "num_internal_stabilization_iterations": s.stabilization,
+            "contact_recycling": s.recycling,
+            "warmstart_coefficient": s.warm_starting,
+            "friction_model": None if s.coulomb is None else model.COULOMB,
+        }
+        for name, value in given(wanted).items():
+            setattr(self._parameters, name, value)
+        if s.frequency is not None:
+            self._soften(s.frequency, s.damping_ratio)
+
+    def _add_base(self, scene: Scene) -> Any:
+        rapier, (x, y, z) = self._rapier, floor_half_size(scene)
+        floor = rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
+        body = rapier.RigidBody.kinematic_velocity_based()
+        return self._add(body, [floor])
+
+    def _add_block(self, scene: Scene) -> Any:
+        rapier, s, start = self._rapier, self._s, scene.beginning
+        body = (
+            rapier.RigidBody.dynamic()
+            .translation((start.x, 0.0, start.z))
+            .rotation((0.0, start.theta, 0.0))
+            .linvel((start.velocity_x, 0.0, start.velocity_z))
+            .angvel((0.0, start.rate, 0.0))
+        )
+        if s.planar:
+            body = body.enabled_rotations((False, True, False))
+            body = body.enabled_translations((True, not s.locked_aside, True))
+        if s.sleeping is not None:
+            body = body.can_sleep(s.sleeping)
+        if s.geometry == "box":
+            return self._add(body, [rapier.Collider.cuboid(*self._half).density(scene.density)])
+        radius = s.corner_radius * scene.block.width
+        corners = [
+            rapier.Collider.ball(radius).density(0.0).translation(at)
+            for at in corner_spheres(scene, radius, planar=s.planar)
+        ]
+        inertia = rapier.MassProperties((0.0, 0.0, 0.0), scene.mass, scene.inertia)
+        return self._add(body.additional_mass_properties(inertia), corners)
+
+    def _add(self, body: Any, colliders: list[Any]) -> Any:
+        rough = [collider.friction(self._s.friction) for collider in colliders]
+        return self._world.rigid_bodies[self._world.add_body(body, rough)]
+
+    def _read_back(self, scene: Scene) -> str:
+        # a body takes its mass with its first step, or when it is told to
+        self._body.recompute_mass_properties_from_colliders(self._world.colliders)
+        colliders = [self._world.colliders[it.colliders[0]] for it in (self._base, self._body)]
+        friction = 0.5 * sum(collider.friction for collider in colliders)
+        pairs = {
+            "mass": (scene.mass, self._body.mass),
+            "friction": (self._s.friction, friction),
+            "iterations": (self._s.iterations, self._parameters.num_internal_pgs_iterations),
+            "substeps": (self._s.substeps, self._parameters.num_solver_iterations),
+        }
+        return disagreement(pairs, Precision.SINGLE.value)
+
+
+ENGINE = Engine(
+    name="rapier",
+    title="Rapier",
+    library="rapier3d",
+    packages=("rapier3d",),
+    install="rocking[rapier]",
+    build=RapierWorld,
+    presets=(
+        Preset(
+            name="naive",
+            title="the library's defaults",
+            settings=RapierSettings(),
+            step_s=1.0 / 60.0,
+            step_source="the library's own time step, 1/60 s",
+        ),
+        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=1e-3),
+        Preset(
+            name="landing",
+            title="steps that land on impacts",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.PHASES: {"by_phase": False},
+                Help.REFLECTION: {"reflection": False},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    spatial=True,
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    factors=FACTORS,
+    remedy={"iterations": 1000},
+    own_step="rapier3d:PhysicsWorld.step",
+)

@@ -1,0 +1,140 @@
+"""What the published tables know of every setting: on how many cases, how wrong, how dear."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+import studies
+from engines import ENGINES
+from engines.declaration import Preset
+from studies.cases.paper import sweep_cases
+from studies.measures.verdicts import ACCEPTED
+from studies.sources.registry import resolve
+
+PUBLISHED = Path(studies.__file__).parent / "published"
+"""Where this project keeps one full run of every study."""
+
+LADDER = "precision/work-precision.csv"
+"""Table of the errors and times of methods along their steps."""
+
+PAPER = ("sweep/summary.csv", "presets/summary.csv")
+"""Tables of the paper's cases, with each preset as it is declared."""
+
+RANDOM, EXTREME = "validate/errors.csv", "stability/stability.csv"
+"""Tables of the cases that a setting is not chosen by, but that may be off all the same."""
+
+TABLES = (LADDER, *PAPER, RANDOM, EXTREME)
+
+SETTINGS = ["engine", "preset", "value", "wall_s", "cases", "max_error"]
+"""Columns of `settings`."""
+
+
+def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return a line for each setting that was published.
+
+    Parameters
+    ----------
+    published : Path
+        The folder of the published tables.
+    engines : sequence of str
+
+    Returns
+    -------
+    DataFrame
+        engine, preset; value: p dt, or the dial of an engine with steps of its own, nan for a step
+        that the library has in seconds; wall_s: mean time of a case [s]; cases; max_error: the
+        largest error of the peak, inf where an outcome is wrong or a case failed.
+    """
+    whole, ladder = of_paper(published, engines), along_steps(published, engines)
+    found = pd.concat([ladder, whole], ignore_index=True)
+    # where both tables know a setting, the ladder's time is the best of several
+    kept = found.groupby(["engine", "preset", "value"], sort=False, dropna=False)
+    lines = kept.agg(
+        wall_s=("wall_s", "first"), cases=("cases", "sum"), max_error=("max_error", "max")
+    )
+    return lines.reset_index()
+
+
+def published_engines(published: Path) -> list[str]:
+    """Return the names of the engines that the published tables know."""
+    known = set(settings(published, list(ENGINES))["engine"])
+    return [name for name in ENGINES if name in known]
+
+
+def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return the settings of the ladder: every preset along its steps, both sets of cases."""
+    table = pd.read_csv(published / LADDER)
+    uses = {
+        f"{name} {preset.name}": (name, preset.name)
+        for name in engines
+        for preset in ENGINES[name].presets
+    }
+    mine = table[table["method"].isin(list(uses))]
+    worst = mine["max_error"].where(mine["failed"] == 0, math.inf)
+    mine = mine.assign(max_error=worst, wall_s=mine["wall_s"] * mine["cases"])
+    lines = (
+        mine.groupby(["method", "value"], sort=False)
+        .agg(wall_s=("wall_s", "sum"), cases=("cases", "sum"), max_error=("max_error", "max"))
+        .reset_index()
+    )
+    names = [uses[str(name)] for name in lines["method"]]
+    return lines.assign(
+        engine=[name for name, _ in names],
+        preset=[preset for _, preset in names],
+        wall_s=lines["wall_s"] / lines["cases"],
+    )[SETTINGS]
+
+
+def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return each preset, as it is declared, on the paper's cases."""
+    tables = [pd.read_csv(published / name) for name in PAPER]
+    lines = pd.concat(tables, ignore_index=True)
+    lines = lines[(lines["figure"].astype(str) == "all")]
+    asked = [resolve(str(name)) for name in lines["source"]]
+    lines = lines.assign(
+        engine=[source.engine for source in asked],
+        preset=[source.preset for source in asked],
+        max_error=lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
+        wall_s=lines["wall_s"] / lines["cases"],
+    )
+    lines = lines[lines["engine"].isin(list(engines))]
+    own = [
+        declared_value(ENGINES[name].preset(preset))
+        for name, preset in zip(lines["engine"], lines["preset"], strict=True)
+    ]
+    return lines.assign(value=own)[SETTINGS].reset_index(drop=True)
+
+
+def declared_value(preset: Preset) -> float:
+    """Return p dt of a preset as it is declared; nan where its step is in seconds, or its own."""
+    return math.nan if preset.dial is not None else preset.ordinary_step()
+
+
+def declared_step(preset: Preset) -> float:
+    """Return p dt of a preset as it is declared; of a step in seconds, the largest in the paper."""
+    if math.isnan(preset.step_s):
+        return declared_value(preset)
+    return preset.step_s * max(case.block.p for case in sweep_cases((6,)))
+
+
+def elsewhere(published: Path, source: str, target: float) -> dict[str, int]:
+    """Count the random and the extreme cases of a preset, as it is declared, that are off.
+
+    Off is another outcome, a failure, or an error above the target; extreme cases where the
+    reference does not hold, or whose rocking is too small to be seen, are not counted.
+    """
+    random = pd.read_csv(published / RANDOM)
+    extreme = pd.read_csv(published / EXTREME, keep_default_na=False, na_values=["nan"])
+    random = random[random["source"] == source]
+    extreme = extreme[extreme["source"] == source]
+    good = [verdict.value for verdict in ACCEPTED if verdict.value != "good"]
+    extreme = extreme[~extreme["verdict"].isin(good)]
+    right = extreme["outcome"] == extreme["exact_outcome"]
+    return {
+        "random_cases": len(random),
+        "random_off": int((~random["agrees"] | (random["error"].abs() > target)).sum()),
+        "extreme_cases": len(extreme),
+        "extreme_off": int((~right | (extreme["error"].abs() > target)).sum()),
+    }

@@ -1,0 +1,140 @@
+"""Advice from the published tables: which setting keeps an error, in the library's words."""
+
+import json
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Annotated
+
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic.block import RigidBlock
+from studies.advise import STUDY
+from studies.advise.choice import advice
+from studies.advise.evidence import PUBLISHED, TABLES, published_engines
+from studies.advise.words import advice_text, claim, settings_text, told
+from studies.kit import provenance
+from studies.kit.arguments import (
+    BadInputError,
+    Place,
+    Positive,
+    check_engines,
+    refuse_repeats,
+    several,
+    several_or_none,
+)
+from studies.kit.journal import PROVENANCE
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, carry_out
+from studies.kit.posing import posed_block
+from studies.measures.words import listed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
+"""Errors that somebody may ask for."""
+
+
+ELSEWHERE = (
+    "* of the random and the extreme cases with the preset as it is declared, outcomes or errors"
+)
+"""Note under the table of advice."""
+
+
+def command(
+    *,
+    error: Annotated[tuple[Positive, ...], several] = TARGETS,
+    engines: Annotated[
+        tuple[str, ...] | None, several_or_none, Parameter(name=("--engines", "--engine"))
+    ] = None,
+    width: Positive = 0.5,
+    height: Positive = 1.5,
+    published: Place = PUBLISHED,
+    out: Place | None = None,
+) -> int:
+    """Name the cheapest setting of every engine with which all published cases keep an error.
+
+    A setting counts if it keeps the error on every case on which it was published: 24 along all
+    steps, and the paper's 960 with each preset as it is declared. How many random and extreme cases
+    are off with the preset as it is declared stands beside it.
+
+    Parameters
+    ----------
+    error
+        Largest relative errors [-] of the peak rotation that are to be kept.
+    engines
+        Names of engines, without a preset; by default all in the published tables.
+    width
+        Full width B of the block [m] for which settings are written out.
+    height
+        Full height H of the block [m].
+    published
+        Folder of the published tables.
+    out
+        Folder for the advice as a table and a figure; none by default.
+    """
+    refuse_repeats("--error", error)
+    block = posed_block(width, height)
+    if missing := [name for name in TABLES if not (published / name).is_file()]:
+        raise BadInputError(f"--published is {str(published)!r}; it must hold {missing[0]}")
+    asked = published_engines(published) if engines is None else engines
+    check_engines(asked)
+    lines = advice(published, asked, error, block)
+    if out is None:
+        print(_text(lines, block, published))
+        return 0
+    settings = {"error": error, "engines": asked, "width": width, "height": height}
+    plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
+
+    def report(folder: Path) -> str:
+        from studies.drawing.figures import save_all
+
+        text = _text(lines, block, published)
+        provenance.write_text(folder / "findings.txt", text + "\n")
+        save_all(pictures(folder), folder)
+        return text
+
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
+
+
+def _text(lines: pd.DataFrame, block: RigidBlock, published: Path) -> str:
+    head = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s):"
+    return "\n\n".join(
+        [
+            f"{head}\n{advice_text(lines)}\n{ELSEWHERE}",
+            settings_text(lines, block) or "No setting to write out.",
+            fill(f"From {listed(TABLES)}, made with {_versions(published)}.", 99),
+        ]
+    )
+
+
+def _versions(published: Path) -> str:
+    """Return the versions of the engines that the tables were made with."""
+    path = published / Path(TABLES[0]).parent / PROVENANCE
+    record = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    made = [f"{name} {version}" for name, version in record.get("engines", {}).items()]
+    return listed(made) if made else "unknown versions"
+
+
+def _read(folder: Path) -> pd.DataFrame:
+    """Read advice back, with empty words as such."""
+    path = folder / "advice.csv"
+    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype={"message": str})
+
+
+def headline(folder: Path) -> str:
+    """Say what keeps each error cheapest."""
+    return claim(_read(folder))
+
+
+def paragraph(folder: Path) -> str:
+    """Say of every preset which errors it keeps."""
+    return told(_read(folder))
+
+
+def pictures(folder: Path) -> "dict[str, Figure]":
+    """Draw the price of each error from a folder's advice.csv alone."""
+    from studies.advise.figure import draw_advice
+
+    return {"advice": draw_advice(_read(folder))}

@@ -1,0 +1,146 @@
+"""A setting in the library's own words, and advice as text."""
+
+import math
+from textwrap import indent
+from typing import Any
+
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines import ENGINES, Scene
+from engines.declaration import Engine, Preset
+from studies.kit.tables import left_aligned
+from studies.measures.words import duration, listed, part
+
+ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
+"""Settings depend on no motion."""
+
+
+def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> str:
+    """Return a preset's settings for a block in the library's words, a line each.
+
+    Parameters
+    ----------
+    engine, preset : Engine, Preset
+    block : RigidBlock
+    value : float
+        p dt; nan for the preset's own step.
+    """
+    step = None if math.isnan(value) or preset.dial is not None else value
+    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, step=step)
+    lines = [*_settings(engine, preset, scene), *_besides(preset)]
+    return "\n".join(lines)
+
+
+def _settings(engine: Engine, preset: Preset, scene: Scene) -> list[str]:
+    dt_s = preset.ordinary_step_s(scene)
+    chosen = scene.choose(preset.settings)
+    if engine.script is not None:
+        return list(engine.script(scene, chosen, dt_s).settings)
+    return [f"a step of {dt_s!r} s, and in this project's names", repr(chosen)]
+
+
+def _besides(preset: Preset) -> list[str]:
+    """Say what an adapter does that no setting of the library does."""
+    helps = [help_.value for help_ in preset.helped_by]
+    if not helps:
+        return []
+    words = "and at every step, by no setting of the library: "
+    return [f"{words}{'; '.join(helps)}"]
+
+
+def advice_text(lines: pd.DataFrame) -> str:
+    """Return advice as an aligned table."""
+    shown = pd.DataFrame(
+        {
+            "error": lines["target"].map("{:g}".format),
+            "engine": lines["engine"],
+            "preset": lines["preset"],
+            "p dt": lines["value"].map(_number),
+            "step here": lines["dt_s"].map(_time),
+            "a case": lines["wall_s"].map(_time),
+            "largest error": lines["max_error"].map(part),
+            "cases": lines["cases"].map("{:d}".format),
+            "off elsewhere*": [elsewhere_text(line) for _, line in lines.iterrows()],
+            "": lines["message"].where(lines["message"] != "", lines["cheapest"].map(_mark)),
+        }
+    )
+    return left_aligned(shown.astype(str))
+
+
+def _mark(cheapest: bool) -> str:
+    return "the engine's cheapest" if cheapest else ""
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:g}"
+
+
+def _time(value: float) -> str:
+    return "-" if math.isnan(value) else duration(value)
+
+
+def elsewhere_text(line: "pd.Series[Any]") -> str:
+    """Return how many random and extreme cases are off with the preset as it is declared."""
+    words = [
+        f"{line[f'{kind}_off']} of {line[f'{kind}_cases']} {kind}"
+        for kind in ("random", "extreme")
+        if line[f"{kind}_cases"]
+    ]
+    return ", ".join(words) or "-"
+
+
+def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
+    """Return the settings of the lines that found one, each once, in the libraries' words."""
+    chosen = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
+    parts = []
+    for _, line in chosen.iterrows():
+        engine = ENGINES[str(line["engine"])]
+        preset, value = engine.preset(str(line["preset"])), float(line["value"])
+        head = f"{engine.title}, {preset.title}, {_step(value, float(line['dt_s']))}"
+        parts.append(f"{head}\n{indent(literal(engine, preset, block, value), '  ')}")
+    return "\n\n".join(parts)
+
+
+def _step(value: float, dt_s: float) -> str:
+    own = "the library's own step" if math.isnan(value) else f"p dt = {value:g}"
+    return f"{own}, here {duration(dt_s)}"
+
+
+def claim(lines: pd.DataFrame) -> str:
+    """Say which engine keeps which error at what cost, and where nothing does."""
+    words = []
+    for target, group in lines.groupby("target", sort=False):
+        found = group[group["cheapest"]].sort_values("wall_s")
+        if found.empty:
+            words.append(f"{part(float(str(target)))} by nothing")
+            continue
+        best = found.iloc[0]
+        words.append(
+            f"{part(float(str(target)))} by {best['engine']} {best['preset']} at "
+            f"{_at(float(best['value']))} ({duration(float(best['wall_s']))} a case)"
+        )
+    return f"Errors are kept cheapest: {'; '.join(words)}."
+
+
+def _at(value: float) -> str:
+    return "its own step" if math.isnan(value) else f"p dt = {value:g}"
+
+
+def told(lines: pd.DataFrame) -> str:
+    """Say of every preset which errors it keeps, and from where nothing does."""
+    sentences = []
+    for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
+        kept, lost = group[group["message"] == ""], group[group["message"] != ""]
+        words = [
+            f"{part(float(line['target']))} at {_at(float(line['value']))} "
+            f"({duration(float(line['wall_s']))}, at most {part(float(line['max_error']))} "
+            f"on {line['cases']} cases)"
+            for _, line in kept.iterrows()
+        ]
+        if len(lost):
+            errors = listed([part(float(str(target))) for target in lost["target"]])
+            words.append(f"{errors}: {lost.iloc[0]['message']}")
+        sentences.append(f"{engine} {preset}: {'; '.join(words)}.")
+    return " ".join(sentences)

@@ -1,0 +1,143 @@
+"""Estimates beside the true errors, and by how much they are to be multiplied."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from studies.measures.differences import scientific, with_reference
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, estimate
+from studies.measures.presets import in_words, preset_of
+from studies.measures.words import listed, out_of, part
+
+RESOLVED = 1e-9
+"""Errors below are as good as none: no estimate has to bound them."""
+
+KEY = ["case", "source"]
+
+
+def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each case and source: its estimate beside its error.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of estimate.csv, half being 1 for the runs at half the step.
+
+    Returns
+    -------
+    DataFrame
+        The rows at the whole step with the columns of `with_reference`, estimate, and over: the
+        error over the estimate, 0 where there is no error to speak of; nan unless both rocked.
+    """
+    whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
+    finer = rows[rows["half"] == 1].set_index(KEY)
+    found = [
+        estimate(row, dict(finer.loc[(row["case"], row["source"])]))
+        for row in whole.to_dict("records")
+    ]
+    whole = whole.assign(estimate=found)
+    errors = whole["error"].abs()
+    over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
+    return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))
+
+
+def factors(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: by how much its estimates are to be multiplied.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        From `beside_errors`.
+
+    Returns
+    -------
+    DataFrame
+        source, cases, survivors (in both), median_estimate, median_error, the factors that bound
+        half, 95 % and all of the errors, the parts that 3 and 10 estimates bound; wrong outcomes,
+        and how many of them half the step tells by another one.
+    """
+    table = []
+    for source, rows in lines.groupby("source", sort=False):
+        kept = rows[rows["over"].notna()]
+        wrong = rows[~rows["agrees"] & (rows["outcome"] != "failed")]
+        table.append(
+            {
+                "source": source,
+                "cases": len(rows),
+                "survivors": len(kept),
+                "median_estimate": kept["estimate"].median(),
+                "median_error": kept["error"].abs().median(),
+                "factor_50": _quantile(kept["over"], 0.5),
+                "factor_95": _quantile(kept["over"], BOUNDED),
+                "factor_all": _quantile(kept["over"], 1.0),
+                "within_3": (kept["over"] <= 3.0).mean(),
+                "within_10": (kept["over"] <= 10.0).mean(),
+                "wrong": len(wrong),
+                "told": int((wrong["estimate"] == math.inf).sum()),
+            }
+        )
+    return pd.DataFrame(table)
+
+
+def _quantile(values: "pd.Series[float]", level: float) -> float:
+    """Return the smallest value that so much of all are not above; nan without any."""
+    ordered = values.sort_values(ignore_index=True)
+    if ordered.empty:
+        return math.nan
+    return float(ordered[max(math.ceil(level * len(ordered)) - 1, 0)])
+
+
+def factors_text(table: pd.DataFrame) -> str:
+    """Return factors as an aligned table."""
+    shown = pd.DataFrame(
+        {
+            "source": table["source"],
+            "survive": table["survivors"],
+            "estimate": table["median_estimate"].map(scientific),
+            "error": table["median_error"].map(scientific),
+            "half": table["factor_50"].map("{:.3g}".format),
+            "95 %": table["factor_95"].map("{:.3g}".format),
+            "all": table["factor_all"].map("{:.3g}".format),
+            "within 3": table["within_3"].map(part),
+            "within 10": table["within_10"].map(part),
+            "wrong outcomes told": table["told"].astype(str) + "/" + table["wrong"].astype(str),
+        }
+    )
+    return shown.to_string(index=False)
+
+
+def first_claim(table: pd.DataFrame) -> str:
+    """Say whose estimates bound the error, and whose do not see it."""
+    good = table[table["factor_95"] <= MOST_TRUSTED]
+    blind = table[table["factor_95"] > MOST_TRUSTED]
+    words = [f"{line['source']} ({line['factor_95']:.2g})" for _, line in good.iterrows()]
+    claim = (
+        f"The difference from half the step, times the number in brackets, bounds {part(BOUNDED)} "
+        f"of the errors of {listed(words)}"
+    )
+    if blind.empty:
+        return f"{claim}."
+    missed = [f"{line['source']} ({line['factor_95']:.3g})" for _, line in blind.iterrows()]
+    return f"{claim}; it does not see those of {listed(missed)}."
+
+
+def told(table: pd.DataFrame) -> str:
+    """Say of every source how far its estimates are off."""
+    return " ".join(_of_source(line) for line in table.to_dict("records"))
+
+
+def _of_source(line: Mapping[Any, Any]) -> str:
+    source = str(line["source"])
+    number = {name: float(str(value)) for name, value in line.items() if name != "source"}
+    words = (
+        f"{source} ({in_words(preset_of(source))}): {part(number['median_estimate'])} for an error "
+        f"of {part(number['median_error'])} in the medians of {number['survivors']:.0f} survivors; "
+        f"3 estimates bound {part(number['within_3'])} of the errors, 10 bound "
+        f"{part(number['within_10'])}, and {number['factor_all']:.3g} all"
+    )
+    if number["wrong"]:
+        seen = out_of(number["told"], number["wrong"])
+        words += f"; of its wrong outcomes half the step tells {seen}"
+    return f"{words}."

@@ -1,0 +1,66 @@
+"""True errors against estimates: below the line an estimate is enough, far above it is blind."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.drawing.labels import Name, beside
+from studies.drawing.styles import style_of
+from studies.measures.presets import in_order, in_words, preset_of
+
+FLOOR = 1e-10
+"""Errors and estimates below are drawn here."""
+
+
+def draw_estimates(lines: pd.DataFrame) -> Figure:
+    """Draw the error of every case against its estimate, a panel for each preset.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of estimates.csv.
+    """
+    lines = lines[lines["over"].notna() & np.isfinite(lines["estimate"])]
+    presets = lines["source"].map(preset_of)
+    names = in_order(presets)
+    drawing = Figure(figsize=(4.0 * len(names) + 1.2, 4.6), layout="constrained")
+    panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
+    ends = np.array([FLOOR, 10.0])
+    for axes, preset in zip(panels, names, strict=True):
+        axes.plot(ends, ends, color="#777777", linewidth=0.9)
+        axes.plot(ends, 10.0 * ends, color="#777777", linewidth=0.9, linestyle=":")
+        _points(axes, lines[presets == preset])
+        axes.set(xscale="log", yscale="log", xlim=(FLOOR / 2, 10.0), ylim=(FLOOR / 2, 10.0))
+        axes.set_title(in_words(preset), fontsize=10)
+        axes.set_xlabel("estimate: difference to half the step  [–]")
+        axes.grid(alpha=0.25)
+    panels[0].set_ylabel("true error of the peak  [–]")
+    ten = [
+        Name("error = 10 estimates", 1.0, 10.0, "#777777"),
+        Name("error = estimate", 10.0, 5.0, "#777777"),
+    ]
+    beside(panels[-1], ten, 8.0)
+    return drawing
+
+
+def _points(axes: Axes, lines: pd.DataFrame) -> None:
+    """Draw the cases of each source, and write its name and how many lie above ten estimates."""
+    for place, (source, rows) in enumerate(lines.groupby("source", sort=False)):
+        style = style_of(str(source))
+        axes.plot(
+            rows["estimate"].clip(lower=FLOOR),
+            rows["error"].abs().clip(lower=FLOOR),
+            **style.points(4.0),
+        )
+        above = int((rows["over"] > 10.0).sum())
+        axes.text(
+            0.97,
+            0.1 - 0.06 * place,
+            f"{source}: {above} of {len(rows)} above ten estimates",
+            color=style.colour,
+            fontsize=8,
+            transform=axes.transAxes,
+            ha="right",
+            va="top",
+        )

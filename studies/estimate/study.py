@@ -1,0 +1,115 @@
+"""Random cases, each at a step and at half of it: what the difference says of the error."""
+
+from dataclasses import asdict, replace
+from itertools import islice
+from pathlib import Path
+from textwrap import fill as wrapped
+from typing import TYPE_CHECKING, Annotated
+
+import pandas as pd
+
+from studies.cases.drawn import draw
+from studies.estimate import STUDY
+from studies.estimate.calibration import beside_errors, factors, factors_text, first_claim, told
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Count, Place, check_sources
+from studies.kit.jobs import Job
+from studies.kit.naming import sources_option
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
+from studies.measures.halving import halved
+from studies.sources.groups import core_sources
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def command(
+    *,
+    out: Place,
+    cases: Count = 150,
+    seed: Count = 1,
+    sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Hold the difference of every run from that at half its step against the true error.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    cases
+        Number of random cases.
+    seed
+        Seed of the random numbers, a positive whole number; another one draws other cases.
+    sources
+        Engines, as they are declared; those that choose their own steps have none to halve.
+    """
+    check_sources(sources)
+    jobs = pairs(cases, seed, sources)
+    growing = {"case": range(cases), "source": sources}
+    plan = Plan(jobs=jobs, settings={"seed": seed}, growing=growing)
+    return carry_out(STUDY, plan, out, running, report)
+
+
+def pairs(cases: int, seed: int, sources: tuple[str, ...]) -> list[Job]:
+    """Return two jobs for each case and source, the second at half the step.
+
+    Raises
+    ------
+    BadInputError
+        If a source has no step that could be halved.
+    """
+    jobs = []
+    for case in islice(draw(seed), cases):
+        for source in sources:
+            labels = {**asdict(case), "half": 0}
+            job = Job(labels=labels, block=case.block, motion=case.motion, source=source)
+            finer = halved(job)
+            if finer is None:
+                words = "it must be an engine with steps that can be halved"
+                raise BadInputError(f"--sources is {source!r}; {words}")
+            jobs += [job, replace(finer, labels={**labels, "half": 1})]
+    return jobs
+
+
+def report(folder: Path) -> str:
+    """Hold a folder's estimates against the errors; write two tables, return the text."""
+    from studies.drawing.figures import save_all
+
+    rows = pd.read_csv(folder / "estimate.csv", dtype={"message": str})
+    lines = beside_errors(rows)
+    table = factors(lines)
+    for name, kept in (("estimates", lines), ("factors", table)):
+        provenance.write_text(folder / f"{name}.csv", kept.to_csv(index=False, na_rep="nan"))
+    save_all(pictures(folder), folder)
+    text = "\n".join(
+        [
+            "An estimate is the relative difference of a peak from that at half the step. Medians",
+            "of estimate and error; the factors on estimates that bound half of the errors, 95 %",
+            "and all; the part of the errors within 3 and 10 estimates; and wrong outcomes that",
+            "half the step tells by another one:",
+            factors_text(table),
+            "",
+            wrapped(paragraph(folder), 99),
+        ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def headline(folder: Path) -> str:
+    """Say whose estimates bound the error, and whose do not see it."""
+    return first_claim(pd.read_csv(folder / "factors.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say of every source how far its estimates are off."""
+    return told(pd.read_csv(folder / "factors.csv"))
+
+
+def pictures(folder: Path) -> "dict[str, Figure]":
+    """Draw errors against estimates from a folder's estimates.csv alone."""
+    from studies.estimate.figure import draw_estimates
+
+    return {"estimate": draw_estimates(pd.read_csv(folder / "estimates.csv"))}

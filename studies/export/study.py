@@ -1,0 +1,115 @@
+"""A scene written out for an engine alone: files, and the peak to expect of them."""
+
+from pathlib import Path
+from typing import Any
+
+from analytic.block import RigidBlock
+from analytic.motion import Motion
+from engines import ENGINES, Scene
+from engines.declaration import Engine, Preset, Stepping
+from studies.cases.paper import free_rocking_window
+from studies.export.writing import Exported, files, written_engines
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Place, Positive, refuse_given
+from studies.kit.executors import Local
+from studies.kit.jobs import Job, summary
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block
+from studies.kit.runner import exit_code, run_jobs
+
+
+def command(
+    *,
+    engine: str,
+    out: Place,
+    width: Positive,
+    height: Positive,
+    preset: str = "fixed",
+    excitation: Excitation = DEFAULT_EXCITATION,
+    step: Positive | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Write a scene as a script that needs an engine's library alone, with the peak to expect.
+
+    Parameters
+    ----------
+    engine
+        Name of an engine.
+    out
+        Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
+        library reads one.
+    width
+        Full width B of the block [m].
+    height
+        Full height H of the block [m].
+    preset
+        One of the engine's with equal steps: naive or fixed.
+    step
+        p dt [-], the step in units of 1/p; by default the preset's.
+    time_limit
+        Wall-clock time [s] after which the engine is given up.
+    """
+    asked, used = _asked(engine, preset)
+    block = posed_block(width, height)
+    posed = excitation.pose(block)
+    if posed.start != (0.0, 0.0):
+        begin = {"tilt": excitation.tilt, "rate": excitation.rate}
+        refuse_given(begin, "only where nothing is exported, whose block begins at rest")
+    motion = posed.motion
+    _check_folder(out)
+    window = free_rocking_window(block, motion)
+    options: dict[str, Any] = {} if step is None else {"step": step}
+    rows = run_jobs(
+        [
+            _job("exact", block, motion, window, {}),
+            _job(f"{engine}:{preset}", block, motion, window, options),
+        ],
+        executor=Local(workers=1, time_limit_s=time_limit),
+        reduce=summary,
+    )
+    if code := exit_code(rows):
+        return code
+    exact, found = (float(row["peak_ratio"]) for row in rows)
+    if not found:
+        raise BadInputError(
+            f"--engine is {engine!r}; its block stays at rest, with no peak to tell"
+        )
+    scene = Scene(block=block, motion=motion, preset=preset, duration=window, **options)
+    what = Exported(
+        engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    for name, text in files(what).items():
+        provenance.write_text(out / name, text)
+        print(out / name)
+    print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
+    return 0
+
+
+def _asked(engine: str, preset: str) -> tuple[Engine, Preset]:
+    """Return an engine and its preset, which must be ones that can be written out."""
+    if engine not in (able := written_engines(ENGINES)):
+        words = f"it must be one that can be written out: {', '.join(able)}"
+        raise BadInputError(f"--engine is {engine!r}; {words}")
+    asked = ENGINES[engine]
+    equal = [use.name for use in asked.presets if use.stepping is Stepping.FIXED]
+    if preset not in equal:
+        words = f"it must have equal steps: {', '.join(equal)}"
+        raise BadInputError(f"--preset is {preset!r}; {words}")
+    return asked, asked.preset(preset)
+
+
+def _check_folder(out: Path) -> None:
+    try:
+        empty = not out.exists() or not any(out.iterdir())
+    except OSError:
+        empty = False
+    if not empty:
+        raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
+
+
+def _job(
+    source: str, block: RigidBlock, motion: Motion, window: float, options: dict[str, Any]
+) -> Job:
+    return Job(
+        labels={}, block=block, motion=motion, source=source, duration=window, options=options
+    )

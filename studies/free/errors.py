@@ -1,0 +1,101 @@
+"""How far a response of free rocking is from the closed forms of its model."""
+
+import itertools
+import math
+
+import numpy as np
+
+from analytic import MODELS, RigidBlock
+from analytic.criteria import free_amplitude, quarter_period
+from analytic.motion import FloatArray
+from analytic.response import Outcome, Response
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.sources.registry import resolve
+
+SWINGS = 3
+"""Swings after the fall from the tilt that are compared."""
+IMPACTS = 20
+"""Impacts over which the times of a source drift from those of the closed form, ..."""
+LEAST_SWING = 1e-3
+"""... or fewer, as many as are followed by swings to this part of alpha or more."""
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary, the largest errors of period and decay over the swings, and the drift.
+
+    The fall from the tilt counts as a quarter of a period, and begins the drift.
+    """
+    model = resolve(job.source).model
+    period_error = decay_error = drift = math.nan
+    timed = 0
+    theta, _ = job.options["start"]
+    tops = turning_points(response, theta)
+    if response.outcome is Outcome.ROCKED and len(tops) > 1:
+        times = [impact.time for impact in response.impacts]
+        fall = quarter_period(job.block, theta, model)
+        periods = [
+            (later - before) / (2.0 * quarter_period(job.block, top, model)) - 1.0
+            for before, later, top in zip(times, times[1:], tops[1:], strict=False)
+        ]
+        period_error = max(map(abs, [times[0] / fall - 1.0, *periods]))
+        decays = [
+            after / next_amplitude(job.block, before, model) - 1.0
+            for before, after in itertools.pairwise(tops)
+        ]
+        decay_error = max(map(abs, decays))
+        swings = swing_times(job.block, theta, model)
+        timed = 1 + len(swings)
+        if len(times) >= timed:
+            drift = (times[timed - 1] - fall - sum(swings)) * job.block.p
+    return {
+        **summary(job, response),
+        "swings": max(len(tops) - 1, 0),
+        "period_error": period_error,
+        "decay_error": decay_error,
+        "timed_impacts": timed,
+        "drift_p": drift,
+    }
+
+
+def swing_times(block: RigidBlock, theta: float, model: str) -> list[float]:
+    """Return the times [s] between the impacts that are timed, after a fall from `theta` [rad]."""
+    times: list[float] = []
+    top = next_amplitude(block, theta, model)
+    while len(times) < IMPACTS - 1 and top >= LEAST_SWING * block.alpha:
+        times.append(2.0 * quarter_period(block, top, model))
+        top = next_amplitude(block, top, model)
+    return times
+
+
+def next_amplitude(block: RigidBlock, theta: float, model: str) -> float:
+    """Return the rotation [rad] that follows the impact after `theta`, by energy."""
+    law = MODELS[model].law(block.alpha, block.restitution)
+    if not law.linear:
+        return free_amplitude(block, theta, 1)
+    left = law.eta**2 * theta * (2.0 * law.saddle - theta)
+    return left / (law.saddle + math.sqrt(law.saddle**2 - left))
+
+
+def turning_points(response: Response, theta: float) -> list[float]:
+    """Return the rotation [rad] of the release, and the largest in each of the first swings."""
+    history = response.history
+    if history is None or not response.impacts:
+        return []
+    size, tops = np.abs(history.theta), [theta]
+    times = [impact.time for impact in response.impacts[: SWINGS + 1]]
+    for begin, end in itertools.pairwise(times):
+        inside = np.nonzero((history.time > begin) & (history.time < end))[0]
+        if inside.size < 5:
+            break
+        tops.append(crest(size, inside))
+    return tops
+
+
+def crest(theta: FloatArray, inside: np.ndarray[tuple[int, ...], np.dtype[np.intp]]) -> float:
+    """Return the maximum of the parabola through the largest sample and its neighbours."""
+    place = int(inside[np.argmax(theta[inside])])
+    place = min(max(place, 1), len(theta) - 2)
+    left, top, right = theta[place - 1 : place + 2]
+    bend = left - 2.0 * top + right
+    return float(top - (right - left) ** 2 / (8.0 * bend)) if bend < 0.0 else float(top)

@@ -1,0 +1,78 @@
+"""What free rocking shows: the largest errors of period, decay and drift, in tables and words."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from studies.free.errors import IMPACTS
+from studies.kit import provenance
+from studies.measures.differences import scientific
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's free.csv; write and return the text."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    text = f"{table_text(read(folder))}\n\n{paragraph(folder)}"
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def read(folder: Path) -> pd.DataFrame:
+    """Read a free.csv back."""
+    return pd.read_csv(folder / "free.csv", dtype={"message": str}).fillna({"message": ""})
+
+
+def table_text(rows: pd.DataFrame) -> str:
+    """Return, for each source and tilt, the largest errors over the aspect ratios."""
+    lines = errors(rows, ["source", "tilt"])
+    both = lines["period_error"].map(scientific) + " " + lines["decay_error"].map(scientific)
+    tables = {
+        "Largest relative error of the time between impacts and of the next rotation:": both,
+        f"Largest drift over up to {IMPACTS} impacts [1/p]:": lines["drift_p"].map(scientific),
+    }
+    order = list(rows["source"].unique())
+    return "\n\n".join(
+        f"{head}\n"
+        f"{cells.unstack('tilt').rename_axis(index=None, columns='θ0/α').loc[order].to_string()}"
+        for head, cells in tables.items()
+    )
+
+
+def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return the largest errors of each group of rows."""
+    sizes = rows.assign(drift_p=rows["drift_p"].abs())
+    return sizes.groupby(by, sort=False)[["period_error", "decay_error", "drift_p"]].max()
+
+
+def headline(folder: Path) -> str:
+    """Say to what each source follows the closed forms of its model, at worst."""
+    worst = errors(read(folder), ["source"])[["period_error", "decay_error"]].max(axis=1)
+    words = [f"{name} {scientific(value)}" for name, value in worst.items()]
+    return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
+
+
+def paragraph(folder: Path) -> str:
+    """Say how far period, decay and drift of each source are from its model's closed forms."""
+    words = [
+        f"{source} {scientific(line['period_error'])}, {scientific(line['decay_error'])} and "
+        f"{scientific(line['drift_p'])}/p"
+        for source, line in errors(read(folder), ["source"]).iterrows()
+    ]
+    return (
+        "Free rocking against the closed forms of each source's model, largest relative error of "
+        "the time between two impacts, of the rotation after one, and the drift over up to "
+        f"{IMPACTS} impacts: {'; '.join(words)}."
+    )
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the errors of a folder from its free.csv alone."""
+    from studies.drawing.diagrams import draw_free
+
+    return {"free": draw_free(read(folder))}

@@ -1,0 +1,123 @@
+"""How far off an answer may be, from the engine itself: the same run at half the step."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import pandas as pd
+
+import studies
+from analytic.block import RigidBlock
+from analytic.response import Outcome
+from engines.declaration import Stepping
+from studies.kit.jobs import Job
+from studies.kit.journal import Row
+from studies.sources.registry import resolve
+
+FACTORS = Path(studies.__file__).parent / "published" / "estimate" / "factors.csv"
+"""By how much estimates are to be multiplied, as published."""
+
+BOUNDED = 0.95
+"""Part of the random cases whose error a factor bounds."""
+
+MOST_TRUSTED = 10.0
+"""A factor above says that the estimate does not see the error."""
+
+
+def halved(job: Job) -> Job | None:
+    """Return a job at half of its step; None where a source has no step that could be halved."""
+    source = resolve(job.source)
+    if source.kind != "engine" or source.used.stepping is Stepping.OWN:
+        return None
+    options = {name: value for name, value in job.options.items() if name != "accuracy"}
+    return replace(job, options={**options, "step": 0.5 * step_of(job)})
+
+
+def step_of(job: Job) -> float:
+    """Return p dt of an engine's job."""
+    if "step" in job.options:
+        return float(job.options["step"])
+    preset, block = resolve(job.source).used, job.block
+    return _declared(preset.step_s, block) or preset.ordinary_step(
+        str(job.options.get("accuracy", "standard"))
+    )
+
+
+def _declared(step_s: float, block: RigidBlock) -> float:
+    """Return p dt of a step in seconds, 0 where there is none."""
+    return 0.0 if math.isnan(step_s) else step_s * block.p
+
+
+def estimate(row: Row, finer: Row) -> float:
+    """Return the relative difference of a peak from that at half the step.
+
+    It is inf where half the step has another outcome, nan where one of the two failed, 0 where the
+    block stays at rest or overturns in both.
+    """
+    outcomes = row["outcome"], finer["outcome"]
+    if Outcome.FAILED.value in outcomes:
+        return math.nan
+    if outcomes[0] != outcomes[1]:
+        return math.inf
+    if outcomes[0] != Outcome.ROCKED.value:
+        return 0.0
+    return abs(float(row["peak_ratio"]) / float(finer["peak_ratio"]) - 1.0)
+
+
+def with_estimates(rows: Sequence[Row], finer: Sequence[Row]) -> list[Row]:
+    """Return rows of different sources with their estimates, and with what these bound.
+
+    bound is the estimate times the published factor. A source whose estimates do not see the error
+    has a bound of nan, and its message says so.
+    """
+    halves = {row["source"]: row for row in finer}
+    return [{**row, **_estimated(row, halves.get(row["source"]))} for row in rows]
+
+
+def _estimated(row: Row, finer: Row | None) -> Row:
+    if finer is None:
+        return {"estimate": math.nan, "bound": math.nan}
+    found, trust = estimate(row, finer), published_trust(row["source"])
+    warning = "the estimate was never held against errors" if trust is None else trust.warning()
+    if found == math.inf:
+        warning = f"at half the step: {finer['outcome']}"
+    return {
+        "estimate": found,
+        "bound": math.nan if warning or trust is None else trust.factor * found,
+        "message": "; ".join(words for words in (row["message"], warning) if words),
+    }
+
+
+class Trust(NamedTuple):
+    """What published random cases say of a source's estimates."""
+
+    factor: float
+    """By how much they are to be multiplied to bound the errors of `BOUNDED` of the cases."""
+    cases: int
+
+    @property
+    def holds(self) -> bool:
+        """Whether the estimates see the error."""
+        return self.factor <= MOST_TRUSTED
+
+    def warning(self) -> str:
+        """Say that they do not, or nothing."""
+        if self.holds:
+            return ""
+        part = f"{BOUNDED:.0%} of {self.cases} random cases".replace("%", " %")
+        return f"the estimate does not see the error: {self.factor:.3g} times it bounds {part}"
+
+
+def published_trust(source: str, path: Path = FACTORS) -> Trust | None:
+    """Return what was published of a source's estimates, as the preset is declared, if it was."""
+    if not path.is_file():
+        return None
+    table = pd.read_csv(path)
+    asked = resolve(source)
+    for line in table.to_dict("records"):
+        known = resolve(str(line["source"]))
+        if (known.engine, known.preset) == (asked.engine, asked.preset):
+            return Trust(float(line["factor_95"]), int(line["survivors"]))
+    return None

@@ -1,0 +1,78 @@
+"""DART: how near it comes, and the traps that it sets without a word."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from test_landing import errors_of_sweep
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic import simulate
+from analytic.response import Outcome
+from engines import run
+from engines.drive import build
+
+pytestmark = pytest.mark.skipif("dart" not in HERE, reason="dartpy is not installed")
+
+MOTION = pulse(1.3, 3.0, 2)
+
+
+def peak(sign: float = 1.0, **options: Any) -> float:
+    motion = replace(MOTION, amplitude=sign * MOTION.amplitude)
+    return run("dart", scene(motion, **options)).peak_ratio
+
+
+def test_some_of_the_sweep() -> None:
+    """The steps are of second order, 1/200^2 = 2.5e-5 times a factor that is below one here."""
+    errors = errors_of_sweep("dart", every=96)
+    assert np.median(errors) < 1e-5
+    assert max(errors) < 1e-4
+
+
+def test_friction_that_has_no_mass_is_left_to_another_solver() -> None:
+    """Out of the plane nothing moves a planar block on a base of its own plane: the response is no
+    longer the mirror image of its mirror's, unless the base can slide aside."""
+    assert peak(1.0) == pytest.approx(peak(-1.0), rel=1e-12)
+    beside = {"aside": False}
+    there, back = (peak(sign, settings=beside) for sign in (1.0, -1.0))
+    assert abs(there / back - 1.0) > 1e-5
+
+
+def test_a_mass_brings_no_inertia() -> None:
+    """Set by its mass alone, a block keeps the moments of inertia of 1 kg m2 and hardly rocks."""
+    assert peak(preset="naive", settings={"exact_inertia": False}) < 0.1 * peak(preset="naive")
+
+
+def test_of_a_pair_the_smaller_friction_counts() -> None:
+    motion = scene(MOTION)
+    world: Any = build(HERE["dart"], motion)
+    world._floor.getShapeNode(0).getDynamicsAspect().setFrictionCoeff(0.05)
+    assert "friction was set to 10.0 but reads 0.05" in world._read_back(motion)
+    world.close()
+
+
+@pytest.mark.parametrize("preset", ["naive", "landing"])
+def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
+    response = run(
+        "dart", scene(MOTION, preset=preset, frame="world", settings={"base_velocity": False})
+    )
+    assert response.outcome is Outcome.FAILED
+    assert "slid" in response.message
+
+
+def test_corrections_go_by_the_unit_of_length() -> None:
+    """In metres a pivot is pushed out of its margin at up to 1 mm/s, in 1e-5 m at 1e-8 m/s."""
+    exact = simulate(BLOCK, MOTION).peak_ratio
+    fine, coarse = (abs(peak(settings={"unit": unit}) / exact - 1.0) for unit in (1e5, 1.0))
+    assert fine < 1e-4 < 1e-3 < coarse
+
+
+def test_space_begins_as_the_plane_does() -> None:
+    """Four corners on a free joint move as two in the plane, also where they set out in a swing."""
+    start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
+    plane, space = (
+        run("dart", scene(MOTION, start=start, settings=settings)).peak_ratio
+        for settings in ({}, {"planar": False, "aside": False})
+    )
+    assert space == pytest.approx(plane, rel=1e-5)

@@ -1,0 +1,202 @@
+"""Whatever stands on the command line: usable, some rows failed, or one line that says why not."""
+
+import contextlib
+import io
+import os
+import signal
+import warnings
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from analytic.response import Reason, Response
+from studies.__main__ import COMMANDS, run
+from studies.kit import runner
+from studies.kit.app import make_app
+from studies.kit.executors import Local
+from studies.kit.journal import FolderError
+from studies.page import report
+
+BACKSTOP_S = 600
+"""Ends a test that hangs; nothing is expected within it."""
+CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
+RECORD = ("--record", "RECORD", "--units", "g", "--width", "0.5", "--height", "1.5")
+PEER = "\n".join(
+    [
+        *("PEER", "A", "ACCELERATION TIME SERIES IN UNITS OF G", "NPTS= 5, DT= .1 SEC"),
+        "0 .1 .3 .1 0",
+    ]
+)
+BEGINNINGS = {
+    "compare": [(*CASE, "--sources", "exact"), (*RECORD, "--sources", "exact")],
+    "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
+    "redraw": [("FOLDER",)],
+    "readme": [()],
+}
+"""What stands before an option so that it matters, of commands that do not fill a folder."""
+ODD = [
+    *("0", "1", "2", "-1", "-5", "1.5", "1,5", "1_000", "١٢", "+3", "0x10", " 7 ", "1e5", "1e-7"),
+    *("5e-324", "1e-308", "1e308", "-1e308", "1e400", "inf", "-inf", "nan", "NaN", "-0.0"),
+    *("1" * 400, f"0.{'0' * 400}1", "1000000000", "1000000001", str(2**63), str(2**64)),
+    *("", " ", "\0", "a\0b", "\n", "\t", "\r\n", "\x1b[31m", "\udc80", "é" * 5000, "x" * 5000),
+    *(
+        "-",
+        "--",
+        "---",
+        "--=",
+        "=",
+        "--help",
+        "-h",
+        "--version",
+        "--out",
+        "--quick=1",
+        "--no-quick",
+    ),
+    *(".", "..", "/", "/nowhere/x", "/dev/null", "/dev/full", "/dev/zero", "/dev/stdin", "~", "*"),
+    *("/proc/self/mem", "PIPE", "FOLDER", "RECORD", "/dev/full/x.png", "FOLDER/x.png", "x/y.pdf"),
+    *("exact", "exact:", ":", "mujoco:", "mujoco:best", "core", "core:naive", "engines:x", "EXACT"),
+    *("tcp://127.0.0.1:1", "tcp://", "tls://127.0.0.1:1", "http://x", "127.0.0.1", "tcp://[::1]:9"),
+    *("g", "gal", "half-sine", "figure", "6", "6.0", "true", "None", "[]", "{}", "png", "rm -rf"),
+]
+"""Text that has been trouble somewhere."""
+
+
+def options_of(study):
+    """Return the options of a command, as its own declaration names them."""
+    arguments = make_app(COMMANDS)[study.name].assemble_argument_collection()
+    names = [argument.name for argument in arguments if argument.name.startswith("--")]
+    assert names
+    return names
+
+
+OPTIONS = {study.name: options_of(study) for study in COMMANDS}
+FULL = "nothing is run here"
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """A folder with an ordinary record, a named pipe, and nothing that can be computed for long."""
+    folder = tmp_path_factory.mktemp("any")
+    (folder / "RECORD").write_text(PEER)
+    (folder / "FOLDER").mkdir()
+    os.mkfifo(folder / "PIPE")
+    kept = Path.cwd()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr(runner, "open_journal", refuse)
+        patch.setattr(Local, "_in_processes", give_up)
+        patch.setattr(report, "_prepare", refuse)
+        patch.setattr("studies.drawing.film.write_film", lambda *_: None)
+        patch.setattr("studies.kit.dask_client.CONNECT_S", 0.5)
+        yield folder
+    assert Path.cwd() == kept
+
+
+def refuse(folder, *_):
+    """All arguments were taken: what follows is the study's."""
+    raise FolderError(folder, FULL)
+
+
+def give_up(_, jobs):
+    """What takes long, or may crash, reaches its time limit."""
+    for number in jobs:
+        yield number, Response.failure("no result", reason=Reason.UNDECIDED)
+
+
+@contextlib.contextmanager
+def backstop():
+    def late(*_):
+        raise TimeoutError("a command line hangs")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(BACKSTOP_S)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def said(arguments):
+    """Run a command line; return its exit code, and the lines on stdout and stderr."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        backstop(),
+        warnings.catch_warnings(),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+    ):
+        warnings.simplefilter("error")
+        code = run(list(arguments))
+    return code, out.getvalue(), err.getvalue()
+
+
+def check(arguments):
+    code, out, err = said(arguments)
+    assert code in (0, 1, 2), err
+    assert "Traceback" not in err
+    if code == 2:
+        assert out == ""
+        assert err.count("\n") == 1
+        assert len(err) < 1200
+        assert err[:-1].isprintable()
+    return err
+
+
+def beginnings(name):
+    quick = ("--quick",) if "--quick" in OPTIONS[name] else ()
+    return BEGINNINGS.get(name, [("--out", "FOLDER", *quick)])
+
+
+def with_words(name, beginning, words):
+    """Return a command line of a beginning, but for the options that the words name, and these."""
+    named = {word.partition("=")[0] for word in words}
+    line, kept = [name], True
+    for word in beginning:
+        kept = word not in named if word.startswith("--") else kept
+        line += [word] * kept
+    return [*line, *words]
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_a_command_line_in_order_gets_as_far_as_its_folder(name, place):
+    """Else what follows would test nothing but what stands before it."""
+    if name not in BEGINNINGS:
+        (beginning,) = beginnings(name)
+        assert FULL in check([name, *beginning])
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_what_no_option_takes_is_one_line(name, place):
+    (beginning, *_) = beginnings(name)
+    for option in OPTIONS[name]:
+        for text in ("9" * 400, "\0"):
+            assert check(with_words(name, beginning, [option, text])), option
+
+
+TEXT = st.sampled_from(ODD) | st.text(max_size=20) | st.floats().map(repr) | st.integers().map(str)
+
+
+@st.composite
+def command_lines(draw):
+    """Draw a command, what it needs, and options of its own or others with any text."""
+    name = draw(st.sampled_from(sorted(OPTIONS)))
+    begin, words = draw(st.sampled_from(beginnings(name))), []
+    for _ in range(draw(st.integers(1, 2))):
+        option = draw(st.sampled_from(OPTIONS[name]))
+        texts = draw(st.lists(TEXT, min_size=0, max_size=2))
+        words += [f"{option}={texts[0]}"] if draw(st.booleans()) and texts else [option, *texts]
+    return with_words(name, begin, words)
+
+
+@settings(
+    max_examples=200,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(arguments=command_lines())
+def test_any_text_for_any_option(arguments, place):
+    check(arguments)

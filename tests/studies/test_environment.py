@@ -1,0 +1,39 @@
+"""What the environment says: terminals of any width, and settings meant for other programs."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import COMMANDS, run
+from studies.kit import app
+
+ROOT = Path(__file__).parents[2]
+CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
+
+
+@pytest.mark.parametrize("columns", ["0", "1", "-1", "1000000000", "wide", ""])
+def test_every_command_has_help_in_a_terminal_of_any_width(columns, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", columns)
+    app.settle_environment()
+    for study in COMMANDS:
+        assert run([study.name, "--help"]) == 0
+        output = capsys.readouterr()
+        assert output.err == ""
+        lines = output.out.splitlines()
+        assert lines[0].startswith(f"Usage: rocking {study.name}")
+        assert max(map(len, lines)) <= app.WIDEST
+
+
+def test_settings_of_other_programs_change_nothing(tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "nonsense")
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "0")
+    plot = tmp_path / "plot.png"
+    arguments = ["compare", *CASE, "--sources", "exact", "--json", "--plot", str(plot)]
+    done = subprocess.run(
+        [sys.executable, "-m", "studies", *arguments], cwd=ROOT, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") == 1
+    assert plot.read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,144 @@
+"""Estimates: an answer beside the one at half the step, and what the difference bounds."""
+
+import math
+
+import pandas as pd
+import pytest
+
+from analytic import RigidBlock, SinePulse
+from engines import ENGINES
+from studies import respond
+from studies.__main__ import run
+from studies.estimate import study
+from studies.estimate.calibration import beside_errors, factors
+from studies.kit.jobs import Job
+from studies.measures.halving import FACTORS, Trust, estimate, halved, published_trust, step_of
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+CORE = [name for name, engine in ENGINES.items() if engine.core]
+USES = [f"{name}:{use.name}" for name in CORE for use in ENGINES[name].presets]
+
+
+def job(source, **options):
+    return Job(labels={}, block=BLOCK, motion=PULSE, source=source, options=options)
+
+
+@pytest.mark.parametrize("source", USES)
+def test_half_the_step_takes_about_twice_the_steps(source):
+    asked = job(source) if source.endswith("naive") else job(source, step=0.02)
+    finer = halved(asked)
+    assert finer.options["step"] == 0.5 * step_of(asked)
+    whole, half = (respond(j.source, BLOCK, PULSE, **j.options).steps for j in (asked, finer))
+    # landing steps spend some on impacts whatever the step is
+    assert 1.4 < half / whole < 2.2
+
+
+def test_the_step_of_a_job_is_that_of_its_preset_or_its_own():
+    naive = ENGINES["mujoco"].preset("naive")
+    assert step_of(job("mujoco:naive")) == pytest.approx(naive.step_s * BLOCK.p, rel=1e-15)
+    assert step_of(job("mujoco", accuracy="tight")) == 1.0 / 800
+    assert step_of(job("mujoco", accuracy="tight", step=0.01)) == 0.01
+    assert "accuracy" not in halved(job("mujoco", accuracy="tight")).options
+
+
+@pytest.mark.parametrize("source", ["exact", "rk4", "dop853"])
+def test_what_has_no_steps_of_an_engine_is_not_halved(source):
+    assert halved(job(source)) is None
+
+
+@pytest.mark.parametrize(
+    ("whole", "half", "found"),
+    [
+        (("rocked", 0.303), ("rocked", 0.3), 0.01),
+        (("rocked", 0.297), ("rocked", 0.3), 0.01),
+        (("rocked", 0.3), ("overturned", math.inf), math.inf),
+        (("overturned", math.inf), ("overturned", math.inf), 0.0),
+        (("at rest", 0.0), ("at rest", 0.0), 0.0),
+    ],
+)
+def test_an_estimate_is_the_difference_of_two_runs(whole, half, found):
+    rows = [dict(zip(("outcome", "peak_ratio"), pair, strict=True)) for pair in (whole, half)]
+    assert estimate(*rows) == pytest.approx(found)
+
+
+def test_a_failed_run_has_no_estimate():
+    failed, rocked = {"outcome": "failed", "peak_ratio": math.nan}, {"outcome": "rocked"}
+    assert math.isnan(estimate(failed, rocked)) and math.isnan(estimate(rocked, failed))
+
+
+def random_rows(errors, differences):
+    """Return rows of one case each whose errors and estimates are given."""
+    exact = respond("exact", BLOCK, PULSE).peak_ratio
+    place = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
+    rows = []
+    for case, (error, difference) in enumerate(zip(errors, differences, strict=True)):
+        peak = exact * (1.0 + error)
+        for half, ratio in enumerate((peak, peak / (1.0 + difference))):
+            answer = {"outcome": "rocked", "peak_ratio": ratio, "half": half}
+            rows.append({"case": case, "source": "mujoco:naive", **place, **answer})
+    return pd.DataFrame(rows).assign(omega_over_p=PULSE.omega / BLOCK.p)
+
+
+def test_factors_are_the_quantiles_of_error_over_estimate():
+    # errors of 1 to 20 estimates of a thousandth
+    lines = beside_errors(random_rows([1e-3 * n for n in range(1, 21)], [1e-3] * 20))
+    assert lines["over"].to_numpy() == pytest.approx(range(1, 21), rel=1e-6)
+    line = factors(lines).iloc[0]
+    assert line[["factor_50", "factor_95", "factor_all"]].to_list() == pytest.approx([10, 19, 20])
+    assert line[["within_3", "within_10"]].to_list() == pytest.approx([0.15, 0.5], abs=0.051)
+
+
+def test_an_error_that_is_none_needs_no_estimate():
+    assert beside_errors(random_rows([1e-11], [0.0]))["over"].to_list() == [0.0]
+    assert beside_errors(random_rows([1e-3], [0.0]))["over"].to_list() == [math.inf]
+
+
+def test_published_factors_say_whose_estimates_are_trusted():
+    table = pd.read_csv(FACTORS).set_index("source")
+    assert set(table.index) >= set(CORE)
+    for source in table.index:
+        trust = published_trust(source)
+        assert trust.factor == table.loc[source, "factor_95"]
+        assert trust.holds == (trust.warning() == "")
+    # a preset by its name is the plain engine
+    assert published_trust("mujoco:landing") == published_trust("mujoco")
+    assert published_trust("moreau") is None
+    assert "20 times it bounds 95 % of 7 random cases" in Trust(20.0, 7).warning()
+
+
+def test_published_factors_follow_from_the_published_rows():
+    kept = pd.read_csv(FACTORS)
+    lines = pd.read_csv(FACTORS.parent / "estimates.csv", keep_default_na=False, na_values=["nan"])
+    pd.testing.assert_frame_equal(factors(lines), kept, check_dtype=False, rtol=1e-12)
+
+
+def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
+    few = ["estimate", "--seed", "3", "--sources", "mujoco:naive", "--jobs", "1"]
+    assert run([*few, "--cases", "4", "--out", str(tmp_path)]) == 0
+    assert "An estimate is" in capsys.readouterr().out
+    rows = pd.read_csv(tmp_path / "estimate.csv")
+    assert list(rows["half"]) == [0, 1] * 4
+    assert study.headline(tmp_path).startswith("The difference from half the step")
+    assert "survivors" in study.paragraph(tmp_path)
+    assert (tmp_path / "estimate.png").stat().st_size > 20_000
+
+
+def test_a_comparison_carries_estimates(capsys):
+    case = ["compare", "--width", "0.5", "--height", "1.5", "--amplitude", "0.4"]
+    asked = [*case, "--omega", "6.2832", "--step", "0.02", "--jobs", "1", "--estimate"]
+    assert run([*asked, "--sources", "exact", "mujoco"]) == 0
+    table = capsys.readouterr().out
+    assert "estimate bound 95 %" in table
+    whole, half = (
+        respond("mujoco", BLOCK, PULSE, step=step, duration=PULSE.duration + 8.0 / BLOCK.p)
+        for step in (0.02, 0.01)
+    )
+    difference = abs(whole.peak_ratio / half.peak_ratio - 1.0)
+    assert f"{difference:.1e}" in table
+    assert f"{difference * published_trust('mujoco').factor:.1e}" in table
+
+
+def test_sources_without_steps_to_halve_are_refused(tmp_path, capsys):
+    assert run(["estimate", "--sources", "exact", "--out", str(tmp_path / "a")]) == 2
+    assert "--sources is 'exact'; it must be an engine with steps" in capsys.readouterr().err

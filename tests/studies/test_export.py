@@ -1,0 +1,131 @@
+"""Exported scenes: they run without this project, and find the peak that it finds."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from analytic import RigidBlock, SinePulse
+from analytic.record import Record
+from engines import ENGINES, Scene, installed_engines, run
+from engines.declaration import Stepping
+from studies.__main__ import run as rocking
+from studies.export.writing import Exported, files, script_of
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+RECORD = Record(samples=(0.0, 3.0, 4.5, -2.0, -5.0, 1.0, 0.0), dt=0.15)
+WINDOW = 1.8
+
+USES = [
+    (name, use.name)
+    for name in installed_engines()
+    if ENGINES[name].script is not None
+    for use in ENGINES[name].presets
+    if use.stepping is Stepping.FIXED
+]
+ALONE = (
+    "import runpy, sys; sys.modules.update(analytic=None, engines=None, studies=None);"
+    "runpy.run_path('block.py')"
+)
+"""A script is run where this project cannot be imported."""
+
+
+def scene(motion, preset, **options):
+    return Scene(block=BLOCK, motion=motion, preset=preset, duration=WINDOW, **options)
+
+
+def written(folder, engine, what, expected):
+    exported = Exported(
+        engine=ENGINES[engine],
+        preset=ENGINES[engine].preset(what.preset),
+        scene=what,
+        watched_s=WINDOW,
+        expected=expected,
+        exact=math.inf,
+    )
+    for name, text in files(exported).items():
+        (folder / name).write_text(text)
+
+
+def run_alone(folder):
+    command = [sys.executable, "-c", ALONE]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.parametrize("motion", [PULSE, RECORD], ids=["pulse", "record"])
+@pytest.mark.parametrize(("engine", "preset"), USES)
+def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, motion, tmp_path):
+    asked = scene(motion, preset, **({"step": 2e-3} if preset != "naive" else {}))
+    row = run(engine, asked)
+    assert row.peak_ratio > 0.05
+    written(tmp_path, engine, asked, row.peak_ratio)
+    done = run_alone(tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"largest rotation {row.peak_ratio:.12g}; " in done.stdout
+
+
+@pytest.mark.parametrize(("engine", "preset"), USES[:1])
+def test_a_script_says_when_its_peak_is_another(engine, preset, tmp_path):
+    asked = scene(PULSE, preset)
+    written(tmp_path, engine, asked, run(engine, asked).peak_ratio * (1.0 + 1e-8))
+    done = run_alone(tmp_path)
+    assert done.returncode == 1
+    assert "expected" in done.stdout
+
+
+@pytest.mark.parametrize(("engine", "preset"), USES)
+def test_settings_are_in_the_library_s_words(engine, preset):
+    """What a reader would copy stands in the files, letter by letter."""
+    asked = scene(PULSE, preset)
+    used = ENGINES[engine].preset(preset)
+    script = script_of(ENGINES[engine], used, asked)
+    whole = "\n".join((*script.build, *script.files.values()))
+    whole = whole.replace("DT", repr(used.ordinary_step_s(asked)))
+    assert script.settings
+    assert [line for line in script.settings if line not in whole] == []
+    assert any(repr(asked.friction or float(used.settings.friction)) in s for s in script.settings)
+
+
+CALL = ["export", "--width", "0.5", "--height", "1.5"]
+SHAKEN = ["--amplitude", "0.4", "--omega", "6.2832"]
+
+
+def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsys):
+    engine, preset = USES[0]
+    out = ["--engine", engine, "--preset", preset, "--out", str(tmp_path / "scene")]
+    assert rocking([*CALL, *SHAKEN, *out]) == 0
+    text = capsys.readouterr().out
+    assert "largest rotation to expect: 0.3" in text
+    assert run_alone(tmp_path / "scene").returncode == 0
+    assert rocking([*CALL, *SHAKEN, *out]) == 2
+    assert "it must be a new or an empty folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--engine", "newton", *SHAKEN], "--engine is 'newton'; it must be one that can be"),
+        (
+            ["--engine", "mujoco", "--preset", "landing", *SHAKEN],
+            "--preset is 'landing'; it must have equal steps: naive, fixed",
+        ),
+        (["--engine", "mujoco", *SHAKEN, "--pga", "1"], "--pga is 1.0; it may be given only with"),
+        (["--engine", "mujoco"], "--amplitude and --omega missing"),
+        (["--engine", "mujoco", *SHAKEN, "--tilt", "0.5"], "--tilt is 0.5; it may be given only"),
+        (["--engine", "mujoco", *SHAKEN, "--record", "x"], "it may be given only without --record"),
+    ],
+)
+def test_refusals(arguments, words, tmp_path, capsys):
+    assert rocking([*CALL, "--out", str(tmp_path / "scene"), *arguments]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert len(told.strip().splitlines()) == 1
+
+
+def test_an_engine_without_a_script_says_so():
+    mute = replace(ENGINES["mujoco"], script=None)
+    with pytest.raises(ValueError, match="MuJoCo writes no scripts"):
+        script_of(mute, mute.preset("fixed"), scene(PULSE, "fixed"))
