@@ -1,5 +1,6 @@
 """A sphere dropped on a base: what comes out of a coefficient of restitution."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +9,8 @@ import pandas as pd
 from engines import ENGINES, core_engines
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several
-from studies.kit.runner import own_folder
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, Tables, carry_out
 from studies.restitution import STUDY
 from studies.restitution.drops import BASE, PHASES, kept, measured
 from studies.restitution.report import first_claim, kept_text, told
@@ -35,14 +37,14 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = core_e
     if mute:
         able = ", ".join(name for name, engine in ENGINES.items() if engine.bouncing)
         raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
-    settings = {"engines": engines}
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
-        rows = measured(engines)
-        tables = {"restitution": rows, "kept": kept(rows)}
-        for name, table in tables.items():
-            provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-        print(report(out))
-    return 0
+    plan = Plan(settings={"engines": engines}, tabulate=lambda _: tables(engines))
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
+
+
+def tables(engines: Sequence[str]) -> Tables:
+    """Drop the spheres; return a row for each, and a line for each way to ask for a coefficient."""
+    rows = measured(engines)
+    return {STUDY.name: rows, "kept": kept(rows)}
 
 
 def report(folder: Path) -> str:

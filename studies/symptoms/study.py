@@ -8,7 +8,7 @@ import pandas as pd
 from engines import ENGINES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
-from studies.kit.runner import own_folder
+from studies.kit.plan import Plan, fill
 from studies.symptoms import STUDY
 from studies.symptoms.lines import LADDER, PUBLISHED, VARIANTS, lines_of
 from studies.symptoms.words import first_claim, page, told
@@ -50,16 +50,15 @@ def command(
     text = f"{page(lines)}\n\nFrom {VARIANTS} and {LADDER}."
     if out is not None:
         settings = {"engines": list(lines["engine"].unique())}
-        with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
-            _write(out, lines, text)
+        fill(STUDY, Plan(settings=settings, tabulate=lambda _: {STUDY.name: lines}), out)
+        _show(out, text)
     print(text)
     return 0
 
 
-def _write(folder: Path, lines: pd.DataFrame, text: str) -> None:
+def _show(folder: Path, text: str) -> None:
     from studies.drawing.figures import save_all
 
-    provenance.write_text(folder / "symptoms.csv", lines.to_csv(index=False, na_rep="nan"))
     provenance.write_text(folder / "findings.txt", text + "\n")
     save_all(pictures(folder), folder)
 
