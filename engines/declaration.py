@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from analytic.block import RigidBlock
+from engines.drop import Bouncing
 from engines.factors import Factor
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
@@ -148,6 +149,8 @@ class Engine:
     spring : callable or None
         ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
         m/time^2 with critical damping, both arguments in units of 1/p.
+    bouncing : tuple of Bouncing
+        Ways to ask it for a coefficient of restitution; none where it was not tried.
     factors : tuple of Factor
         What its contact can be set to.
     remedy : mapping
@@ -171,6 +174,7 @@ class Engine:
     shortest_step: float = 1e-12
     script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
+    bouncing: tuple[Bouncing, ...] = ()
     factors: tuple[Factor, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)
     own_step: str = ""

@@ -1,12 +1,8 @@
 """The questions asked of the reference and the engines.
 
-Every command is the module of its name; what it needs beside it is called after it (`contact`,
-`contact_report`, `contact_figure`). A case flows one way: `cases`, `selection`, `extremes`,
-`motions` and `accelerograms` pose it, `sources` answers (`peers`, `heyoka_peer`), `jobs`,
-`executors`, `cluster` (`dask_client`, `alongside`, `worker`), `processes` and `runner` run it,
-`journal` and `provenance` keep it, `differences`, `energy` and `verdicts` judge it, `figures`,
-`diagrams` and `film` draw it, `chapters`, `report` and `page` show it. `arguments` and `posing` are
-the command line's.
+One folder a study, listed in `catalogue`. A case flows one way: `cases` poses it, `sources`
+answers, `kit` makes of both what a study leaves in a folder (`kit.plan` says how), `measures` says
+what an answer is worth, `drawing` draws it, `page` shows all.
 """
 
 from __future__ import annotations

@@ -17,8 +17,10 @@ from studies import (
     literature,
     overturning,
     precision,
+    restitution,
     stability,
     sweep,
+    symptoms,
     throughput,
     validate,
     validity,
@@ -41,6 +43,8 @@ STUDIES: tuple[Study, ...] = (
     precision.STUDY,
     precision.COST,
     contact.STUDY,
+    symptoms.STUDY,
+    restitution.STUDY,
     stability.STUDY,
     overturning.STUDY,
     validity.STUDY,
@@ -68,14 +72,16 @@ if TYPE_CHECKING:
     from studies.overturning import study as _overturning
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
+    from studies.restitution import study as _restitution
     from studies.stability import study as _stability
     from studies.sweep import study as _sweep
+    from studies.symptoms import study as _symptoms
     from studies.validate import study as _validate
     from studies.validity import study as _validity
 
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _estimate),
+        *(_advise, _estimate, _symptoms, _restitution),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

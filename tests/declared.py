@@ -1,4 +1,4 @@
-"""What an engine declares to get wrong: tests of it must fail, or the declaration is out of date."""
+"""What an engine declares to get wrong: tests of it must fail, or the declaration is old."""
 
 from typing import Any
 

@@ -1,11 +1,15 @@
 """What an import costs: nothing is compiled, and no engine, table or plot is loaded."""
 
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 HEAVY = ("scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("analytic", "engines", "studies")
 SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
 
 
@@ -34,3 +38,41 @@ def test_imports_are_light(module):
 
 def test_nothing_is_loaded_before_signals_are_dealt_with():
     assert not loaded_by("import studies.__main__") & set(SOON)
+
+
+FORBIDDEN = {
+    "studies asks, engines simulates, analytic knows": ("analytic/block.py", "import engines"),
+    "an adapter never sees the answer": ("engines/drive.py", "from analytic import simulate"),
+    "the mathematics knows no engine, table or plot": ("analytic/maps.py", "import pandas"),
+    "kernels know none of the friendly modules above them": (
+        "analytic/kernels/taylor.py",
+        "import analytic.block",
+    ),
+    "the floors of studies, and studies that do not know one another": (
+        "studies/contact/report.py",
+        "import studies.validity.report",
+    ),
+    "no package of studies imports in a circle": (
+        "studies/measures/words.py",
+        "import studies.sweep.claims",
+    ),
+}
+"""Contract -> a module, and an import that the contract forbids there."""
+
+
+def test_every_contract_is_broken_by_what_it_forbids(tmp_path):
+    for name in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__", "published")
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
+    settings = shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    assert Path(settings).read_text().count("[[tool.importlinter.contracts]]") == len(FORBIDDEN)
+    for place, statement in FORBIDDEN.values():
+        file = tmp_path / place
+        file.write_text(f"{file.read_text()}\n{statement}\n")
+    linter = "from importlinter.cli import lint_imports_command as lint; lint()"
+    done = subprocess.run(
+        [sys.executable, "-c", linter, "--no-cache"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    for contract in FORBIDDEN:
+        assert f"{contract} BROKEN" in " ".join(done.stdout.split())

@@ -16,6 +16,7 @@ from engines.adapters.bullet_calls import (
     block_shape,
     engine_call,
 )
+from engines.adapters.bullet_drop import BOUNCING
 from engines.adapters.bullet_script import script
 from engines.adapters.bullet_settings import (
     FACTORS,
@@ -58,8 +59,8 @@ class BulletWorld:
         shape = self._do(block_shape(scene, settings))
         self._body = int(self._do(block_body(scene, settings, shape)))
         self._fault = self._set_bodies(scene)
-        if not scene.beginning.at_rest:
-            self._put(scene)
+        self._take_inertia(scene)
+        self._put(scene)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
@@ -95,13 +96,19 @@ class BulletWorld:
         )
         self._p.disconnect(self._client)
 
-    def _put(self, scene: Scene) -> None:
-        """Let the block set out from where the scene begins."""
-        p, client, start = self._p, self._client, scene.beginning
-        # a body takes its inertia with its first step, which therefore is one far from the base
+    def _take_inertia(self, scene: Scene) -> None:
+        """Take a step far from the base: only after its first has a body the inertia that was set.
+
+        With the shape's own a block that is lifted or released at once would turn too fast.
+        """
+        p, client = self._p, self._client
         aloft, upright = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
         p.resetBasePositionAndOrientation(self._body, aloft, upright, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+
+    def _put(self, scene: Scene) -> None:
+        """Let the block set out from where the scene begins."""
+        p, client, start = self._p, self._client, scene.beginning
         turned = (0.0, math.sin(0.5 * start.theta), 0.0, math.cos(0.5 * start.theta))
         place, velocity = (start.x, 0.0, start.z), (start.velocity_x, 0.0, start.velocity_z)
         p.resetBasePositionAndOrientation(self._body, place, turned, physicsClientId=client)
@@ -204,6 +211,7 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     spring=spring,
+    bouncing=BOUNCING,
     factors=FACTORS,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",

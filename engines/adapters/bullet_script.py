@@ -21,8 +21,6 @@ from engines.script import Script
 FLOOR, SHAPE, BASE, BLOCK = map(Constant, ("floor", "shape", "base", "block"))
 """Variables of the script."""
 
-WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
-
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of PyBullet; see `engines.script`."""
@@ -55,7 +53,8 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
 def written(call: Call) -> str:
     """Return a call as Python."""
     arguments = ", ".join(f"{name}={_value(value)}" for name, value in call.arguments.items())
-    return fill(f"p.{call.name}({arguments})", 99, subsequent_indent="    ", **WHOLE_WORDS)
+    text = f"p.{call.name}({arguments})"
+    return fill(text, 99, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False)
 
 
 def _value(value: Any) -> str:

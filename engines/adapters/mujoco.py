@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.adapters.mujoco_drop import BOUNCING
 from engines.adapters.mujoco_model import OPTIONS, direct_reference, model_xml
 from engines.adapters.mujoco_script import script
 from engines.adapters.mujoco_settings import (
@@ -274,6 +275,7 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     spring=spring,
+    bouncing=BOUNCING,
     factors=FACTORS,
     remedy={"impratio": 100.0},
     own_step="mujoco:mj_step",

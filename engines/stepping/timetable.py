@@ -11,6 +11,12 @@ from engines.scene import Scene
 ROUNDING = 1e-9
 """Times closer than this part of the ordinary step are the same."""
 
+PULLS = np.array([1.0, -1.0])
+"""Signs of the acceleration that lift a block, about its left corner and its right one."""
+
+MOST_AT_ONCE = 256
+"""Accelerations that cost not much more together than one does."""
+
 
 class Load(NamedTuple):
     """A time [s] during which the base accelerates enough to lift a block at rest.
@@ -106,17 +112,17 @@ def _even(left: float, longest: float) -> float:
 def loads_of(motion: Motion, onset: float) -> list[Load]:
     """Return the times during which abs(u_g'') exceeds `onset` [m/s2]."""
     grid = np.union1d([0.0, motion.duration, *_turns(motion)], motion.breakpoints)
-    acceleration = motion.acceleration(grid)
+    above = PULLS[:, None] * motion.acceleration(grid) > onset
+    pulled, change = np.nonzero(above[:, 1:] != above[:, :-1])
+    crossings = _crossings(motion, PULLS[pulled], onset, grid[change], grid[change + 1])
     loads: list[Load] = []
-    for side in (-1.0, 1.0):
-        above = -side * acceleration > onset
-        changes = np.nonzero(above[1:] != above[:-1])[0]
-        corners = _crossings(motion, -side, onset, grid[changes], grid[changes + 1])
-        if above[0]:
+    for number, pull in enumerate(PULLS.tolist()):
+        corners = crossings[pulled == number].tolist()
+        if above[number, 0]:
             corners.insert(0, 0.0)
-        if above[-1]:
+        if above[number, -1]:
             corners.append(motion.duration)
-        loads += [Load(*pair, side) for pair in zip(corners[::2], corners[1::2], strict=True)]
+        loads += [Load(*pair, -pull) for pair in zip(corners[::2], corners[1::2], strict=True)]
     return sorted(loads)
 
 
@@ -135,15 +141,19 @@ def _turns(motion: Motion) -> list[float]:
 
 
 def _crossings(
-    motion: Motion, sign: float, onset: float, low: FloatArray, high: FloatArray
-) -> list[float]:
-    """Bisect for the times [s] at which sign u_g'' passes `onset`, each between two times."""
-    above = sign * motion.acceleration(low) > onset
-    while True:
-        middle = 0.5 * (low + high)
-        between = (low < middle) & (middle < high)
-        if not between.any():
-            return [float(time) for time in high]
-        early = (sign * motion.acceleration(middle) > onset) == above
-        low = np.where(between & early, middle, low)
-        high = np.where(between & ~early, middle, high)
+    motion: Motion, pull: FloatArray, onset: float, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Return the times [s] at which pull u_g'' passes `onset`, each between two times.
+
+    They are bracketed to the last digit, all at once and in as many parts as cost little more
+    than two do.
+    """
+    above = pull * motion.acceleration(low) > onset
+    parts = np.linspace(0.0, 1.0, max(MOST_AT_ONCE // max(len(low), 1), 2) + 1)[1:-1]
+    while (np.nextafter(low, high) < high).any():
+        inside = low + parts[:, None] * (high - low)
+        early = (pull * motion.acceleration(inside) > onset) == above
+        edges = np.vstack((low, inside, high))
+        part, case = np.count_nonzero(early, axis=0), np.arange(len(low))
+        low, high = edges[part, case], edges[part + 1, case]
+    return high

@@ -11,6 +11,12 @@ For each engine and preset the cheapest step with which every published case kee
 that nothing does. It runs nothing: it reads the published tables, and names them.""",
     table="advice.csv",
     products=("advice.csv", "advice.png", "findings.txt"),
+    captions={
+        "advice": (
+            "Time of a case over the largest error that is to be kept, a line for each engine and "
+            "preset that keeps it on every published case; beside the points their steps, p dt."
+        ),
+    },
     chapters=(
         Chapter(
             folder="advice",

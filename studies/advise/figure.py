@@ -47,13 +47,15 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
         return
     style = engine_style(engine, preset)
     errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
-    look = {
-        "color": style.colour,
-        "linestyle": PRESET_LINES.get(preset, "-"),
-        "marker": style.marker,
-        "fillstyle": style.fill,
-    }
-    axes.plot(errors, times, markersize=6, **look)
+    axes.plot(
+        errors,
+        times,
+        color=style.colour,
+        linestyle=PRESET_LINES.get(preset, "-"),
+        marker=style.marker,
+        fillstyle=style.fill,
+        markersize=6,
+    )
     axes.annotate(f"  {engine} {preset}", (errors[-1], times[-1]), color=style.colour, va="center")
     for error, time, value in zip(errors, times, kept["value"], strict=True):
         axes.annotate(

@@ -24,8 +24,9 @@ from studies.kit.arguments import (
     several_or_none,
 )
 from studies.kit.journal import PROVENANCE
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
-from studies.kit.runner import own_folder
 from studies.measures.words import listed
 
 if TYPE_CHECKING:
@@ -84,10 +85,17 @@ def command(
         print(_text(lines, block, published))
         return 0
     settings = {"error": error, "engines": asked, "width": width, "height": height}
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
-        _write(out, lines, _text(lines, block, published))
-    print((out / "findings.txt").read_text(encoding="utf-8"), end="")
-    return 0
+    plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
+
+    def report(folder: Path) -> str:
+        from studies.drawing.figures import save_all
+
+        text = _text(lines, block, published)
+        provenance.write_text(folder / "findings.txt", text + "\n")
+        save_all(pictures(folder), folder)
+        return text
+
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
 
 def _text(lines: pd.DataFrame, block: RigidBlock, published: Path) -> str:
@@ -107,14 +115,6 @@ def _versions(published: Path) -> str:
     record = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     made = [f"{name} {version}" for name, version in record.get("engines", {}).items()]
     return listed(made) if made else "unknown versions"
-
-
-def _write(folder: Path, lines: pd.DataFrame, text: str) -> None:
-    from studies.drawing.figures import save_all
-
-    provenance.write_text(folder / "advice.csv", lines.to_csv(index=False, na_rep="nan"))
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
 
 
 def _read(folder: Path) -> pd.DataFrame:

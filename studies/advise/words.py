@@ -2,6 +2,7 @@
 
 import math
 from textwrap import indent
+from typing import Any
 
 import pandas as pd
 
@@ -80,7 +81,7 @@ def _time(value: float) -> str:
     return "-" if math.isnan(value) else duration(value)
 
 
-def elsewhere_text(line: "pd.Series[object]") -> str:
+def elsewhere_text(line: "pd.Series[Any]") -> str:
     """Return how many random and extreme cases are off with the preset as it is declared."""
     words = [
         f"{line[f'{kind}_off']} of {line[f'{kind}_cases']} {kind}"
@@ -113,11 +114,11 @@ def claim(lines: pd.DataFrame) -> str:
     for target, group in lines.groupby("target", sort=False):
         found = group[group["cheapest"]].sort_values("wall_s")
         if found.empty:
-            words.append(f"{part(float(target))} by nothing")
+            words.append(f"{part(float(str(target)))} by nothing")
             continue
         best = found.iloc[0]
         words.append(
-            f"{part(float(target))} by {best['engine']} {best['preset']} at "
+            f"{part(float(str(target)))} by {best['engine']} {best['preset']} at "
             f"{_at(float(best['value']))} ({duration(float(best['wall_s']))} a case)"
         )
     return f"Errors are kept cheapest: {'; '.join(words)}."
@@ -139,7 +140,7 @@ def told(lines: pd.DataFrame) -> str:
             for _, line in kept.iterrows()
         ]
         if len(lost):
-            errors = listed([part(float(target)) for target in lost["target"]])
+            errors = listed([part(float(str(target))) for target in lost["target"]])
             words.append(f"{errors}: {lost.iloc[0]['message']}")
         sentences.append(f"{engine} {preset}: {'; '.join(words)}.")
     return " ".join(sentences)

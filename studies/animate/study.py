@@ -17,7 +17,7 @@ from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, one_line, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.plan import DEFAULT_RUNNING, Running
+from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.sources.groups import core_sources

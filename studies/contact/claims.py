@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from engines.factors import BEST, DEFAULT
-from studies.contact.variants import BY_DEFAULT
+from studies.cases.variants import BY_DEFAULT
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part

@@ -9,8 +9,8 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.factors import BEST, DEFAULT
+from studies.cases.variants import AS_BEST, BY_DEFAULT, preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, overview
-from studies.contact.variants import AS_BEST, BY_DEFAULT, preset_values
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference

@@ -4,7 +4,6 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -14,14 +13,14 @@ from engines import ENGINES, core_engines
 from engines.declaration import Stepping
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.cases.variants import OWN_STEP, Variant, variants
 from studies.contact import STUDY
 from studies.contact.report import headline, paragraph, pictures, report
-from studies.contact.variants import OWN_STEP, Variant, variants
-from studies.kit.arguments import Count, Place, Positive, check_engines, several
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import Place, check_engines, several
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
 from studies.measures.energy import SAMPLES, energy_drift, growth
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
@@ -38,9 +37,7 @@ def command(
     out: Place,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Compare contact models: each setting alone, from the best setting and from the defaults.
 
@@ -56,43 +53,29 @@ def command(
         Names of engines, without a preset.
     quick
         Fewer cases and twice the step: less than a minute on 2 cores.
-    jobs
-        Processes; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which a case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_engines(engines)
-    executor = choose(jobs, time_limit, cluster)
-    rows = contact(out, engines, quick=quick, executor=executor)
-    print(report(out))
-    return exit_code([row for row in rows if not row["factor"]])
+    return carry_out(STUDY, plan(engines, quick), out, running, report)
 
 
-def contact(folder: Path, engines: Sequence[str], *, quick: bool, executor: Executor) -> list[Row]:
-    """Run what the folder does not hold yet, and write its table.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        folder,
-        "contact",
-        [
+def plan(engines: Sequence[str], quick: bool) -> Plan:
+    """Return the plan that puts every variant of some engines to the cases."""
+    return Plan(
+        jobs=[
             job_of(variant, kind, case, quick)
             for variant in all_variants(engines)
             for kind, case in cases(quick)
         ],
-        module=__name__,
-        executor=executor,
-        reduce=reduce,
         settings={"quick": quick},
         growing={"engine": engines},
-        products=STUDY.products,
+        reduce=reduce,
+        needed=unchanged,
     )
+
+
+def unchanged(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of presets as they are."""
+    return [row for row in rows if not row["factor"]]
 
 
 def all_variants(engines: Sequence[str]) -> list[Variant]:

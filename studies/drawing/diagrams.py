@@ -1,5 +1,6 @@
 """Diagrams of errors: against conditioning, their distribution, of free rocking, of omissions."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -31,18 +32,22 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(8.6, 5.2), layout="constrained")
     axes = drawing.subplots()
     kappa = conditioning_of(compared)
-    ends = np.array([1.0, max(float(kappa.max()), 10.0)])
+    ends = np.array([1.0, float(np.fmax(kappa.max(), 10.0))])
     bounds = []
     for source, rows in compared.groupby("source", sort=False):
         style = style_of(str(source))
         axes.plot(kappa[rows.index], rows["error"].abs().clip(lower=LOWEST), **style.points(4.0))
         bound = float((rows["error"].abs() / kappa[rows.index]).max())
+        if math.isnan(bound):
+            continue
         axes.plot(ends, bound * ends, color=style.colour, linewidth=1.0, zorder=-1)
         words = f"{source}: none beyond {scientific(bound)} κ"
         bounds.append(Name(words, float(ends[1]), bound * float(ends[1]), style.colour))
     axes.set(xscale="log", yscale="log", xlim=(0.8, 1.2 * ends[1]))
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
+    if not bounds:
+        axes.set_title("no case that both survive")
     axes.grid(alpha=0.25)
     beside(axes, bounds, 9.0)
     return drawing
@@ -81,7 +86,7 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
 
 
 def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame, title: str) -> Name:
-    onset, frequency, saddle = changed
+    onset, frequency, saddle = tuple(changed)
     colour = ONSETS[onset][0]
     axes.plot(
         rows["quantile"],

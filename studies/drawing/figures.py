@@ -142,12 +142,8 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
     handles = [_handle(source) for source in sources]
     if ground:
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
-    columns = math.ceil(len(handles) / _legend_rows(len(handles)))
+    columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
     drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
-
-
-def _legend_rows(entries: int) -> int:
-    return math.ceil(entries / 5)
 
 
 def _handle(source: str) -> Line2D:

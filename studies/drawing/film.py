@@ -17,13 +17,14 @@ from tqdm import tqdm
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
-from studies.drawing.styles import style_of
+from analytic.response import Outcome
+from studies.drawing.styles import line_of, style_of
 from studies.kit.arguments import BadInputError, check_writable
 from studies.kit.drafts import draft_place
 from studies.kit.journal import Row
 
-PRESET_LINES = {"naive": ":", "fixed": "--"}
-"""Lines of an engine's presets, which share its colour."""
+HELD_S = 1.5
+"""How long a film stays at its end [s], where its verdicts are read."""
 
 POSTS = 9
 """Posts that stand still behind the base, so that its motion is seen."""
@@ -44,7 +45,9 @@ def _ffmpeg() -> str:
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
-        raise BadInputError("--out is an .mp4; that needs the extra [video]") from error
+        raise BadInputError(
+            "--out is an .mp4; that needs the extra [video]: pip install imageio-ffmpeg"
+        ) from error
     return str(get_ffmpeg_exe())
 
 
@@ -87,6 +90,8 @@ def _roll(stage: "Stage", writer: AbstractMovieWriter, path: Path, dpi: int) -> 
         for frame in tqdm(range(len(stage.times)), disable=None, unit="frame"):
             stage.show(frame)
             writer.grab_frame()
+        for _ in range(round(HELD_S * writer.fps)):
+            writer.grab_frame()
 
 
 class Screen(Figure):
@@ -127,19 +132,33 @@ class Stage:
         self._blocks = [
             axes.add_patch(self._outline(row)) for axes, row in zip(panels, rows, strict=True)
         ]
+        self._exact = next((row["theta"] for row in rows if row["source"] == "exact"), None)
+        self._ghosts = [
+            axes.add_patch(Polygon(outline(block, 0.0), fill=False, edgecolor="#000000",
+                                   linestyle=(0, (3, 2)), linewidth=1.2, zorder=4))
+            for axes, row in zip(panels, rows, strict=True)
+            if self._exact is not None and row["source"] != "exact"
+        ]  # fmt: skip
+        self._told = [verdict(row, self._exact, block.alpha) for row in rows]
+        self._verdicts = [
+            axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top", fontsize=9,
+                      color=style_of(row["source"]).colour, fontweight="bold")
+            for axes, row in zip(panels, rows, strict=True)
+        ]  # fmt: skip
         self._clock = self._graph(lower.subplots(), motion)
 
     @property
     def moving(self) -> list[Artist]:
         """What differs from frame to frame, and the ground that hides the feet of the posts."""
-        return [*self._posts, *self._grounds, *self._blocks, self._clock]
+        blocks = [*self._blocks, *self._ghosts]
+        return [*self._posts, *self._grounds, *blocks, *self._verdicts, self._clock]
 
     def _panel(self, axes: Axes, row: Row) -> tuple[Any, Rectangle]:
         """Set up a panel; return its posts, and the ground that hides their feet."""
         reach = 1.15 * math.hypot(self.block.width, self.block.height)
         axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, 1.2 * reach), aspect="equal")
         axes.set_axis_off()
-        axes.set_title(f"{row['source']}\n{row['outcome']}", fontsize=9)
+        axes.set_title(row["source"], fontsize=9)
         ground = Rectangle(
             (-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach, color="#9a9a9a"
         )
@@ -166,7 +185,7 @@ class Stage:
             axes.plot(
                 self.times,
                 row["theta"] / self.block.alpha,
-                linestyle=style.line or PRESET_LINES.get(row["source"].partition(":")[2], "-"),
+                linestyle=line_of(row["source"]),
                 linewidth=style.width,
                 color=style.colour,
                 alpha=0.9,
@@ -190,7 +209,42 @@ class Stage:
             patch.set_xy(outline(self.block, float(row["theta"][frame])))
             places = self._post_places(float(self.shift[frame]))
             posts.set_segments([[(x, 0.0), (x, 1.2 * reach)] for x in places])
+        for ghost in self._ghosts:
+            ghost.set_xy(outline(self.block, float(self._exact[frame])))
+        for text, (since, words) in zip(self._verdicts, self._told, strict=True):
+            text.set_text(words if frame >= since else "")
         self._clock.set_xdata([self.times[frame]] * 2)
+
+
+def verdict(row: Row, exact: FloatArray | None, alpha: float) -> tuple[int, str]:
+    """Return from which frame on it is known what becomes of a block, and what is said then.
+
+    Of a block that overturns, when it passes θcr for the last time; of others, at their peak.
+
+    Parameters
+    ----------
+    row : Row
+        With its source, outcome and theta [rad].
+    exact : ndarray or None
+        The exact rotation [rad] at the same times.
+    alpha : float
+        [rad]
+    """
+    size = np.abs(row["theta"])
+    if row["outcome"] == Outcome.OVERTURNED.value:
+        within = np.flatnonzero(size < alpha)
+        since = int(within[-1]) + 1 if within.size else 0
+        return min(since, size.size - 1), "overturned"
+    peak = float(size.max())
+    if peak == 0.0:
+        return size.size - 1, "at rest"
+    words = f"peak {peak / alpha:.2f} θcr"
+    right = 0.0 if exact is None else float(np.abs(exact).max())
+    if row["source"] != "exact" and 0.0 < right < alpha:
+        off = peak / right - 1.0
+        near = "peak within 0.1 %"  # of what frames can tell
+        words = f"peak {off:+.1%}".replace("%", " %").replace("-", "−") if abs(off) > 1e-3 else near
+    return int(size.argmax()), words
 
 
 def outline(block: RigidBlock, theta: float) -> FloatArray:

@@ -28,6 +28,17 @@ quarter of an hour on one core, --quick half a minute.""",
             question="Are statistics predicted where single responses are not?",
             tables=("agreement.csv", "confusion.csv"),
             minutes=(0.5, 15.0),
+            weaker="Fewer motions and intensities, and one block.",
         ),
     ),
+    captions={
+        "ensemble": (
+            "Share of motions that overturn a block over their intensity, by each source, and "
+            "under it the capacity by each over the exact one with its interval."
+        ),
+        "singles": (
+            "Peak of each single response by a source over the exact one: on the diagonal they "
+            "agree."
+        ),
+    },
 )

@@ -74,6 +74,9 @@ def _one_by_one(group: pd.DataFrame, usable: pd.DataFrame) -> dict[str, object]:
 
 
 def _in_distribution(usable: pd.DataFrame) -> dict[str, object]:
+    if usable.empty:
+        unknown = dict.fromkeys(("ks", "ks_p", "mcnemar_p"), math.nan)
+        return {**unknown, "ks_tests": 0, "ks_rejected": 0}
     # an overturned block has the largest peak there is, and the test asks for no more
     peaks = usable[["peak_ratio", "exact_peak"]].replace(math.inf, 1e9)
     tests = [

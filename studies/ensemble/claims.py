@@ -1,5 +1,6 @@
 """Are statistics predicted where single responses are not? What the tests say, as they say it."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -88,8 +89,14 @@ def is_off(low: float, high: float) -> bool:
     return low > 1.0 or high < 1.0
 
 
+def interval(value: float, low: float, high: float) -> str:
+    """Return a fitted number with its bounds; it may be one that the outcomes do not tell."""
+    middle = "undetermined" if math.isnan(value) else f"{value:.3f}"
+    return f"{middle} [{low:.3f}, {high:.3f}]"
+
+
 def _interval(row: "pd.Series[Any]") -> str:
-    return f"{row['capacity_ratio']:.3f} [{row['ratio_low']:.3f}, {row['ratio_high']:.3f}]"
+    return interval(row["capacity_ratio"], row["ratio_low"], row["ratio_high"])
 
 
 def _distributions(rows: pd.DataFrame) -> str:

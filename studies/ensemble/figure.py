@@ -31,11 +31,11 @@ def draw_singles(rows: pd.DataFrame) -> Figure:
             kinds.setdefault(_kind(source), []).append(source)
     drawing = Figure(figsize=(3.9 * len(kinds) + 0.8, 3.4 * len(sizes)), layout="constrained")
     grid = drawing.subplots(len(sizes), len(kinds), sharex=True, sharey=True, squeeze=False)
-    for line, size in zip(grid, sizes, strict=True):
+    for place, (line, size) in enumerate(zip(grid, sizes, strict=True)):
         here = _of(rows, size)
         for axes, (kind, sources) in zip(line, kinds.items(), strict=True):
             _singles(axes, here, sources)
-            if line is grid[0]:
+            if place == 0:
                 axes.set_title(kind, fontsize=11)
                 looks = [style_of(source).colour for source in sources]
                 for number, (source, colour) in enumerate(zip(sources, looks, strict=True)):

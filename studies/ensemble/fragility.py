@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from scipy.special import log_ndtr, ndtr
+from scipy.special import log_ndtr, ndtr, ndtri
 from scipy.stats import binomtest
 
 from analytic.motion import FloatArray
@@ -27,18 +27,28 @@ CONFIDENCE = 0.95
 RESAMPLES = 200
 
 
+FAR = 10.0
+"""A median further than this many times beyond the intensities is not determined by them."""
+
+
 class Fit(NamedTuple):
     """A lognormal capacity: its median, and the standard deviation of its logarithm.
 
     beta is 0 where every intensity with an overturning lies above every one with a survival; the
-    median is then between the two, or 0 or inf if there is only one of them.
+    median is then between the two, or 0 or inf if there is only one of them. The median is nan
+    where the counts do not determine one: overturning does not rise with the intensity (beta is
+    then inf), rises so little that even odds lie FAR beyond the intensities, or there are no
+    counts. `level` is then the normal quantile of the probability at intensity 1.
     """
 
     median: float
     beta: float
+    level: float = math.nan
 
     def probability(self, intensity: FloatArray) -> FloatArray:
         """Return the probability of overturning at each intensity."""
+        if math.isnan(self.median):
+            return np.asarray(ndtr(self.level + np.log(intensity) / self.beta))
         if self.beta == 0.0 or not 0.0 < self.median < math.inf:
             return np.where(intensity > self.median, 1.0, 0.0)
         return np.asarray(ndtr(np.log(intensity / self.median) / self.beta))
@@ -47,26 +57,39 @@ class Fit(NamedTuple):
 def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArray) -> Fit:
     """Fit the capacity to the number overturned of so many cases at each intensity."""
     survived = cases - overturned
+    if not cases.any():
+        return Fit(math.nan, math.nan)
     if not overturned.any() or not survived.any():
         return Fit(0.0 if overturned.any() else math.inf, 0.0)
     strongest, weakest = intensity[survived > 0].max(), intensity[overturned > 0].min()
     if strongest <= weakest:
         return Fit(math.sqrt(strongest * weakest), 0.0)
     logs = np.log(intensity)
+    middle = float(np.average(logs, weights=cases))
+    if np.average(logs, weights=overturned) <= middle:
+        # the likelihood is concave, and falls with the slope from zero on
+        return Fit(math.nan, math.inf, float(ndtri(overturned.sum() / cases.sum())))
+    level, slope = _likeliest(logs - middle, overturned, survived)
+    beyond = -level / slope + middle
+    if logs.min() - math.log(FAR) <= beyond <= logs.max() + math.log(FAR):
+        return Fit(math.exp(beyond), 1.0 / slope)
+    return Fit(math.nan, 1.0 / slope, level - slope * middle)
 
-    def surprise(unknowns: FloatArray) -> tuple[float, FloatArray]:
-        """Return the negative logarithm of the likelihood, and its gradient."""
-        steepness = math.exp(unknowns[1])
-        z = (logs - unknowns[0]) * steepness
+
+def _likeliest(logs: FloatArray, overturned: FloatArray, survived: FloatArray) -> FloatArray:
+    """Return level and slope of the normal quantile in the logarithm of the intensity."""
+
+    def surprise(line: FloatArray) -> tuple[float, FloatArray]:
+        """Return the negative logarithm of the likelihood, which is convex, and its gradient."""
+        z = line[0] + line[1] * logs
         below, above = log_ndtr(z), log_ndtr(-z)
         bell = -0.5 * z * z - 0.5 * math.log(2.0 * math.pi)
         growth = overturned * np.exp(bell - below) - survived * np.exp(bell - above)
-        gradient = np.array([steepness * growth.sum(), -growth @ z])
+        gradient = -np.array([growth.sum(), growth @ logs])
         return -float(overturned @ below + survived @ above), gradient
 
-    start = [float(np.average(logs, weights=cases)), math.log(2.0)]
-    best = minimize(surprise, start, jac=True, method="BFGS")
-    return Fit(math.exp(best.x[0]), math.exp(-best.x[1]))
+    best: FloatArray = minimize(surprise, [0.0, 2.0], jac=True, method="BFGS").x
+    return best
 
 
 def resampled_fits(
@@ -94,11 +117,15 @@ def choose(motions: int, seed: int = 0, resamples: int = RESAMPLES) -> NDArray[n
 
 
 def bounds(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the pointwise confidence bounds of rows of values, those of infinite ones included."""
+    """Return the pointwise confidence bounds of rows of values, those of infinite ones included.
+
+    What is not determined may be anything from 0 to inf.
+    """
     tail = 0.5 * (1.0 - CONFIDENCE)
+    least, most = (np.where(np.isnan(values), end, values) for end in (0.0, math.inf))
     # a neighbour instead of an interpolation: between a number and inf there is none
-    low = np.quantile(values, tail, axis=0, method="lower")
-    high = np.quantile(values, 1.0 - tail, axis=0, method="higher")
+    low = np.quantile(least, tail, axis=0, method="lower")
+    high = np.quantile(most, 1.0 - tail, axis=0, method="higher")
     return low, high
 
 

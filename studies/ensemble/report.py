@@ -1,11 +1,12 @@
 """What an ensemble says: stripes, fragility curves, agreement one by one and in distribution."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.claims import claims
+from studies.ensemble.claims import claims, interval
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
 from studies.measures.differences import scientific
 
@@ -52,7 +53,7 @@ def curves(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
             "intensity": grid,
             "probability": known.fit.probability(grid),
             "low": low,
-            "high": high,
+            "high": high.clip(max=1.0),
         }
         parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
@@ -88,8 +89,11 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
 
 
 def _interval(row: "pd.Series[float]", name: str, prefix: str = "capacity") -> str:
-    low, high = row[f"{prefix}_low"], row[f"{prefix}_high"]
-    return f"{row[name]:.3f} [{low:.3f}, {high:.3f}]"
+    return interval(row[name], row[f"{prefix}_low"], row[f"{prefix}_high"])
+
+
+def _number(form: str) -> Callable[[float], str]:
+    return lambda value: "-" if math.isnan(value) else format(value, form)
 
 
 def _block_table(block: pd.DataFrame) -> str:
@@ -103,13 +107,13 @@ def _block_table(block: pd.DataFrame) -> str:
             "median": block["median_error"].map(scientific),
             "p90": block["p90_error"].map(scientific),
             "predicted": block["predicted"].map("{:.0%}".format),
-            "KS": block["ks"].map("{:.3f}".format),
-            "p": block["ks_p"].map("{:.2g}".format),
-            "McNemar p": block["mcnemar_p"].map("{:.2g}".format),
+            "KS": block["ks"].map(_number(".3f")),
+            "p": block["ks_p"].map(_number(".2g")),
+            "McNemar p": block["mcnemar_p"].map(_number(".2g")),
             "capacity/exact": [
                 _interval(row, "capacity_ratio", "ratio") for _, row in block.iterrows()
             ],
-            "β": block["beta"].map("{:.3f}".format),
+            "β": block["beta"].map(_number(".3f")),
         }
     )
     return shown.to_string(index=False)

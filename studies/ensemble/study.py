@@ -22,18 +22,17 @@ from studies.kit.arguments import (
     BadInputError,
     Count,
     Place,
-    Positive,
     check_sources,
     refuse_given,
     refuse_repeats,
     several_or_none,
 )
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
-from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
-from studies.kit.journal import Row
 from studies.kit.naming import sources_option
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 
 if TYPE_CHECKING:
@@ -142,9 +141,7 @@ def command(
     baseline: Baseline | None = None,
     sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
     """Shake blocks by many motions of rising intensity, through every named source.
@@ -172,12 +169,6 @@ def command(
         Who is asked beside the exact solution.
     quick
         One block and three intensities.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     yes
         Begin even what takes longer than a day.
     """
@@ -193,10 +184,10 @@ def command(
         many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
         asked = f"--motions is {count}"
         refuse_excess(asked, many * (MOTION_BYTES + len(everyone) * CASE_BYTES))
-        refuse_days(asked, expected_s(many, everyone, jobs=jobs, time_limit_s=time_limit), yes)
+        duration = expected_s(many, everyone, jobs=running.jobs, time_limit_s=running.time_limit)
+        refuse_days(asked, duration, yes)
         ground = drawn(name, count, seed or 1)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
-    executor = choose(jobs, time_limit, cluster)
     origin = [path.name for path in records] if records else [name, str(seed or 1)]
     settings: dict[str, object] = {
         "motions": origin,
@@ -205,42 +196,23 @@ def command(
     }
     if records:
         settings["baseline"] = baseline or "none"
-    rows = ensemble(cases, sources, out, executor=executor, settings=settings)
-    print(report(out))
-    return exit_code(rows)
+    return carry_out(STUDY, plan(cases, sources, settings), out, running, report)
 
 
-def ensemble(
+def plan(
     cases: Sequence[tuple[EnsembleCase, Record]],
     sources: Sequence[str],
-    folder: Path,
-    *,
-    executor: Executor,
     settings: Mapping[str, object],
-) -> list[Row]:
-    """Run the cases that the folder does not hold yet, and write its table.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
+) -> Plan:
+    """Return the plan that puts every case to some sources, and a stronger one to the exact."""
     asked = list(dict.fromkeys(["exact", *sources]))
     jobs = []
     for case, motion in cases:
         jobs += [_job(case, motion, source) for source in asked]
         stronger = replace(case, strength=STRONGER)
         jobs.append(_job(stronger, stronger.scaled(motion), "exact"))
-    return fill_folder(
-        folder,
-        "ensemble",
-        jobs,
-        module=__name__,
-        executor=executor,
-        settings=settings,
-        growing={"motion": range(max(case.motion for case, _ in cases) + 1), "source": asked},
-        products=STUDY.products,
-    )
+    drawn = range(max(case.motion for case, _ in cases) + 1)
+    return Plan(jobs=jobs, settings=settings, growing={"motion": drawn, "source": asked})
 
 
 def _job(case: EnsembleCase, motion: Record, source: str) -> Job:
@@ -262,7 +234,7 @@ def report(folder: Path) -> str:
     fitted = fragilities(rows)
     tables = (stripes(rows), curves(rows, fitted), agreement(rows, fitted), confusion(rows))
     for name, table in zip(TABLES, tables, strict=True):
-        provenance.write_text(folder / name, table.to_csv(index=False, na_rep="nan"))
+        write_table(folder / name, table)
     text = findings(rows, tables[2], tables[3])
     provenance.write_text(folder / "findings.txt", text + "\n")
     save_all(pictures(folder), folder)

@@ -12,6 +12,9 @@ be multiplied to bound it, and with which presets it does not see the error. Wri
 estimates.csv, factors.csv, estimate.png and findings.txt; resumable.""",
     table="estimate.csv",
     products=("estimate.csv", "estimates.csv", "factors.csv", "estimate.png", "findings.txt"),
+    captions={
+        "estimate": "Error of each case over the engine's own estimate of it, from half the step.",
+    },
     chapters=(
         Chapter(
             folder="estimate",

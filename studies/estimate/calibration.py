@@ -1,6 +1,8 @@
 """Estimates beside the true errors, and by how much they are to be multiplied."""
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import pandas as pd
 
@@ -126,7 +128,7 @@ def told(table: pd.DataFrame) -> str:
     return " ".join(_of_source(line) for line in table.to_dict("records"))
 
 
-def _of_source(line: dict[str, object]) -> str:
+def _of_source(line: Mapping[Any, Any]) -> str:
     source = str(line["source"])
     number = {name: float(str(value)) for name, value in line.items() if name != "source"}
     words = (

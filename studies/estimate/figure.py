@@ -36,7 +36,10 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
         axes.set_xlabel("estimate: difference to half the step  [–]")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("true error of the peak  [–]")
-    ten = [Name("error = 10 estimates", 1.0, 10.0, "#777777"), Name("= 1", 10.0, 5.0, "#777777")]
+    ten = [
+        Name("error = 10 estimates", 1.0, 10.0, "#777777"),
+        Name("error = estimate", 10.0, 5.0, "#777777"),
+    ]
     beside(panels[-1], ten, 8.0)
     return drawing
 
@@ -52,11 +55,12 @@ def _points(axes: Axes, lines: pd.DataFrame) -> None:
         )
         above = int((rows["over"] > 10.0).sum())
         axes.text(
-            0.03,
-            0.96 - 0.06 * place,
+            0.97,
+            0.1 - 0.06 * place,
             f"{source}: {above} of {len(rows)} above ten estimates",
             color=style.colour,
             fontsize=8,
             transform=axes.transAxes,
+            ha="right",
             va="top",
         )

@@ -15,7 +15,8 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
-from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
 

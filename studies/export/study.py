@@ -57,7 +57,7 @@ def command(
     motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
-    options = {} if step is None else {"step": step}
+    options: dict[str, Any] = {} if step is None else {"step": step}
     rows = run_jobs(
         [
             _job("exact", block, motion, window, {}),

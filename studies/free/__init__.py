@@ -16,6 +16,14 @@ findings.txt; resumable. Less than a minute.""",
             folder="free",
             question="Is free rocking as the closed forms say?",
             minutes=(0.1, 0.3),
+            weaker="Fewer blocks and tilts.",
         ),
     ),
+    captions={
+        "free": (
+            "Errors of the time between impacts, of the rotation after an impact and of the time "
+            "of twenty impacts, over the rotation from which a block falls, on a logarithmic "
+            "scale."
+        ),
+    },
 )

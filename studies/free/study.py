@@ -13,7 +13,8 @@ from studies.free.report import headline, paragraph, pictures, report
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
-from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
@@ -52,13 +53,17 @@ def command(
         Who is asked.
     """
     check_sources(sources)
-    plan = Plan(
+    return carry_out(STUDY, plan(sources, quick), out, running, report)
+
+
+def plan(sources: Sequence[str], quick: bool) -> Plan:
+    """Return the plan that releases blocks of some shapes and tilts, for each source."""
+    return Plan(
         jobs=free_jobs(sources, quick),
         settings={"quick": quick},
         growing={"source": sources},
         reduce=reduce,
     )
-    return carry_out(STUDY, plan, out, running, report)
 
 
 def free_jobs(sources: Sequence[str], quick: bool) -> list[Job]:

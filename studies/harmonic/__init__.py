@@ -18,6 +18,13 @@ at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt.
             folder="harmonic",
             question="Which steady states does a block settle on under sustained shaking?",
             minutes=(0.3, 1.5),
+            weaker="Fewer frequencies.",
         ),
     ),
+    captions={
+        "harmonic": (
+            "Largest steady rotation over the frequency of sustained shaking, swept up and down, "
+            "with the engines started on the exact orbit."
+        ),
+    },
 )

@@ -1,5 +1,6 @@
 """Steady states under sustained harmonic shaking: the exact branches, up and down, and engines."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Annotated, Literal
@@ -12,15 +13,14 @@ from analytic.response import Response
 from studies.harmonic import STUDY
 from studies.harmonic.report import headline, paragraph, pictures, report
 from studies.harmonic.sweeps import Shaking, State, sweep
-from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
-from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, fill
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, Tables, by_label, carry_out
 from studies.kit.posing import posed_block
-from studies.kit.runner import exit_code
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -137,14 +137,18 @@ def command(
         **{"over": over, "low": begin, "high": end, "fixed": fixed, "tilt": tilt},
         **{"points": count, "periods": cycles, "quick": quick},
     }
+
+    def tabulate(rows: Sequence[Row]) -> Tables:
+        return {STUDY.name: pd.DataFrame(map(row_of, branches())), **by_label("table")(rows)}
+
     plan = Plan(
-        jobs=jobs, settings=settings, growing={"source": sources}, reduce=reduce, tables="table"
+        jobs=jobs,
+        settings=settings,
+        growing={"source": sources},
+        reduce=reduce,
+        tabulate=tabulate,
     )
-    rows = fill(STUDY, plan, out, running)
-    text = pd.DataFrame(map(row_of, branches())).to_csv(index=False)
-    provenance.write_text(out / "harmonic.csv", text)
-    print(report(out))
-    return exit_code(rows)
+    return carry_out(STUDY, plan, out, running, report)
 
 
 def sweeps(

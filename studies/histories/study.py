@@ -7,23 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import pandas as pd
 
+from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.comparison import samples
 from studies.histories import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import (
-    Count,
-    Place,
-    Positive,
-    check_sources,
-    figures,
-    refuse_repeats,
-)
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
-from studies.kit.runner import exit_code, own_folder, run_jobs
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, Tables, fill
+from studies.kit.runner import exit_code
 from studies.measures.claims import (
     TABLE,
     Claim,
@@ -63,9 +58,7 @@ def command(
     out: Place,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
     sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Draw the paper's time histories and test what it says about them.
 
@@ -80,55 +73,28 @@ def command(
     sources
         By default what the paper draws: exact, rk4 and average-acceleration in figure 2; exact,
         housner and modified in 4 and 5. Any other source may be named.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     refuse_repeats("--figure", figure)
     if sources is not None:
         check_sources(sources)
-    executor = choose(jobs, time_limit, cluster)
-    rows: list[Row] = []
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__, sources=sources):
-        found = []
-        for number in figure:
-            told, finding = one_figure(number, sources or DEFAULT_SOURCES[number], out, executor)
-            rows += told
-            found.append(finding)
-        write_findings(out, [*_others(out, found), *found])
+    rows = fill(STUDY, plan(figure, sources), out, running)
+    print(report(out, rows))
     return exit_code(rows)
 
 
-def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
-    """Return what a folder holds about figures that were not drawn now."""
-    held = read_findings(folder) if (folder / TABLE).is_file() else []
-    return [item for item in held if item.statement not in {new.statement for new in found}]
-
-
-def one_figure(
-    figure: int, sources: Sequence[str], folder: Path, executor: Executor
-) -> tuple[list[Row], Finding]:
-    """Run, store, draw and judge one figure; return its rows and what was found."""
-    from studies.drawing.figures import save_all
-
-    cases = HISTORIES[figure]
-    rows = run_jobs(
-        [history_job(case, source) for case in cases for source in sources],
-        executor=executor,
-        reduce=lambda job, response: {**summary(job, response), "response": response},
+def plan(numbers: Sequence[int], sources: Sequence[str] | None) -> Plan:
+    """Return the plan of some figures, each with what the paper draws or with some sources."""
+    return Plan(
+        jobs=[
+            history_job(case, source)
+            for number in numbers
+            for case in HISTORIES[number]
+            for source in sources or DEFAULT_SOURCES[number]
+        ],
+        settings={"sources": sources},
+        reduce=reduce,
+        tabulate=tabulate,
     )
-    table = tidy(cases, rows)
-    if len(table):
-        provenance.write_text(folder / f"figure-{figure}.csv", table.to_csv(index=False))
-        save_all({f"figure-{figure}": drawn(folder, figure)}, folder)
-    found = judge(figure, rows, table)
-    text = report(figure, rows, found)
-    provenance.write_text(folder / f"figure-{figure}.txt", text + "\n")
-    print(text, end="\n\n")
-    return rows, found
 
 
 def history_job(case: HistoryCase, source: str) -> Job:
@@ -144,8 +110,29 @@ def history_job(case: HistoryCase, source: str) -> Job:
     )
 
 
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary and the samples, none of a response that has no history."""
+    row = summary(job, response)
+    if response.history is None:
+        return {**row, "samples": {}}
+    drawn = samples(response, job.block, job.motion, {}).drop(columns="outcome")
+    return {**row, "samples": drawn.to_dict("list")}
+
+
+def by_figure(rows: Sequence[Row]) -> dict[int, list[Row]]:
+    """Return the rows of each figure."""
+    numbers = dict.fromkeys(int(row["figure"]) for row in rows)
+    return {n: [row for row in rows if row["figure"] == n] for n in numbers}
+
+
+def tabulate(rows: Sequence[Row]) -> Tables:
+    """Return the samples of each figure that has any."""
+    tables = {f"figure-{n}": tidy(HISTORIES[n], told) for n, told in by_figure(rows).items()}
+    return {name: table for name, table in tables.items() if len(table)}
+
+
 def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
-    """Return the samples of every row under each other."""
+    """Return the samples of a figure's rows under each other."""
     by_panel = {case.panel: case for case in cases}
     parts = []
     for row in rows:
@@ -158,10 +145,33 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
             "height_m": case.height_m,
             "amplitude_g": case.amplitude_g,
             "source": row["source"],
+            "outcome": row["outcome"],
         }
-        if row["response"].history is not None:
-            parts.append(samples(row["response"], case.block, case.motion, labels))
+        if row["samples"]:
+            parts.append(pd.DataFrame({**labels, **row["samples"]}))
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+
+
+def report(folder: Path, rows: Sequence[Row]) -> str:
+    """Draw and judge the figures of some rows; write and return the texts."""
+    from studies.drawing.figures import save_all
+
+    tables, texts, found = tabulate(rows), [], []
+    for number, told in by_figure(rows).items():
+        name = f"figure-{number}"
+        if name in tables:
+            save_all({name: drawn(folder, number)}, folder)
+        found.append(judge(number, told, tables.get(name, pd.DataFrame())))
+        texts.append(figure_text(number, told, found[-1]))
+        provenance.write_text(folder / f"{name}.txt", texts[-1] + "\n")
+    write_findings(folder, [*_others(folder, found), *found])
+    return "\n\n".join(texts)
+
+
+def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
+    """Return what a folder holds about figures that were not drawn now."""
+    held = read_findings(folder) if (folder / TABLE).is_file() else []
+    return [item for item in held if item.statement not in {new.statement for new in found}]
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
@@ -190,7 +200,7 @@ def drawn(folder: Path, figure: int) -> "Figure":
     return draw_histories(samples, TITLES[figure], errors=errors)
 
 
-def report(figure: int, rows: Sequence[Row], found: Finding) -> str:
+def figure_text(figure: int, rows: Sequence[Row], found: Finding) -> str:
     """Return the peaks of a figure as a table, and what the paper says about it."""
     peaks = pd.DataFrame(rows).assign(
         shown=lambda f: (
@@ -205,9 +215,13 @@ def report(figure: int, rows: Sequence[Row], found: Finding) -> str:
 
 
 def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
-    """Test what the paper says about a figure."""
-    summaries = pd.DataFrame(rows).drop(columns="response")
-    return CLAIMS[figure].finding(table if figure == 2 and len(table) else summaries)
+    """Test what the paper says about a figure, of the sources that answered in every panel."""
+    failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
+    summaries = pd.DataFrame(rows, columns=["source"] if not rows else None)
+    asked = (
+        table if figure == 2 and len(table) else summaries.drop(columns="samples", errors="ignore")
+    )
+    return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
 def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:

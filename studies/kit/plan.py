@@ -1,102 +1,143 @@
-"""What a study runs, and the one way it is run: jobs in; a folder, a report and a code out."""
+"""What a study makes, and the one way it is made: jobs in; a folder, a report and a code out."""
 
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
+import pandas as pd
 
 from analytic.response import Response
-from studies.kit.arguments import Count, Positive
-from studies.kit.executors import choose
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError
 from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import Row
-from studies.kit.runner import Reduce, exit_code, fill_folder
+from studies.kit.journal import PROVENANCE, FolderError, Journal, Row, open_journal
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study
+from studies.kit.tables import write_table
 from studies.sources.registry import Source
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Running:
-    """Where a study's jobs run, and for how long at most.
-
-    Attributes
-    ----------
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
-    """
-
-    jobs: Count | None = None
-    time_limit: Positive = 60.0
-    cluster: str | None = None
+Tables = Mapping[str, pd.DataFrame]
+"""Tables by the names of their files, without .csv."""
 
 
-Running = Annotated[_Running, Parameter(name="*")]
-"""The options that all studies with jobs share, as the type of a command's parameter."""
+def by_label(label: str) -> Callable[[Sequence[Row]], Tables]:
+    """Return what makes of rows a table for each value of a label, named so."""
 
-DEFAULT_RUNNING = _Running()
-"""On all cores of this machine."""
+    def divided(rows: Sequence[Row]) -> Tables:
+        names = dict.fromkeys(row[label] for row in rows)
+        return {n: pd.DataFrame([row for row in rows if row[label] == n]) for n in names}
+
+    return divided
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """What a study runs.
+    """What a study makes.
 
     Attributes
     ----------
-    jobs : sequence of Job, or callable
-        In the order of the table; or what makes them, where that takes long.
-    settings : mapping
+    jobs : sequence of Job, or callable, optional
+        In the order of the rows; none where the tables are made in one go. What takes long to make
+        is made by a callable, once the folder is known to be usable.
+    settings : mapping, optional
         What all rows depend on beside the code; must be the same whenever a folder is used.
-    growing : mapping
-        Column -> the values asked for, of which a folder may gain more.
-    ask : callable
+    growing : mapping, optional
+        Column -> the values asked for. A folder may gain values, but one that holds others is
+        refused, so that its table is what was asked for and nothing is lost.
+    ask : callable, optional
         How a job is put to its source.
-    reduce : callable
+    reduce : callable, optional
         The columns that follow a job's labels and source, outcome among them.
-    tables : str, optional
-        A label whose values name the tables, where a study has several.
+    tabulate : callable, optional
+        The tables, from the rows of all jobs; by default one, called as the study.
+    needed : callable, optional
+        The rows whose failure is the study's; by default all.
     """
 
-    jobs: Sequence[Job] | Callable[[], Sequence[Job]]
+    jobs: Sequence[Job] | Callable[[], Sequence[Job]] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     growing: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     ask: Callable[[Job, Source], Response] = ask
     reduce: Reduce = summary
-    tables: str | None = None
-
-
-def fill(study: Study, plan: Plan, out: Path, running: _Running) -> list[Row]:
-    """Run what a folder does not hold yet; return the rows of all jobs.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        out,
-        study.name,
-        plan.jobs,
-        module=study.module,
-        executor=choose(running.jobs, running.time_limit, running.cluster, plan.ask),
-        reduce=plan.reduce,
-        settings=plan.settings,
-        growing=plan.growing,
-        products=study.products,
-        tables=plan.tables,
-    )
+    tabulate: Callable[[Sequence[Row]], Tables] | None = None
+    needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple
 
 
 def carry_out(
-    study: Study, plan: Plan, out: Path, running: _Running, report: Callable[[Path], str]
+    study: Study, plan: Plan, out: Path, running: Running, report: Callable[[Path], str]
 ) -> int:
     """Run a study into a folder, print what `report` makes of it and return the exit code."""
     rows = fill(study, plan, out, running)
     print(report(out))
-    return exit_code(rows)
+    return exit_code(plan.needed(rows))
+
+
+def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING) -> list[Row]:
+    """Run what a folder does not hold yet, write its tables and provenance; return all rows.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be used: results of another version or of other settings are refused.
+    """
+    executor = running.executor(plan.ask)
+    began = time.perf_counter()
+    identity = provenance.identity(study.name, study.module, **plan.settings)
+    with open_journal(out, identity, study.products) as journal:
+        _refuse_a_part(out, journal.rows.values(), plan.growing)
+        path = out / PROVENANCE
+        asked = {column: _short(values) for column, values in plan.growing.items()}
+        record = provenance.begin(path, identity, asked)
+        jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
+        with _going_on(journal, out, len(jobs)):
+            rows = run_jobs(jobs, executor=executor, reduce=plan.reduce, journal=journal)
+            journal.check()
+            tabulate = plan.tabulate or partial(_whole, study.name)
+            for name, table in tabulate(rows).items():
+                write_table(out / f"{name}.csv", table)
+            counted = {"rows": len(rows)} if jobs else {}
+            provenance.finish(path, record, began, **counted)
+    return rows
+
+
+def _whole(name: str, rows: Sequence[Row]) -> Tables:
+    return {name: pd.DataFrame(rows)}
+
+
+def _short(values: Sequence[Any]) -> Any:
+    return str(values) if isinstance(values, range) else list(values)
+
+
+def _refuse_a_part(folder: Path, rows: Iterable[Row], growing: Mapping[str, Sequence[Any]]) -> None:
+    rows = list(rows)
+    left_out = [
+        f"{column} {', '.join(map(str, names))}"
+        for column, named in growing.items()
+        if (names := sorted({row[column] for row in rows} - set(named)))
+    ]
+    if left_out:
+        problem = f"it also holds results of {' and '.join(left_out)}, which must be named too"
+        raise FolderError(folder, problem)
+
+
+@contextmanager
+def _going_on(journal: Journal, folder: Path, count: int) -> Iterator[None]:
+    """Say of a run that ends early what is kept, and how to go on."""
+    try:
+        yield
+    except (KeyboardInterrupt, BadInputError, OSError) as stop:
+        journal.check()
+        if not count:
+            raise
+        kept = f"{len(journal.rows)} of {count} rows are kept in {str(folder)!r}"
+        words = f"{stop}; " if str(stop) else ""
+        text = f"{words}{kept}; the same command goes on from there"
+        if isinstance(stop, KeyboardInterrupt):
+            stop.args = (text,)
+            raise
+        raise BadInputError(text) from stop

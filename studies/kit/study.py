@@ -5,12 +5,12 @@ The data need no more than the standard library, so that a list of the commands 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -31,6 +31,8 @@ class Chapter:
         Further arguments of its command.
     minutes : tuple of float
         About how long quick and full take on two cores.
+    weaker : str
+        In what the quick form falls short of the full one.
     """
 
     folder: str
@@ -39,6 +41,7 @@ class Chapter:
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
     minutes: tuple[float, float] = (1.0, 1.0)
+    weaker: str = ""
 
 
 class Command(Protocol):
@@ -80,6 +83,8 @@ class Study:
         Files that it writes into its folder.
     chapters : tuple of Chapter
         Its places in a report.
+    captions : mapping
+        Name of a picture -> what is seen in it, for those who read and those who are read to.
     """
 
     name: str
@@ -88,6 +93,7 @@ class Study:
     table: str = ""
     products: tuple[str, ...] = ()
     chapters: tuple[Chapter, ...] = ()
+    captions: Mapping[str, str] = field(default_factory=dict)
 
     def load(self) -> StudyModule:
         """Import the module of a study that leaves tables."""

@@ -1,6 +1,15 @@
 """Tables as text."""
 
+from pathlib import Path
+
 import pandas as pd
+
+from studies.kit.provenance import write_text
+
+
+def write_table(path: Path, table: pd.DataFrame) -> None:
+    """Write a table as CSV, numbers to the bit and missing ones as nan, in one piece."""
+    write_text(path, table.to_csv(index=False, na_rep="nan"))
 
 
 def left_aligned(table: pd.DataFrame) -> str:

@@ -1,6 +1,8 @@
 """What in a linearization matters: its onset, its frequency, its saddle, each changed alone."""
 
+import functools
 import itertools
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,9 @@ from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit import provenance
 from studies.kit.arguments import Place
-from studies.kit.runner import own_folder
+from studies.kit.journal import Row
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, Tables, carry_out
 from studies.linearizations import STUDY
 from studies.measures.claims import (
     Claim,
@@ -101,13 +105,19 @@ def command(*, out: Place) -> int:
     out
         Folder for the results; made if there is none.
     """
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__):
-        errors = pd.concat([held(name) for name in GRIDS], ignore_index=True)
-        tables = {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
-        for name, table in tables.items():
-            provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-        print(report(out, errors))
-    return 0
+    return carry_out(STUDY, Plan(tabulate=tabulate), out, DEFAULT_RUNNING, report)
+
+
+def tabulate(_: Sequence[Row] = ()) -> Tables:
+    """Return the summary and the quantiles of all errors."""
+    errors = all_errors()
+    return {STUDY.name: summarize(errors), "quantiles": quantiles(errors)}
+
+
+@functools.cache
+def all_errors() -> pd.DataFrame:
+    """Return the cases of both grids through every variant."""
+    return pd.concat([held(name) for name in GRIDS], ignore_index=True)
 
 
 def held(name: str) -> pd.DataFrame:
@@ -174,13 +184,13 @@ def key(word: str) -> tuple[int, int, int]:
     return onset, frequency, saddle
 
 
-def report(folder: Path, errors: pd.DataFrame) -> str:
+def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
     table = read(folder, "linearizations")
-    found = conclusions(table, errors)
+    found = conclusions(table, all_errors())
     write_findings(folder, found)
     text = "\n\n".join(
         [

@@ -21,4 +21,10 @@ findings.txt; resumable. Less than a minute.""",
             minutes=(0.5, 0.5),
         ),
     ),
+    captions={
+        "literature": (
+            "Answers beside the numbers printed in the literature, a line for each; inside the "
+            "band they agree to every printed digit."
+        ),
+    },
 )

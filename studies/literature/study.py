@@ -5,7 +5,8 @@ from typing import Annotated
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_engines
-from studies.kit.plan import DEFAULT_RUNNING, Plan, Running, carry_out
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
 from studies.literature import STUDY
 from studies.literature.problems import PROBLEMS, ModeEnd, Problem
 from studies.literature.readings import put, reduce, times_of

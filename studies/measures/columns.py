@@ -119,6 +119,35 @@ ESTIMATES = {
     "told": Column("-", "wrong outcomes with another one at half the step"),
 }
 
+SYMPTOMS = {
+    "symptom": Column("", "what a user of an engine sees"),
+    "measure": Column("", "column of variants.csv that measures it"),
+    "shown_by": Column("", "settings that show it"),
+    "before": Column("-", "the measure with these; inf where there is no result"),
+    "setting": Column("", "the one setting that helps most; empty where none halves it"),
+    "literal": Column("", "what it changes in the library's words, B = 0.5 m, H = 1.5 m"),
+    "after": Column("-", "the measure with this setting alone"),
+    "tuned": Column("-", "the measure with a tuned contact and a fixed step"),
+    "landing": Column("-", "the measure with steps that land on impacts"),
+    "threads": Column("", "threads of trackers in which it is asked"),
+    "command": Column("", "what makes the table that says so"),
+}
+
+RESTITUTION = {
+    "way": Column("", "how the coefficient of restitution is asked for"),
+    "varied": Column("", "what differs from 1 ms, 1 m/s and a radius of 0.1 m"),
+    "wanted": Column("-", "coefficient of restitution that is asked for"),
+    "speed_m_s": Column("m/s", "speed with which a sphere sets out"),
+    "radius_m": Column("m", "radius of the sphere"),
+    "phase": Column("-", "part of a step after which it meets the base"),
+    "found": Column("-", "speed after over before; nan where the library went wrong"),
+    "off": Column("-", "largest |found - wanted| wherever in a step the impact falls"),
+    "off_dt_s": Column("-", "the same at other steps"),
+    "off_speed": Column("-", "the same at other speeds"),
+    "off_radius": Column("-", "the same at other radii"),
+    "broken": Column("-", "drops that the library did not survive"),
+}
+
 ADVICE = {
     "target": Column("-", "error of the peak that is to be kept"),
     "dt_s": Column("s", "step for the block of the advice"),
@@ -257,6 +286,8 @@ GROUPS = {
     "Beside the exact solution": REFERENCE,
     "Summaries": SUMMARIES,
     "Estimates": ESTIMATES,
+    "Symptoms": SYMPTOMS,
+    "Restitution": RESTITUTION,
     "Advice": ADVICE,
     "Methods and settings": METHODS,
     "Maps": MAPS,

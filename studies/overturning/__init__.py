@@ -32,6 +32,21 @@ resumable. The full study takes about two minutes on one core, --quick a quarter
             question="Which pulses overturn a block, and who draws that map wrongly?",
             tables=("differences.csv", "checks.csv"),
             minutes=(0.5, 5.0),
+            weaker="A coarser map, 64 cells for each engine, and one place on each edge.",
         ),
     ),
+    captions={
+        "map": (
+            "Amplitude over frequency: which pulses overturn a block at once, which after an "
+            "impact, and the least that does by each linearization."
+        ),
+        "differences": (
+            "The same map for each linearization and engine with its wrong parts filled: "
+            "overturned falsely, or overturning missed."
+        ),
+        "conditioning": (
+            "The same map with κ as colour, by which a small error of the pulse grows into one of"
+            " the peak."
+        ),
+    },
 )

@@ -11,6 +11,7 @@ import pandas as pd
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
+from studies.kit.tables import write_table
 from studies.measures.differences import scientific
 from studies.measures.words import listed, out_of, part
 from studies.overturning.areas import read, window_of, with_exact
@@ -20,10 +21,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def report(folder: Path, window: Window) -> str:
+def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the summary and the findings as text."""
     from studies.drawing.figures import save_all
 
+    window = window_of(folder)
     areas = read(folder, "map")
     engines = read(folder, "engines")
     differences = pd.DataFrame(
@@ -31,8 +33,8 @@ def report(folder: Path, window: Window) -> str:
     )
     checked = checks(window)
     if len(differences):
-        provenance.write_text(folder / "differences.csv", differences.to_csv(index=False))
-    provenance.write_text(folder / "checks.csv", checked.to_csv(index=False))
+        write_table(folder / "differences.csv", differences)
+    write_table(folder / "checks.csv", checked)
     save_all(pictures(folder), folder)
     text = "\n".join(
         [

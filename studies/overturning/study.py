@@ -1,9 +1,8 @@
 """Overturning maps: which pulses overturn a block, by which mode, and who gets that wrong."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cache
-from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
@@ -12,7 +11,6 @@ import pandas as pd
 from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Axis, Window
-from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -23,12 +21,12 @@ from studies.kit.arguments import (
     refuse_given,
 )
 from studies.kit.estimates import refuse_days, refuse_excess
-from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
+from studies.kit.options import Running
+from studies.kit.plan import Plan, Tables, by_label, carry_out
 from studies.kit.provenance import usable_cores
-from studies.kit.runner import exit_code, fill_folder
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
@@ -62,6 +60,23 @@ POSITIONS, QUICK_POSITIONS = (0.12, 0.3, 0.5, 0.7, 0.9), (0.5,)
 """Parts of the abscissa at which engines are asked about edges."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatientRunning(Running):
+    """As `Running`, with time for what one job of this study holds.
+
+    Attributes
+    ----------
+    time_limit
+        Wall-clock time [s] after which an engine's case, or its search for a threshold, is given
+        up.
+    """
+
+    time_limit: Positive = 120.0
+
+
+DEFAULT_RUNNING = PatientRunning()
+
+
 def command(
     *,
     out: Place,
@@ -77,9 +92,7 @@ def command(
     rows: Count | None = None,
     sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 120.0,
-    cluster: str | None = None,
+    running: PatientRunning = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
     """Map which pulses overturn a block.
@@ -112,13 +125,6 @@ def command(
         exact, and linear models or engines.
     quick
         A coarser map and fewer runs of the engines: less than a minute on 2 cores.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case, or its search for a threshold, is given
-        up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     yes
         Begin even what takes longer than a day.
     """
@@ -140,10 +146,7 @@ def command(
             **given,
         )
     refuse_too_much(window, sources, yes)
-    executor = choose(jobs, time_limit, cluster, put)
-    found = overturning(window, sources, out, quick=quick, executor=executor)
-    print(report(out, window))
-    return exit_code(found)
+    return carry_out(STUDY, plan(window, sources, quick), out, running, report)
 
 
 def refuse_too_much(window: Window, sources: Sequence[str], yes: bool) -> None:
@@ -166,16 +169,8 @@ def check_mapped(sources: Sequence[str]) -> None:
             raise BadInputError(f"--sources: {name!r} cannot be mapped; models and engines can")
 
 
-def overturning(
-    window: Window, sources: Sequence[str], folder: Path, *, quick: bool, executor: Executor
-) -> list[Row]:
-    """Map the models, run what the folder does not hold yet of the engines, write the tables.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
+def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
+    """Return the plan of the models' maps, and of the engines at a grid and beside exact edges."""
     engines = [name for name in sources if name not in MODELS]
 
     @cache
@@ -191,24 +186,19 @@ def overturning(
         count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
         return [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)]
 
-    rows = fill_folder(
-        folder,
-        "overturning",
-        jobs,
-        module=__name__,
-        executor=executor,
-        reduce=reduce,
+    def tabulate(rows: Sequence[Row]) -> Tables:
+        boundaries, areas = (pd.concat(part) for part in zip(*maps().values(), strict=True))
+        mapped = {"boundaries": boundaries, "conditioning": conditioned(window), "map": areas}
+        return {**by_label("table")(rows), **mapped}
+
+    return Plan(
+        jobs=jobs,
         settings={"window": asdict(window), "quick": quick},
         growing={"source": engines},
-        products=STUDY.products,
-        tables="table",
+        ask=put,
+        reduce=reduce,
+        tabulate=tabulate,
     )
-    boundaries = pd.concat([edges for edges, _ in maps().values()])
-    provenance.write_text(folder / "boundaries.csv", boundaries.to_csv(index=False))
-    provenance.write_text(folder / "conditioning.csv", conditioned(window).to_csv(index=False))
-    areas = pd.concat([spans for _, spans in maps().values()])
-    provenance.write_text(folder / "map.csv", areas.to_csv(index=False))
-    return rows
 
 
 def conditioned(window: Window) -> pd.DataFrame:

@@ -25,14 +25,17 @@ PRESETS_FROM = ("presets", "sweep")
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A chapter in words: where it stands, its question, claim, paragraph and command."""
+    """A chapter in words: where it stands, its question, claim, paragraph and command.
+
+    Its pictures are names of files, each with what is seen in it.
+    """
 
     folder: str
     question: str
     claim: str
     paragraph: str
     command: str
-    pictures: tuple[str, ...]
+    pictures: tuple[tuple[str, str], ...]
     texts: tuple[str, ...]
     statements: tuple[Finding, ...]
 
@@ -46,7 +49,10 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
         claim=module.headline(folder),
         paragraph=module.paragraph(folder),
         command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
-        pictures=tuple(sorted(path.name for path in folder.glob("*.png"))),
+        pictures=tuple(
+            (path.name, study.captions.get(path.stem, path.stem))
+            for path in sorted(folder.glob("*.png"))
+        ),
         texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
         statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
     )

@@ -2,6 +2,7 @@
 
 import base64
 import io
+import itertools
 import json
 import math
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.presets import in_words
 from studies.measures.words import part
+from studies.page.engine_cases import engine_cases
 from studies.page.facts import PRESETS_FROM
 from studies.sweep.claims import preset_table, verdict, whole
 
@@ -37,6 +39,7 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
         made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
+        cases=engine_cases(folder),
         **first_sight(folder),
     )
     provenance.write_text(path, text)
@@ -71,12 +74,25 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
+        "weaker": chapter.weaker,
         "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
-        "pictures": [(name, embedded(drawn)) for name, drawn in module.pictures(folder).items()],
-        "texts": [(path.stem, path.read_text()) for path in sorted(folder.glob("*.txt"))],
+        "pictures": [
+            (study.captions.get(name, name), embedded(drawn))
+            for name, drawn in module.pictures(folder).items()
+        ],
+        "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
         "tables": [(name, *table(folder / name)) for name in chapter.tables],
         "failures": failures(folder, study.table),
     }
+
+
+def prose(text: str) -> list[tuple[bool, list[str]]]:
+    """Return a text in parts, each with whether its lines are aligned as a table's."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    return [
+        (tabular, list(part))
+        for tabular, part in itertools.groupby(lines, lambda line: "  " in line.strip())
+    ]
 
 
 def told_of(folder: Path) -> list[Finding]:
@@ -86,11 +102,25 @@ def told_of(folder: Path) -> list[Finding]:
     return [item for item in read_findings(folder) if item.holds is not None]
 
 
+SMALL = 1e-2
+"""Numbers below are shown as powers of ten."""
+LARGE = 150_000
+"""Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
+
+
 def embedded(drawing: Figure) -> str:
-    """Return a figure as the address of an image that holds it, vectors and all."""
-    target = io.BytesIO()
-    drawing.savefig(target, format="svg", metadata={"Date": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
+    """Return a figure as the address of an image that holds it, sharp and not large."""
+    lines, points = io.BytesIO(), io.BytesIO()
+    drawing.savefig(lines, format="svg", metadata={"Date": None})
+    if lines.tell() > LARGE:
+        drawing.savefig(points, format="png", dpi=130)
+    return (
+        _address("png", points) if 0 < points.tell() < lines.tell() else _address("svg+xml", lines)
+    )
+
+
+def _address(kind: str, image: io.BytesIO) -> str:
+    return f"data:image/{kind};base64," + base64.b64encode(image.getvalue()).decode()
 
 
 def table(path: Path) -> tuple[list[str], list[list[Cell]]]:
@@ -105,7 +135,8 @@ def cell(value: Any) -> Cell:
         return Cell(str(value), str(value))
     if math.isnan(value):
         return Cell("–", "")
-    return Cell(f"{value:.4g}", repr(value))
+    small = 0.0 < abs(value) < SMALL
+    return Cell(f"{value:.3e}" if small else f"{value:.4g}", repr(value))
 
 
 def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:

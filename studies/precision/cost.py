@@ -20,9 +20,9 @@ from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, Scene, core_engines, run
 from engines.drive import build
 from studies.cases.paper import free_rocking_window, sweep_cases
-from studies.kit import provenance
 from studies.kit.arguments import Place, check_engines, several
-from studies.kit.runner import own_folder
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.signals import left_to_this_process
 from studies.precision import COST
 from studies.precision.cost_report import headline, paragraph, pictures, report
@@ -84,22 +84,18 @@ def command(
         Shorter timing: a few seconds.
     """
     check_engines(engines)
-    with own_folder(out, COST.name, COST.products, module=__name__, quick=quick):
-        measure(out, engines, quick)
-        print(report(out))
-    return 0
+    made = Plan(settings={"quick": quick}, tabulate=lambda _: measured(engines, quick))
+    return carry_out(COST, made, out, DEFAULT_RUNNING, report)
 
 
-def measure(folder: Path, engines: Sequence[str], quick: bool) -> None:
-    """Measure and write the three tables."""
+def measured(engines: Sequence[str], quick: bool) -> Tables:
+    """Measure, and return the three tables."""
     budget_s = QUICK_BUDGET_S if quick else BUDGET_S
-    tables = {
+    return {
         "shares": share_table(engines, budget_s),
         "scenes": scene_table(engines, budget_s),
         "reference": reference_table(),
     }
-    for name, table in tables.items():
-        provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
 
 
 def scene_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:

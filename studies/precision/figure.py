@@ -84,7 +84,8 @@ def _along(line: pd.DataFrame) -> FloatArray:
     runs = np.log(line[["wall_s", "median_error"]].clip(lower=LOWEST).to_numpy(np.float64))
     places = np.linspace(0.0, len(runs) - 1.0, 12 * len(runs))
     x, y = (np.interp(places, np.arange(len(runs)), column) for column in runs.T)
-    return np.exp(np.column_stack([x, y]))
+    points: FloatArray = np.exp(np.column_stack([x, y]))
+    return points
 
 
 def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:
@@ -97,7 +98,7 @@ def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:
 
 def _end(method: object, line: pd.DataFrame) -> Name:
     """Return the name of a method where its line ends, at its longest run."""
-    last = line.loc[line["wall_s"].idxmax()]
+    last = line.sort_values("wall_s").iloc[-1]
     error = max(float(last["median_error"]), LOWEST)
     return Name(str(method), float(last["wall_s"]), error, style_of(str(method)).colour)
 
@@ -123,7 +124,8 @@ def _one_set(axes: Axes, table: pd.DataFrame) -> None:
             whole["median_error"].clip(lower=LOWEST),
             **{**look, "linestyle": style.line or "none", "linewidth": style.width},
         )
-        broken = line[~np.isfinite(line["median_error"])]
+        # a case that was given up before it was timed has no place on the scale
+        broken = line[~np.isfinite(line["median_error"]) & (line["wall_s"] > 0.0)]
         axes.plot(
             broken["wall_s"],
             np.full(len(broken), WRONG),

@@ -1,23 +1,25 @@
 """Error against run time: every method along its own setting, on the same cases."""
 
-import functools
 import json
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Annotated
+from functools import partial
+from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import pandas as pd
 
 from analytic.response import Outcome, Response
 from engines import core_engines
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.kit.arguments import Place, Positive, check_engines, several
-from studies.kit.executors import Local
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import Running
+from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost, cost_report
 from studies.precision.methods import Method, methods_of
@@ -25,9 +27,6 @@ from studies.precision.report import headline, paragraph, pictures, report
 from studies.sources.registry import Source
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
-
-if TYPE_CHECKING:
-    pass
 
 BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
 """Time [s] spent on timing one case with one setting."""
@@ -58,25 +57,31 @@ def command(
         Wall-clock time [s] after which one case with one setting is given up.
     """
     check_engines(engines)
-    rows = fill_folder(
-        out,
-        "precision",
-        precision_jobs(quick, engines),
-        module=__name__,
-        executor=Local(
-            workers=1,
-            time_limit_s=time_limit,
-            ask=functools.partial(measure, budget_s=QUICK_BUDGET_S if quick else BUDGET_S),
-        ),
-        reduce=reduce,
+    alone = Running(jobs=1, time_limit=time_limit)
+    return carry_out(STUDY, plan(out, engines, quick), out, alone, both_reports)
+
+
+def both_reports(folder: Path) -> str:
+    """Write and return what a folder says of errors, and of what a scene costs."""
+    return f"{report(folder)}\n\n{cost_report.report(folder)}"
+
+
+def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:
+    """Return the plan of every method; a scene's cost is measured where a folder has it not."""
+
+    def tabulate(rows: Sequence[Row]) -> Tables:
+        known = (folder / "scenes.csv").is_file()
+        costs = {} if known else cost.measured(engines, quick)
+        return {STUDY.name: pd.DataFrame(rows), **costs}
+
+    return Plan(
+        jobs=precision_jobs(quick, engines),
         settings={"quick": quick},
         growing={"method": list(methods_of(engines))},
-        products=STUDY.products,
+        ask=partial(measure, budget_s=QUICK_BUDGET_S if quick else BUDGET_S),
+        reduce=reduce,
+        tabulate=tabulate,
     )
-    if not (out / "scenes.csv").is_file():
-        cost.measure(out, engines, quick)
-    print(report(out), cost_report.report(out), sep="\n\n")
-    return exit_code(rows)
 
 
 def precision_jobs(quick: bool, engines: Sequence[str]) -> list[Job]:

@@ -19,6 +19,13 @@ a minute.""",
             question="What stays finite, right and accurate in stiff and extreme cases?",
             tables=("steps.csv",),
             minutes=(0.6, 6.0),
+            weaker="Neighbouring cases are left out, and those that take long.",
         ),
     ),
+    captions={
+        "stability": (
+            "A matrix of extreme cases and methods: a symbol in each cell says whether the "
+            "outcome is right, the peak off, energy made or no result found."
+        ),
+    },
 )

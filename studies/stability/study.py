@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Sequence
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -10,13 +10,13 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Count, Place, Positive, check_sources
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import Place, Positive, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import Running
+from studies.kit.plan import Plan, by_label, carry_out
 from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
 from studies.sources.groups import core_sources
 from studies.sources.registry import Source
@@ -42,13 +42,28 @@ RUN_SHARE = 0.02
 """Part of the time limit that each run of a search for a step may take."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatientRunning(Running):
+    """As `Running`, with time for what one job of this study holds.
+
+    Attributes
+    ----------
+    time_limit
+        Wall-clock time [s] after which an engine's case, its remedies included, or its search for
+        the largest step is given up.
+    """
+
+    time_limit: Positive = 180.0
+
+
+DEFAULT_RUNNING = PatientRunning()
+
+
 def command(
     *,
     out: Place,
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 180.0,
-    cluster: str | None = None,
+    running: PatientRunning = DEFAULT_RUNNING,
     sources: Annotated[tuple[str, ...], several_sources] = METHODS,
 ) -> int:
     """Put extreme cases to every method.
@@ -59,22 +74,28 @@ def command(
         Folder for the results; made if there is none.
     quick
         Fewer cases, steps to 30 % and three perturbations: less than a minute on 2 cores.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case, its remedies included, or its search for
-        the largest step is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     sources
         Who is asked.
     """
     check_sources(sources)
-    ask = functools.partial(put, time_limit_s=time_limit)
-    executor = choose(jobs, time_limit, cluster, ask)
-    rows = stability(sources, out, quick=quick, executor=executor)
-    print(report(out))
-    return exit_code(speechless(rows))
+    return carry_out(STUDY, plan(sources, quick, running.time_limit), out, running, report)
+
+
+def plan(sources: Sequence[str], quick: bool, time_limit_s: float) -> Plan:
+    """Return the plan of all three tables."""
+    return Plan(
+        jobs=[
+            *matrix_jobs(sources, quick),
+            *step_jobs(sources, quick),
+            *sensitivity_jobs(sources, quick),
+        ],
+        settings={"quick": quick, "bands": BANDS},
+        growing={"source": sources},
+        ask=functools.partial(put, time_limit_s=time_limit_s),
+        reduce=reduce,
+        tabulate=by_label("table"),
+        needed=speechless,
+    )
 
 
 def speechless(rows: Sequence[Row]) -> list[Row]:
@@ -82,34 +103,6 @@ def speechless(rows: Sequence[Row]) -> list[Row]:
     failed = {row["source"] for row in rows if row["outcome"] == "failed"}
     failed -= {row["source"] for row in rows if row["outcome"] != "failed"}
     return [row for row in rows if row["source"] in failed]
-
-
-def stability(
-    sources: Sequence[str], folder: Path, *, quick: bool, executor: Executor
-) -> list[Row]:
-    """Run what the folder does not hold yet, and write its three tables.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        folder,
-        "stability",
-        [
-            *matrix_jobs(sources, quick),
-            *step_jobs(sources, quick),
-            *sensitivity_jobs(sources, quick),
-        ],
-        module=__name__,
-        executor=executor,
-        reduce=reduce,
-        settings={"quick": quick, "bands": BANDS},
-        growing={"source": sources},
-        products=STUDY.products,
-        tables="table",
-    )
 
 
 def matrix_jobs(sources: Sequence[str], quick: bool) -> list[Job]:

@@ -28,6 +28,9 @@ once: a run that was interrupted goes on where it stopped when the same command 
             tables=("summary.csv",),
             quick=("--accuracy", "loose"),
             minutes=(0.3, 0.6),
+            weaker=(
+                "The engines step at the accuracy loose instead of standard, and err more for it."
+            ),
         ),
         Chapter(
             folder="presets",
@@ -36,6 +39,32 @@ once: a run that was interrupted goes on where it stopped when the same command 
             quick=("--figure", "8", "--sources", "exact", "core:naive"),
             full=("--sources", "exact", "core:naive", "core:fixed"),
             minutes=(0.2, 3.0),
+            weaker=(
+                "Figure 8 stands for all four, and no preset with a tuned contact and a fixed "
+                "step is asked."
+            ),
         ),
     ),
+    captions={
+        "figure-6": (
+            "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
+            "and in the band who overturns; below, the relative error of it; a column for each "
+            "H/B."
+        ),
+        "figure-7": (
+            "Above, the largest rotation over the frequency of the half-sine pulses of figure 7, "
+            "and in the band who overturns; below, the relative error of it; a column for each "
+            "H/B."
+        ),
+        "figure-8": (
+            "Above, the largest rotation over the frequency of the full-sine pulses of figure 8, "
+            "and in the band who overturns; below, the relative error of it; a column for each "
+            "H/B."
+        ),
+        "figure-9": (
+            "Above, the largest rotation over the frequency of the full-sine pulses of figure 9, "
+            "and in the band who overturns; below, the relative error of it; a column for each "
+            "H/B."
+        ),
+    },
 )

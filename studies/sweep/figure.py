@@ -43,7 +43,7 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
     grid[0, 0].set_ylabel("largest rotation  |θ|/θcr  [–]")
     grid[1, 0].set_ylabel("relative error of it  [–]")
-    _name_the_lines(*grid[:, -1], rows[rows["aspect"] == aspects[-1]], sources)
+    _name_the_lines(grid[0, -1], grid[1, -1], rows[rows["aspect"] == aspects[-1]], sources)
     first = rows.iloc[0]
     title = f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     drawing.suptitle(f"{title}; {_widths(widths)}", fontsize=11)

@@ -9,19 +9,12 @@ import pandas as pd
 
 from studies.cases.paper import sweep_cases
 from studies.kit import provenance
-from studies.kit.arguments import (
-    Count,
-    Place,
-    Positive,
-    check_sources,
-    figures,
-    refuse_repeats,
-)
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
-from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
+from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import write_table
 from studies.measures.claims import findings_text, write_findings
 from studies.measures.differences import (
     summarize,
@@ -32,7 +25,7 @@ from studies.measures.differences import (
 )
 from studies.measures.findings import findings
 from studies.sources.groups import core_sources
-from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sources.registry import Effort
 from studies.sweep import STUDY
 from studies.sweep.claims import claims, first_claim, whole
 
@@ -48,11 +41,8 @@ def command(
     out: Place,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
-    step: Positive | None = None,
-    accuracy: Accuracy | None = None,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    effort: EffortOptions = OWN_EFFORT,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Run the paper's sensitivity analysis.
 
@@ -64,66 +54,18 @@ def command(
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
     sources
         Who is asked.
-    step
-        p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
-    accuracy
-        loose, standard or tight, for engines whose steps land on impacts; standard by default.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     refuse_repeats("--figure", figure)
     check_sources(sources)
-    executor = choose(jobs, time_limit, cluster)
-    rows = sweep(figure, sources, out, executor=executor, effort=Effort(step, accuracy))
-    print(report(out))
-    return exit_code(rows)
+    return carry_out(STUDY, plan(figure, sources, effort), out, running, report)
 
 
-def sweep(
-    numbers: Sequence[int],
-    sources: Sequence[str],
-    folder: Path,
-    *,
-    executor: Executor,
-    effort: Effort = DEFAULT_EFFORT,
-) -> list[Row]:
-    """Run the cases that the folder does not hold yet, and write its CSV.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Figures, of 6, 7, 8, 9.
-    sources : sequence of str
-    folder : Path
-        Results of another version, with other settings, or of figures and sources that are not
-        named here are refused, so that nothing is lost.
-    executor : Executor
-    effort : Effort, optional
-        How finely the solvers and engines step.
-
-    Returns
-    -------
-    list of dict
-        The rows of sweep.csv, one for each case and source.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
-    return fill_folder(
-        folder,
-        "sweep",
-        sweep_jobs(numbers, sources, effort),
-        module=__name__,
-        executor=executor,
+def plan(numbers: Sequence[int], sources: Sequence[str], effort: Effort = OWN_EFFORT) -> Plan:
+    """Return the plan that puts the cases of some figures to some sources."""
+    return Plan(
+        jobs=sweep_jobs(numbers, sources, effort),
         settings=asdict(effort),
         growing={"figure": numbers, "source": sources},
-        products=STUDY.products,
     )
 
 
@@ -149,7 +91,7 @@ def report(folder: Path) -> str:
     rows = read(folder)
     compared = with_reference(rows)
     table = summarize(compared)
-    provenance.write_text(folder / "summary.csv", table.to_csv(index=False, na_rep="nan"))
+    write_table(folder / "summary.csv", table)
     found = findings(compared)
     write_findings(folder, found)
     conclusions = findings_text(found)

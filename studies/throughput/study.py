@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -18,7 +19,8 @@ from studies.cases.paper import PULSES
 from studies.cases.window import Window
 from studies.kit import provenance
 from studies.kit.arguments import Count, Place
-from studies.kit.runner import own_folder
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, carry_out
 from studies.throughput import STUDY
 
 CASES, QUICK_CASES = 1_000_000, 40_000
@@ -43,24 +45,17 @@ def command(*, out: Place, quick: bool = False, threads: Count | None = None) ->
     threads
         By default the number of cores.
     """
+    used = threads or provenance.usable_cores()
+    made = Plan(settings={"quick": quick}, tabulate=lambda _: {STUDY.name: measured(quick, used)})
+    return carry_out(STUDY, made, out, DEFAULT_RUNNING, report)
+
+
+def measured(quick: bool, threads: int) -> pd.DataFrame:
+    """Time every solver on both pulses; return a row for each."""
     count, peers = (QUICK_CASES, QUICK_PEER_CASES) if quick else (CASES, PEER_CASES)
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__, quick=quick):
-        table = pd.DataFrame(
-            [
-                row
-                for pulse in PULSES
-                for row in measured(Window(pulse=pulse), count, peers, threads or usable())
-            ]
-        )
-        provenance.write_text(out / "throughput.csv", table.to_csv(index=False, na_rep="nan"))
-        provenance.write_text(out / "findings.txt", text(table) + "\n")
-    print(text(table))
-    return 0
-
-
-def usable() -> int:
-    """Return the number of threads to use."""
-    return provenance.usable_cores()
+    return pd.DataFrame(
+        [row for pulse in PULSES for row in timings(Window(pulse=pulse), count, peers, threads)]
+    )
 
 
 def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
@@ -70,7 +65,7 @@ def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), onsets.ravel()
 
 
-def measured(window: Window, count: int, peers: int, threads: int) -> list[dict[str, object]]:
+def timings(window: Window, count: int, peers: int, threads: int) -> list[dict[str, object]]:
     """Return a row for each model, on all threads and on one, and for each peer."""
     x, onsets = points(window, count)
     rows, alone = [], 0.0
@@ -142,8 +137,9 @@ def _peer_row(window: Window, name: str, ask: Overturns, count: int) -> dict[str
     return {**row, "steps": math.nan, "wrong": int((np.array(found) != right).sum())}
 
 
-def text(table: pd.DataFrame) -> str:
-    """Return the table for a reader, and the memory that the run took."""
+def report(folder: Path) -> str:
+    """Write and return the table for a reader, and the memory that the run took."""
+    table = pd.read_csv(folder / "throughput.csv")
     shown = table.assign(
         seconds=table["seconds"].map("{:.3g}".format),
         cases_a_second=table["cases_a_second"].map("{:,.0f}".format),
@@ -154,7 +150,7 @@ def text(table: pd.DataFrame) -> str:
     # kilobytes on Linux, bytes on macOS
     unit = 1024.0**2 if sys.platform == "darwin" else 1024.0
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
-    return "\n".join(
+    text = "\n".join(
         [
             "Outcomes of overturning maps; time / exact is per case and core, exact on one thread;",
             "steps are Taylor steps of exact and evaluations of the linear closed forms:",
@@ -162,3 +158,5 @@ def text(table: pd.DataFrame) -> str:
             f"Peak memory of this process: {peak:.0f} MiB",
         ]
     )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text

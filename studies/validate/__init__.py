@@ -26,6 +26,13 @@ validate.csv, errors.csv, hints.csv, leaning.csv and provenance.json; resumable.
             tables=("leaning.csv",),
             quick=("--cases", "100"),
             minutes=(0.1, 0.3),
+            weaker="Fewer random cases.",
         ),
     ),
+    captions={
+        "validate": (
+            "Error of each random case over its condition number κ, and the line through the "
+            "largest error over κ of each engine."
+        ),
+    },
 )

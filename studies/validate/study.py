@@ -13,20 +13,21 @@ import pandas as pd
 
 from studies.cases.drawn import draw
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, Positive, check_sources
+from studies.kit.arguments import Count, Place, check_sources
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
-from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
+from studies.kit.plan import Plan, by_label, carry_out
+from studies.kit.tables import write_table
 from studies.measures.differences import (
     conditioning_of,
     scientific,
     with_reference,
 )
 from studies.sources.groups import core_sources
-from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
@@ -41,11 +42,8 @@ def command(
     cases: Count = 500,
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
-    step: Positive | None = None,
-    accuracy: Accuracy | None = None,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    effort: EffortOptions = OWN_EFFORT,
+    running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
     """Hold the sources against the exact solution on random cases.
@@ -63,53 +61,33 @@ def command(
         Seed of the random numbers, a positive whole number; another one draws other cases.
     sources
         Who is asked.
-    step
-        p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
-    accuracy
-        loose, standard or tight, for engines whose steps land on impacts; standard by default.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     yes
         Begin even what takes longer than a day.
     """
     check_sources(sources)
-    effort = Effort(step, accuracy)
+    refuse_too_much(cases, sources, effort, running, yes)
+    return carry_out(STUDY, plan(cases, seed, sources, effort), out, running, report)
+
+
+def refuse_too_much(
+    cases: int, sources: Sequence[str], effort: Effort, running: Running, yes: bool
+) -> None:
+    """Raise BadInputError if the cases need more memory than there is, or days without a yes."""
     asked = f"--cases is {cases}"
     refuse_excess(asked, cases * len(sources) * CASE_BYTES)
     # the exact solution is asked, too, whether a case is kept
     everyone = ("exact", *sources)
-    seconds = expected_s(cases, everyone, jobs=jobs, time_limit_s=time_limit, effort=effort)
+    jobs, limit = running.jobs, running.time_limit
+    seconds = expected_s(cases, everyone, jobs=jobs, time_limit_s=limit, effort=effort)
     refuse_days(asked, seconds, yes)
-    executor = choose(jobs, time_limit, cluster)
-    rows = validate(cases, seed, sources, out, executor=executor, effort=effort)
-    print(report(out))
-    return exit_code([row for row in rows if row["table"] == "validate"])
 
 
-def validate(
-    cases: int,
-    seed: int,
-    sources: Sequence[str],
-    folder: Path,
-    *,
-    executor: Executor,
-    effort: Effort = DEFAULT_EFFORT,
-) -> list[Row]:
-    """Run the random cases that the folder does not hold yet, and write its tables.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
-    """
+def plan(cases: int, seed: int, sources: Sequence[str], effort: Effort = OWN_EFFORT) -> Plan:
+    """Return the plan that puts random cases to some sources, the first with false hints too."""
     drawn = list(islice(draw(seed), cases))
     jobs = [
         Job(
-            labels={"table": "validate", **asdict(case)},
+            labels={"table": STUDY.name, **asdict(case)},
             block=case.block,
             motion=case.motion,
             source=source,
@@ -118,17 +96,18 @@ def validate(
         for case in drawn
         for source in sources
     ]
-    return fill_folder(
-        folder,
-        "validate",
-        [*jobs, *hint_jobs(drawn[:HINTED], sources, effort)],
-        module=__name__,
-        executor=executor,
+    return Plan(
+        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort)],
         settings={"seed": seed, **asdict(effort)},
         growing={"case": range(cases), "source": sources},
-        products=STUDY.products,
-        tables="table",
+        tabulate=by_label("table"),
+        needed=without_hints,
     )
+
+
+def without_hints(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of validate.csv: what becomes of a false hint is an answer."""
+    return [row for row in rows if row["table"] == STUDY.name]
 
 
 def report(folder: Path) -> str:
@@ -140,7 +119,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     compared = compare(folder, "validate")
-    provenance.write_text(folder / "errors.csv", compared.to_csv(index=False, na_rep="nan"))
+    write_table(folder / "errors.csv", compared)
     save_all(pictures(folder), folder)
     sensitivity = conditioning_of(compared)
     calm = compared[sensitivity < WELL_CONDITIONED]
@@ -174,7 +153,7 @@ def leaning_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     if not (folder / "hints.csv").exists():
         return []
     table = pd.DataFrame(map(asdict, leanings(compared, compare(folder, "hints"))))
-    provenance.write_text(folder / "leaning.csv", table.to_csv(index=False, na_rep="nan"))
+    write_table(folder / "leaning.csv", table)
     cases = table["cases"].max()
     return [
         f"\nWhat landing steps lean on: the first {cases} cases with hints that are false,",
@@ -211,6 +190,8 @@ def summary_text(compared: pd.DataFrame) -> str:
         right = f"{int(group['agrees'].sum())}/{len(group)}"
         failed = int((group["outcome"] == "failed").sum())
         lines.append([source, right, failed, *(scientific(value) for value in quantiles)])
+    if not lines:
+        return "no such case"
     columns = ["source", "outcomes", "failed", "median", "p90", "p99", "max"]
     return pd.DataFrame(lines, columns=columns).to_string(index=False)
 

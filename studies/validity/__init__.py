@@ -25,6 +25,17 @@ quarter of one.""",
             folder="validity",
             question="Where is the reference itself valid, and what do engines do beyond?",
             minutes=(0.5, 3.0),
+            weaker="Every other case of the engines, and fewer frictions.",
         ),
     ),
+    captions={
+        "validity": (
+            "Amplitude over frequency for four H/B: where the reference holds, where its pivot "
+            "would lift off, and symbols for what engines do there."
+        ),
+        "friction": (
+            "How far the pivot slides over the friction given, in parts of what the reference "
+            "needs, for four H/B."
+        ),
+    },
 )

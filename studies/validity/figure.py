@@ -117,7 +117,8 @@ def _map(axes: Axes, table: pd.DataFrame) -> None:
 def _verdicts(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
     """Write one symbol where all engines do the same, and one of each side by side elsewhere."""
     style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 12}
-    for (x, y), here in rows.groupby(["omega_over_p", "onsets"]):
+    for _, here in rows.groupby(["omega_over_p", "onsets"]):
+        x, y = (float(here[name].iloc[0]) for name in ("omega_over_p", "onsets"))
         found = here.set_index("source")["verdict"]
         if found.nunique() == 1:
             axes.text(x, y, SYMBOLS[str(found.iloc[0])], color="black", **style)

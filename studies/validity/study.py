@@ -11,12 +11,13 @@ import pandas as pd
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
-from studies.kit.executors import Executor, choose
+from studies.kit.arguments import BadInputError, Place, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
-from studies.kit.runner import exit_code, fill_folder
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
@@ -49,9 +50,7 @@ def command(
     out: Place,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     quick: bool = False,
-    jobs: Count | None = None,
-    time_limit: Positive = 60.0,
-    cluster: str | None = None,
+    running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Map where the reference is valid, and see what engines do beyond.
 
@@ -63,69 +62,49 @@ def command(
         Engines.
     quick
         Every other case of the engines, and fewer frictions.
-    jobs
-        Processes for the engines; by default the number of cores.
-    time_limit
-        Wall-clock time [s] after which an engine's case is given up.
-    cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """
     check_sources(sources)
     for name in sources:
         if resolve(name).kind != "engine":
             raise BadInputError(f"--sources names {name!r}; it must name engines, which can slide")
-    every = 2 if quick else 1
-    onsets, omegas = ONSETS[::every], OMEGAS[::every]
-    factors = QUICK_FACTORS if quick else FACTORS
-    executor = choose(jobs, time_limit, cluster)
-    rows = validity(list(grid(onsets, omegas)), factors, sources, out, executor=executor)
-    table = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
-    provenance.write_text(out / "map.csv", table.to_csv(index=False, na_rep="nan"))
-    print(report(out))
-    # a block that slid away is what was asked for, and no failure of the study
-    return exit_code([row for row in rows if row["verdict"] == "failed"])
+    return carry_out(STUDY, plan(sources, quick), out, running, report)
 
 
-def validity(
-    cases: Sequence[ValidityCase],
-    factors: Sequence[float],
-    sources: Sequence[str],
-    folder: Path,
-    *,
-    executor: Executor,
-) -> list[Row]:
-    """Run the engines' cases that the folder does not hold yet, and write its table.
+def plan(sources: Sequence[str], quick: bool) -> Plan:
+    """Return the plan of the engines' cases, and of the reference's map.
 
     Every case with the engine's own friction, and those in which the reference needs a friction
     of MOST_NEEDED or less also with parts of it.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be used.
     """
+    every = 2 if quick else 1
+    onsets, omegas = ONSETS[::every], OMEGAS[::every]
+    factors = QUICK_FACTORS if quick else FACTORS
     jobs = []
-    for case in cases:
+    for case in grid(onsets, omegas):
         needed = simulate(case.block, case.motion).friction_needed
         for source in sources:
             jobs.append(_job(case, source, math.nan, {}))
             if needed <= MOST_NEEDED:
                 jobs += [_job(case, source, f, {"friction": f * needed}) for f in factors]
-    return fill_folder(
-        folder,
-        "validity",
-        jobs,
-        module=__name__,
-        executor=executor,
-        reduce=_reduce,
-        settings={
-            "onsets": sorted({case.onsets for case in cases}),
-            "omegas": sorted({case.omega_over_p for case in cases}),
-            "factors": factors,
-        },
+    return Plan(
+        jobs=jobs,
+        settings={"onsets": onsets, "omegas": omegas, "factors": factors},
         growing={"source": sources},
-        products=STUDY.products,
+        reduce=_reduce,
+        tabulate=tabulate,
+        needed=unanswered,
     )
+
+
+def tabulate(rows: Sequence[Row]) -> Tables:
+    """Return the engines' table, and the map of the reference beside it."""
+    reference = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
+    return {STUDY.name: pd.DataFrame(rows), "map": reference}
+
+
+def unanswered(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows that failed: a block that slid away is what was asked for."""
+    return [row for row in rows if row["verdict"] == "failed"]
 
 
 def _job(case: ValidityCase, source: str, factor: float, options: dict[str, float]) -> Job:
@@ -174,7 +153,7 @@ def report(folder: Path) -> str:
     table = pd.read_csv(folder / "map.csv")
     exact = reference_map(_cases(rows))
     beside = compared(rows, exact)
-    provenance.write_text(folder / "compared.csv", beside.to_csv(index=False, na_rep="nan"))
+    write_table(folder / "compared.csv", beside)
     text = findings(beside, table)
     provenance.write_text(folder / "findings.txt", text + "\n")
     save_all(pictures(folder), folder)

@@ -139,6 +139,31 @@ def test_start_then_pulse(engine: str, preset: str, frame: str, side: float) -> 
     )
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("engine", "preset", "frame"), LANDING_IN_FRAMES)
+def test_lifted_at_once(engine: str, preset: str, frame: str, side: float) -> None:
+    """A cosine lifts the block with the first step, in which it must have its own inertia."""
+    motion = SinePulse(amplitude=4.0 * side, omega=8.0, half_cycles=2, phase=0.5 * math.pi)
+    exact = simulate(BLOCK, motion)
+    assert exact.uplifts[0] == 0.0
+    found = run(engine, Scene(block=BLOCK, motion=motion, preset=preset, frame=frame))
+    assert found.outcome is exact.outcome
+    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=band(engine))
+    assert found.uplifts[0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("engine", core_engines())
+def test_lifted_at_once_is_of_second_order(engine: str) -> None:
+    motion = SinePulse(amplitude=4.0, omega=8.0, half_cycles=2, phase=0.5 * math.pi)
+    exact = simulate(BLOCK, motion).peak_ratio
+    coarse, fine = (
+        abs(run(engine, Scene(block=BLOCK, motion=motion, accuracy=name)).peak_ratio / exact - 1.0)
+        for name in ("loose", "standard")
+    )
+    # steps of a fifth: an error of first order would keep a fifth
+    assert fine < 0.12 * coarse
+
+
 @pytest.mark.parametrize("engine", HERE)
 def test_beyond_alpha_and_back(engine: str) -> None:
     """A block past its balance that moves inward fast enough comes back; one at rest falls."""

@@ -15,7 +15,7 @@ from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
-from studies.drawing.film import Stage, outline
+from studies.drawing.film import Stage, outline, verdict
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
@@ -44,6 +44,33 @@ def test_an_overturned_block_lies():
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
     flat = outline(BLOCK, float(rows[1]["theta"][-1]))
     assert flat[:, 1].max() == pytest.approx(0.5)
+
+
+def test_a_verdict_is_given_when_it_happens():
+    theta = BLOCK.alpha * np.array([0.0, 0.2, 0.5, 0.3, 0.1])
+    fallen = BLOCK.alpha * np.array([0.0, 1.1, 0.9, 1.2, 4.0])
+    rows = [{"source": "mujoco:naive", "outcome": "rocked", "theta": 0.8 * theta},
+            {"source": "housner", "outcome": "overturned", "theta": fallen},
+            {"source": "exact", "outcome": "rocked", "theta": theta},
+            {"source": "exact", "outcome": "at rest", "theta": 0.0 * theta}]  # fmt: skip
+    told = [verdict(row, theta, BLOCK.alpha) for row in rows]
+    assert told == [(2, "peak −20.0 %"), (3, "overturned"), (2, "peak 0.50 θcr"), (4, "at rest")]
+
+
+def test_the_exact_outline_is_drawn_over_every_other_block():
+    times = np.linspace(0.0, 1.0, 5)
+    rows = [
+        {"source": "exact", "outcome": "rocked", "theta": 0.1 * times},
+        {"source": "housner", "outcome": "rocked", "theta": 0.3 * times},
+    ]
+    stage = Stage(BLOCK, Still(), times, rows)
+    stage.show(4)
+    panel = stage.drawing.axes[1]
+    corners = [patch.get_xy()[:4] for patch in panel.patches if len(patch.get_xy()) == 5]
+    assert corners == [
+        pytest.approx(outline(BLOCK, 0.3)),
+        pytest.approx(outline(BLOCK, 0.1)),
+    ]
 
 
 def sweep(folder, peaks):

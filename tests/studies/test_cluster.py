@@ -28,11 +28,13 @@ from studies.__main__ import run
 from studies.kit import dask_client, worker
 from studies.kit.cluster import Cluster
 from studies.kit.dask_client import ClusterError
-from studies.kit.executors import Local
 from studies.kit.jobs import summary
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source
-from studies.validate import study as validate
+from studies.validate import STUDY
+from studies.validate.study import plan
 
 
 @pytest.fixture(autouse=True)
@@ -52,14 +54,14 @@ def station(tmp_path_factory):
         yield address, running, workers
 
 
-def results(folder, executor):
-    validate.validate(6, 3, ["exact", "rk4", "pybullet", "mujoco"], folder, executor=executor)
+def results(folder, running):
+    fill(STUDY, plan(6, 3, ["exact", "rk4", "pybullet", "mujoco"]), folder, running)
     return pd.read_csv(folder / "validate.csv", dtype=str).drop(columns="wall_s")
 
 
 def test_results_are_those_of_this_machine_to_the_bit(station, tmp_path):
-    here = results(tmp_path / "here", Local(1, 60.0))
-    there = results(tmp_path / "there", Cluster(station[0], 60.0))
+    here = results(tmp_path / "here", Running(jobs=1))
+    there = results(tmp_path / "there", Running(cluster=station[0]))
     pd.testing.assert_frame_equal(here, there)
     assert set(here["outcome"]) <= {"rocked", "overturned", "at rest"}
 

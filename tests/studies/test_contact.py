@@ -19,9 +19,9 @@ from engines.adapters.mujoco_settings import TUNED, MujocoSettings
 from engines.drive import build
 from engines.factors import BEST, DEFAULT
 from engines.stepping.steps import FixedSteps, Stepper
+from studies.cases.variants import OWN_STEP
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
-from studies.contact.variants import OWN_STEP
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
 
@@ -125,14 +125,14 @@ def test_solref_and_margin_reach_the_library():
 def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
     settings = {"multibody": True, "contact_stiffness": 1e6, "contact_damping": 1e5}
     assert run("pybullet", scene(preset=BEST, settings=settings)).outcome is Outcome.ROCKED
-    change = BulletWorld._change
+    do = BulletWorld._do
 
-    def forgetful(self, body, **wanted):
-        wanted.pop("contactStiffness", None)
-        wanted.pop("contactDamping", None)
-        change(self, body, **wanted)
+    def forgetful(self, call):
+        lost = ("contactStiffness", "contactDamping")
+        kept = {name: value for name, value in call.arguments.items() if name not in lost}
+        return do(self, replace(call, arguments=kept))
 
-    monkeypatch.setattr(BulletWorld, "_change", forgetful)
+    monkeypatch.setattr(BulletWorld, "_do", forgetful)
     response = run("pybullet", scene(preset=BEST, settings=settings))
     assert response.message.startswith("contactDamping was set to")
 

@@ -1,5 +1,6 @@
 """Ensembles: families of motions, fragility, agreement one by one and in distribution."""
 
+import itertools
 import math
 
 import numpy as np
@@ -89,6 +90,62 @@ def test_counts_that_hold_no_spread(overturned, median):
     assert fit == Fit(pytest.approx(median), 0.0)
     steps = fit.probability(np.array([1e-3, 1e3]))
     assert steps.tolist() == [float(median == 0.0), float(median < math.inf)]
+
+
+@pytest.mark.parametrize(
+    ("overturned", "level"),
+    [
+        # a stronger motion spares the block
+        ([8, 7, 6, 5, 4, 3], 33 / 48),
+        ([3, 3, 3, 3, 3, 3], 18 / 48),
+        # it helps so little that even odds are 1e10 onsets away
+        ([1, 1, 1, 1, 1, 2], None),
+    ],
+)
+def test_counts_that_hold_no_median(overturned, level):
+    fit = fit_lognormal(LEVELS, np.array(overturned, float), np.full(6, 8.0))
+    assert math.isnan(fit.median)
+    found = fit.probability(LEVELS)
+    if level is None:
+        assert fit.beta < math.inf
+        # a line through the counts: their sum is that of the fit
+        assert 8.0 * found.sum() == pytest.approx(sum(overturned), rel=0.02)
+        assert found[0] < found[-1]
+    else:
+        assert fit.beta == math.inf
+        assert found == pytest.approx([level] * 6, rel=1e-12)
+
+
+def test_no_counts_hold_nothing():
+    fit = fit_lognormal(LEVELS, np.zeros(6), np.zeros(6))
+    assert math.isnan(fit.median)
+    assert np.isnan(fit.probability(LEVELS)).all()
+
+
+def test_all_counts_have_a_fit():
+    """Whatever two motions do at three intensities."""
+    for counts in itertools.product(range(3), repeat=3):
+        fit = fit_lognormal(LEVELS[:3], np.array(counts, float), np.full(3, 2.0))
+        found = fit.probability(LEVELS)
+        assert ((found >= 0.0) & (found <= 1.0)).all()
+        assert (np.diff(found) >= 0.0).all()
+        known = LEVELS[0] / 10 <= fit.median <= LEVELS[2] * 10
+        assert known or fit.median in (0.0, math.inf) or math.isnan(fit.median)
+
+
+def test_what_is_not_determined_may_be_anything():
+    low, high = bounds(np.array([2.0] * 190 + [math.nan] * 10))
+    assert (low, high) == (0.0, math.inf)
+    low, high = bounds(np.array([2.0] * 199 + [math.nan]))
+    assert (low, high) == (2.0, 2.0)
+
+
+def test_overturning_that_falls_with_the_intensity_has_no_capacity(tmp_path, capsys):
+    arguments = ["ensemble", "--quick", "--family", "near-fault", "--sources", "housner"]
+    assert run([*arguments, "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert "exact capacity undetermined [0.000, inf] onsets" in text
+    assert "fitted capacity over the exact one undetermined" in text
 
 
 def test_bounds_hold_the_truth_as_often_as_they_say():
@@ -246,6 +303,7 @@ def test_the_help_names_no_empty_default(capsys):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
+        (["--motions", "1000000000"], "GB"),
         (["--records", "FILE", "--seed", "2"], "--seed is 2; it may be given only without --rec"),
         (["--records", "FILE", "--family", "noise"], "--family is noise"),
         (["--records", "FILE", "FILE"], "twice"),

@@ -14,7 +14,7 @@ from studies.contact import study as contact
 from studies.contact.report import report as report_of_contact
 from studies.ensemble import study as ensemble
 from studies.free import study as free
-from studies.kit import runner
+from studies.kit import plan, runner
 from studies.kit.fingerprint import PACKAGES, ROOT, fingerprint, reached
 from studies.kit.jobs import summary
 from studies.measures.energy import energy_drift
@@ -31,7 +31,7 @@ from studies.sweep import study as sweep
 from studies.sweep.figure import draw_sweep
 from studies.validity import study as validity
 
-AT_ONCE = ("histories", "linearizations")
+AT_ONCE = ("linearizations",)
 DEAR = ("overturning", "precision")
 """Studies that take many seconds before their first row."""
 RESUMABLE = [
@@ -115,7 +115,7 @@ def look(jobs, *, executor, reduce, journal):
 
 @pytest.mark.parametrize(("study", "chapter"), RESUMABLE)
 def test_what_a_row_runs_through_was_found(study, chapter, monkeypatch, tmp_path):
-    monkeypatch.setattr(runner, "run_jobs", look)
+    monkeypatch.setattr(plan, "run_jobs", look)
     with pytest.raises(Seen) as seen:
         run(study.command_line(chapter, tmp_path, full=False))
     ours = {
@@ -150,7 +150,7 @@ MADE_UP = {
 from typing import TYPE_CHECKING
 from .report import report
 from . import measure as m
-from studies.kit import runner
+from studies.kit import plan, runner
 
 if TYPE_CHECKING:
     from studies.swing import types

@@ -5,7 +5,6 @@ import re
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic import MODELS, RigidBlock, Still
@@ -13,11 +12,14 @@ from analytic.criteria import free_amplitude, quarter_period
 from analytic.response import Outcome
 from engines import core_engines
 from engines.scene import ACCURACIES
+from studies.free import STUDY
 from studies.free import errors as free
 from studies.free.errors import crest, next_amplitude, reduce, swing_times, turning_points
 from studies.free.report import report
-from studies.free.study import command, released
+from studies.free.study import plan, released
 from studies.kit.jobs import ask
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.sources.registry import SOURCES, resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
@@ -131,7 +133,6 @@ def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):
 
     source = resolve("exact")
     monkeypatch.setitem(SOURCES, "fails", type(source)("model", fails))
-    assert command(out=tmp_path, quick=True, sources=("exact", "fails")) == 1
-    rows = pd.read_csv(tmp_path / "free.csv").set_index("source")
-    assert set(rows.loc["fails", "outcome"]) == {Outcome.FAILED.value}
+    rows = fill(STUDY, plan(["exact", "fails"], quick=True), tmp_path, Running(jobs=1))
+    assert {row["outcome"] for row in rows if row["source"] == "fails"} == {Outcome.FAILED.value}
     assert re.search(r"^fails +- -", report(tmp_path), re.MULTILINE)

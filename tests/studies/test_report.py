@@ -11,9 +11,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from analytic import RigidBlock, SinePulse, simulate
+from analytic.block import STANDARD_GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
+from studies.page.engine_cases import engine_cases
 
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
     "sweep": ("--figure", "6", "--sources", "exact", "modified"),
@@ -60,7 +64,7 @@ class Links(HTMLParser):
 
     def handle_starttag(self, tag, attributes):
         self.addresses += [value for name, value in attributes if name in ("src", "href")]
-        if tag not in ("meta", "img", "link", "br"):
+        if tag not in ("meta", "img", "link", "br", "input"):
             self.open.append(tag)
 
     def handle_endtag(self, tag):
@@ -72,7 +76,7 @@ def test_the_page_holds_all_it_shows(made):
     links.feed((made / "report.html").read_text())
     assert links.open == []
     assert len(links.addresses) > 3
-    assert all(address.startswith(("#", "data:image/svg+xml")) for address in links.addresses)
+    assert all(address.startswith(("#", "data:image/")) for address in links.addresses)
 
 
 def test_the_page_says_what_the_tables_say(made):
@@ -85,11 +89,50 @@ def test_the_page_says_what_the_tables_say(made):
     assert f"mujoco {record['engines']['mujoco']}" in text
 
 
+def test_a_picture_is_described_and_what_is_weaker_is_said(made):
+    text = (made / "report.html").read_text()
+    described = re.findall('<img [^>]*alt="([^"]*)"', text)
+    assert len(described) == 2
+    assert all(len(words) > 60 for words in described)
+    assert f"Weaker than the published form:</strong> {CHAPTERS[0][1].weaker}" in text
+
+
+def test_captions_are_of_pictures_that_there_are():
+    for study in STUDIES:
+        assert {f"{name}.png" for name in study.captions} <= set(study.products)
+
+
+def test_prose_is_told_from_tables():
+    told = page.prose("A sentence.\n\nAnother.\n  a    b\n  1    2\nThe end.")
+    assert told == [
+        (False, ["A sentence.", "Another."]),
+        (True, ["  a    b", "  1    2"]),
+        (False, ["The end."]),
+    ]
+
+
+def test_the_engines_answers_are_those_of_the_tables():
+    held = engine_cases(PUBLISHED)
+    assert held["sources"][0] == "exact"
+    rows = pd.read_csv(PUBLISHED / "sweep" / "sweep.csv")
+    cases = rows[rows["source"] == "mujoco"].reset_index(drop=True)
+    assert len(held["rows"]) == len(cases) == 960
+    shown = {tuple(row[:5]): row[5 + held["sources"].index("mujoco")] for row in held["rows"]}
+    for case in cases.iloc[::97].itertuples():
+        amplitude = float(f"{1 / case.aspect + case.excess_g:.8g}")
+        half_cycles = {"half-sine": 1, "full-sine": 2}[case.pulse]
+        peak = shown[half_cycles, case.aspect, case.width_m, amplitude, case.omega_over_p]
+        assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.8g}"))
+
+
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
     with pytest.raises(report.FolderError, match="quick report"):
         report.command(out=made, full=True)
 
 
+BLOCK = RigidBlock(width=0.5, height=1.5)
+AMPLITUDE = 0.43333333 * STANDARD_GRAVITY
+"""What the page shows first."""
 WIDTHS = (390, 820, 1400)
 PROBE = """<script>
 const head = document.querySelector("table th button");
@@ -97,7 +140,16 @@ document.querySelectorAll("details").forEach(part => part.open = true);
 const before = document.documentElement.scrollWidth;
 head.click(); head.click();
 const column = [...head.closest("table").tBodies[0].rows].map(row => row.cells[0].textContent);
-document.title = JSON.stringify({wide: before - window.innerWidth, column});
+const said = () => document.getElementById("try-outcome").textContent;
+const first = said(), slider = document.getElementById("try-omega");
+slider.value = 12.5;
+slider.dispatchEvent(new Event("input"));
+const then = said(), pulses = document.getElementById("try-pulse");
+pulses.value = "1";
+pulses.dispatchEvent(new Event("input"));
+const engines = document.getElementById("try-answers").rows.length;
+const wide = before - window.innerWidth;
+document.title = JSON.stringify({wide, column, first, then, engines});
 </script>"""
 
 
@@ -117,3 +169,9 @@ def test_the_page_fits_its_window_and_sorts(made, tmp_path: Path, width):
     assert seen["wide"] <= 0
     assert len(seen["column"]) > 1
     assert seen["column"] == sorted(seen["column"], reverse=True)
+    for words, omega in ((seen["first"], 7.93185), (seen["then"], 12.5)):
+        peak = simulate(
+            BLOCK, SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
+        ).peak_ratio
+        assert f"{peak:.6f}" in words
+    assert seen["engines"] == 1  # figure 6 is of half-sines, and the exact solution was asked

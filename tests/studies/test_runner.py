@@ -20,15 +20,20 @@ from studies.kit import signals
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import FolderError, open_journal
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.kit.provenance import identity
 from studies.kit.runner import run_jobs
 from studies.kit.sealed import seal, unseal
 from studies.sources.registry import SOURCES, Effort, Source, resolve
+from studies.sweep import STUDY
 from studies.sweep import study as sweep
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 HERE = Path(__file__).parent
+SMALL = sweep.plan([6], ["exact"])
+ALONE = Running(jobs=1, time_limit=1.0)
 PATIENCE_S = 900.0
 """Guards against a test that hangs; nothing is expected within it."""
 
@@ -250,7 +255,7 @@ def test_two_runs_never_share_a_folder(tmp_path):
     with (tmp_path / ".lock").open("a") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         with pytest.raises(FolderError, match="in use"):
-            sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+            fill(STUDY, SMALL, tmp_path, ALONE)
     assert sorted(path.name for path in tmp_path.iterdir()) == [".lock"]
 
 
@@ -265,39 +270,36 @@ def test_two_runs_never_share_a_folder(tmp_path):
     ],
 )
 def test_a_folder_of_another_version_is_left_alone(tmp_path, change, named):
-    sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+    fill(STUDY, SMALL, tmp_path, ALONE)
     path = tmp_path / "journal.jsonl"
     header, rest = path.read_bytes().split(b"\n", 1)
     path.write_bytes(seal(unseal(header) | change) + rest)
     before = {item.name: item.read_bytes() for item in tmp_path.iterdir()}
     with pytest.raises(FolderError, match=named):
-        sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+        fill(STUDY, SMALL, tmp_path, ALONE)
     assert {item.name: item.read_bytes() for item in tmp_path.iterdir()} == before
 
 
 def test_a_folder_grows_and_never_shrinks(tmp_path):
-    executor = Local(1, 1.0)
-    sweep.sweep([6], ["exact"], tmp_path, executor=executor)
-    sweep.sweep([6, 7], ["exact", "modified"], tmp_path, executor=executor)
+    fill(STUDY, sweep.plan([6], ["exact"]), tmp_path, ALONE)
+    fill(STUDY, sweep.plan([6, 7], ["exact", "modified"]), tmp_path, ALONE)
     assert len(pd.read_csv(tmp_path / "sweep.csv")) == 960
     for figures, sources, missing in (
         ([6, 7], ["exact"], "modified"),
         ([6], ["exact", "modified"], "figure 7"),
     ):
         with pytest.raises(FolderError, match=missing):
-            sweep.sweep(figures, sources, tmp_path, executor=executor)
+            fill(STUDY, sweep.plan(figures, sources), tmp_path, ALONE)
     with pytest.raises(FolderError, match="settings"):
-        sweep.sweep(
-            [6, 7], ["exact", "modified"], tmp_path, executor=executor, effort=Effort(step=1e-2)
-        )
+        fill(STUDY, sweep.plan([6, 7], ["exact", "modified"], Effort(step=1e-2)), tmp_path, ALONE)
     assert len(pd.read_csv(tmp_path / "sweep.csv")) == 960
 
 
 def test_another_provenance_is_left_alone(tmp_path):
-    sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+    fill(STUDY, SMALL, tmp_path, ALONE)
     path = tmp_path / "provenance.json"
     for text in (path.read_text().replace('"version": "', '"version": "9.'), "{}", "?"):
         path.write_text(text)
         with pytest.raises(FolderError, match="provenance"):
-            sweep.sweep([6], ["exact"], tmp_path, executor=Local(1, 1.0))
+            fill(STUDY, SMALL, tmp_path, ALONE)
         assert path.read_text() == text

@@ -11,11 +11,13 @@ from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
 from studies.__main__ import run
 from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
-from studies.kit.executors import Local
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.measures.differences import with_conditioning
 from studies.measures.energy import energy, growth
 from studies.measures.verdicts import Verdict, invalidity, judge
 from studies.sources.registry import resolve
+from studies.stability import STUDY
 from studies.stability.figure import MARKS
 from studies.stability.largest_step import (
     FACTOR,
@@ -35,7 +37,7 @@ from studies.stability.sensitivity import (
     perturbed,
     with_growth,
 )
-from studies.stability.study import METHODS, matrix_jobs, put, reduce, speechless, stability
+from studies.stability.study import METHODS, matrix_jobs, plan, put, reduce, speechless
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)
@@ -270,10 +272,9 @@ def test_only_a_source_without_any_result_is_speechless():
 
 
 def test_a_folder_holds_its_tables_figure_and_findings_and_goes_on(tmp_path):
-    local = Local(workers=1, time_limit_s=60.0)
-    stability(["exact"], tmp_path, quick=True, executor=local)
+    fill(STUDY, plan(["exact"], True, 60.0), tmp_path, Running(jobs=1))
     kept = (tmp_path / "journal.jsonl").read_text().splitlines()
-    stability(["exact", "housner"], tmp_path, quick=True, executor=local)
+    fill(STUDY, plan(["exact", "housner"], True, 60.0), tmp_path, Running(jobs=1))
     assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
     text = report(tmp_path)
     assert report(tmp_path) == text

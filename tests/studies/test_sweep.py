@@ -4,6 +4,7 @@ import json
 import math
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,21 +15,26 @@ from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES, core_engines
 from studies.kit.executors import Local
 from studies.kit.jobs import summary
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.kit.runner import run_jobs
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
 from studies.page import redraw
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES
+from studies.sweep import STUDY
 from studies.sweep import study as sweep
 
 HERE = Path(__file__).parent
 MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
+WHOLE = sweep.plan([6, 7, 8, 9], MODELS_AND_SOLVERS)
+ALONE = Running(jobs=1, time_limit=1.0)
 
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweep")
-    rows = sweep.sweep([6, 7, 8, 9], MODELS_AND_SOLVERS, folder, executor=Local(1, 1.0))
+    rows = fill(STUDY, WHOLE, folder, ALONE)
     return folder, rows, sweep.report(folder)
 
 
@@ -129,13 +135,8 @@ def test_a_rerun_computes_nothing(swept):
     folder = swept[0]
     journal = folder / "journal.jsonl"
     before = journal.read_bytes()
-    sweep.sweep([6, 7, 8, 9], MODELS_AND_SOLVERS, folder, executor=refuse_any)
+    fill(STUDY, replace(WHOLE, ask=None), folder, ALONE)
     assert journal.read_bytes() == before
-
-
-def refuse_any(jobs):
-    assert not jobs
-    yield from ()
 
 
 def test_provenance_says_what_ran(swept):

@@ -6,7 +6,7 @@ import pytest
 from studies.__main__ import run
 from studies.cases.window import Window
 from studies.throughput import study as throughput
-from studies.throughput.study import measured, peer_solvers, points
+from studies.throughput.study import peer_solvers, points, timings
 
 
 def test_every_solver_answers_the_same_cases(tmp_path, monkeypatch, capsys):
@@ -32,6 +32,6 @@ def test_points_fill_the_window():
 
 
 def test_steps_are_counted():
-    rows = pd.DataFrame(measured(Window(), 400, 1, 1)).set_index("source")
+    rows = pd.DataFrame(timings(Window(), 400, 1, 1)).set_index("source")
     assert rows.loc["exact", "steps"] > 2.0
     assert "dop853 (SciPy)" in peer_solvers()

@@ -9,13 +9,15 @@ import pytest
 
 from analytic import peak_ratios, simulate
 from studies.cases.drawn import LEAST_NORMAL, draw
-from studies.kit.executors import Local
 from studies.kit.journal import FolderError
+from studies.kit.options import Running
+from studies.kit.plan import fill
 from studies.measures.differences import with_conditioning
+from studies.validate import STUDY
 from studies.validate.hints import FALSE, KNOWN, leanings
-from studies.validate.study import report, validate
+from studies.validate.study import plan, report
 
-LOCAL = Local(workers=1, time_limit_s=60.0)
+ALONE = Running(jobs=1)
 
 
 def test_the_same_seed_draws_the_same_cases_and_another_seed_others():
@@ -55,9 +57,9 @@ def test_condition_number_of_a_block_that_overturns_is_no_number():
 
 
 def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
-    validate(4, 5, ["exact"], tmp_path, executor=LOCAL)
+    fill(STUDY, plan(4, 5, ["exact"]), tmp_path, ALONE)
     kept = (tmp_path / "journal.jsonl").read_text().splitlines()
-    rows = validate(9, 5, ["exact", "housner"], tmp_path, executor=LOCAL)
+    rows = fill(STUDY, plan(9, 5, ["exact", "housner"]), tmp_path, ALONE)
     assert len(rows) == 18
     assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
     text = report(tmp_path)
@@ -69,7 +71,7 @@ def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
 
 
 def test_landing_engines_are_asked_with_false_hints_too(tmp_path):
-    rows = validate(3, 5, ["exact", "mujoco", "mujoco:fixed"], tmp_path, executor=LOCAL)
+    rows = fill(STUDY, plan(3, 5, ["exact", "mujoco", "mujoco:fixed"]), tmp_path, ALONE)
     assert len([row for row in rows if row["table"] == "validate"]) == 9
     text = report(tmp_path)
     hinted = pd.read_csv(tmp_path / "hints.csv")
@@ -100,13 +102,13 @@ def test_a_wrong_outcome_with_a_false_hint_is_counted():
 
 
 def test_models_have_no_hints(tmp_path):
-    validate(2, 5, ["exact"], tmp_path, executor=LOCAL)
+    fill(STUDY, plan(2, 5, ["exact"]), tmp_path, ALONE)
     assert "lean" not in report(tmp_path)
     assert not (tmp_path / "leaning.csv").exists()
 
 
 def test_another_seed_is_refused(tmp_path):
 
-    validate(2, 1, ["exact"], tmp_path, executor=LOCAL)
+    fill(STUDY, plan(2, 1, ["exact"]), tmp_path, ALONE)
     with pytest.raises(FolderError, match="settings"):
-        validate(2, 2, ["exact"], tmp_path, executor=LOCAL)
+        fill(STUDY, plan(2, 2, ["exact"]), tmp_path, ALONE)

@@ -1,0 +1,121 @@
+"""A sphere dropped on a plane in MuJoCo: which solref gives which coefficient of restitution.
+
+The library has no such coefficient: its contact is a spring with a damper, which may push but not
+pull, and lets go when its force is zero (Schwager and Poeschel, Granular Matter 9, 2007).
+"""
+
+import math
+from functools import partial
+from importlib import import_module
+
+from engines.drop import Bouncing, Drop, rebound
+
+IMPEDANCE = 0.9999
+"""Largest that the library takes, by which it scales a contact's acceleration."""
+
+FEEBLE = 1e-9
+"""In place of a zero."""
+
+LIBRARY_TIME_S = 0.02
+"""Time constant [s] of the library's own contact."""
+
+
+def given_back(ratio: float) -> float:
+    """Return the part of the speed that a spring gives back by its damping ratio."""
+    if ratio < 1.0:
+        root = math.sqrt(1.0 - ratio * ratio)
+        return math.exp(-ratio / root * 2.0 * math.atan2(root, ratio))
+    if ratio == 1.0:
+        return math.exp(-2.0)
+    root = math.sqrt(ratio * ratio - 1.0)
+    return math.exp(-ratio / root * math.log((ratio + root) / (ratio - root)))
+
+
+def damping_ratio(restitution: float) -> float:
+    """Return the damping ratio of a spring that gives back a part of the speed, by bisection."""
+    low, high = 0.0, 1.0
+    while given_back(high) > restitution:
+        high *= 2.0
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if given_back(middle) > restitution else (low, middle)
+    return high
+
+
+def direct(drop: Drop, steps: float) -> tuple[float, float]:
+    """Return solref in the direct form, for a contact of so many steps without damping.
+
+    Where nothing is to be given back, the form that takes all speed out in one step.
+    """
+    if drop.restitution == 0.0:
+        return -FEEBLE / drop.dt_s**2, -1.0 / drop.dt_s
+    frequency = math.pi / (steps * drop.dt_s)
+    # a pair with one zero would be replaced by the library's default
+    return -(frequency**2), min(-2.0 * damping_ratio(drop.restitution) * frequency, -FEEBLE)
+
+
+def by_ratio(drop: Drop) -> tuple[float, float]:
+    """Return solref as its time constant, the library's own, and damping ratio."""
+    if drop.restitution == 0.0:
+        return LIBRARY_TIME_S, 1.0
+    return LIBRARY_TIME_S, max(damping_ratio(drop.restitution), FEEBLE)
+
+
+def _dropped(drop: Drop, solref: tuple[float, float], impedance: str) -> float:
+    mj = import_module("mujoco")
+    contact = f'solref="{solref[0]!r} {solref[1]!r}" {impedance}'
+    model = mj.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{drop.dt_s!r}" gravity="0 0 {-drop.gravity!r}"/><worldbody>'
+        f'<geom type="plane" size="1 1 1" {contact}/>'
+        f'<body pos="0 0 {drop.radius!r}"><joint type="slide" axis="0 0 1"/>'
+        f'<geom type="sphere" size="{drop.radius!r}" mass="{drop.mass!r}" {contact}/>'
+        "</body></worldbody></mujoco>"
+    )
+    data = mj.MjData(model)
+    data.qpos[0], data.qvel[0] = drop.height, -drop.speed
+    # the library would write its warnings to a file; they are counted and read below
+    mj.set_mju_user_warning(_ignore)
+
+    def step() -> tuple[float, float]:
+        mj.mj_step(model, data)
+        return float(data.qpos[0]), float(data.qvel[0])
+
+    found = rebound(drop, step)
+    mj.set_mju_user_warning(None)
+    return math.nan if any(warning.number for warning in data.warning) else found
+
+
+def _ignore(message: str) -> None:
+    """Take a warning without writing it anywhere."""
+
+
+FIRM = f'solimp="{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2"'
+
+
+def _direct_setting(drop: Drop, steps: float) -> str:
+    k, b = direct(drop, steps)
+    return f'solref="{k:.5g} {b:.5g}" {FIRM}'
+
+
+def _over(steps: int) -> Bouncing:
+    return Bouncing(
+        name=f"spring and damper over {steps} steps",
+        setting=partial(_direct_setting, steps=steps),
+        dropped=lambda drop: _dropped(drop, direct(drop, steps), FIRM),
+    )
+
+
+BOUNCING = (
+    Bouncing(
+        name="the library's solref, whatever e",
+        setting=lambda drop: 'solref="0.02 1"',
+        dropped=lambda drop: _dropped(drop, (LIBRARY_TIME_S, 1.0), ""),
+    ),
+    Bouncing(
+        name="the damping ratio for e alone",
+        setting=lambda drop: f'solref="0.02 {by_ratio(drop)[1]:.5g}"',
+        dropped=lambda drop: _dropped(drop, by_ratio(drop), ""),
+    ),
+    _over(5),
+    _over(20),
+)
+"""From the library's own contact to a spring that the step resolves."""

@@ -1,0 +1,85 @@
+"""Drops that vary one thing at a time, and what each engine makes of them."""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, replace
+
+import pandas as pd
+
+from engines import ENGINES
+from engines.drop import Drop
+from studies.kit.journal import Row
+
+WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Coefficients of restitution."""
+
+PHASES = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Parts of a step after which the sphere meets the base."""
+
+BASE = Drop(restitution=0.0)
+"""From which one thing at a time is varied."""
+
+VARIED = {"": (math.nan,), "dt_s": (1e-4, 1 / 240), "speed": (0.1, 10.0), "radius": (0.01, 1.0)}
+"""What is varied -> its other values; the empty name is none of it."""
+
+
+def drops() -> Iterator[tuple[str, Drop]]:
+    """Yield what is varied, and the drop."""
+    for varied, values in VARIED.items():
+        for value, wanted, phase in itertools.product(values, WANTED, PHASES):
+            drop = replace(BASE, restitution=wanted, phase=phase)
+            yield varied, replace(drop, **{varied: value}) if varied else drop
+
+
+def measured(engines: Sequence[str]) -> pd.DataFrame:
+    """Return a row for each engine, way and drop; found is nan where the library went wrong."""
+    rows: list[Row] = []
+    for engine in engines:
+        for way in ENGINES[engine].bouncing:
+            for varied, drop in drops():
+                rows.append(
+                    {
+                        "engine": engine,
+                        "way": way.name,
+                        "varied": varied,
+                        **{_column(name): value for name, value in asdict(drop).items()},
+                        "found": way.dropped(drop),
+                        "literal": way.setting(drop),
+                    }
+                )
+    return pd.DataFrame(rows).drop(columns="gravity_m_s2")
+
+
+def _column(name: str) -> str:
+    units = {"speed": "speed_m_s", "radius": "radius_m", "gravity": "gravity_m_s2"}
+    return {"restitution": "wanted", **units}.get(name, name)
+
+
+def kept(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each engine and way: how far off coefficients are at most.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        From `measured`.
+
+    Returns
+    -------
+    DataFrame
+        engine, way; off: the largest difference of what is found from what is wanted, wherever the
+        impact falls in a step; off_dt_s, off_speed, off_radius: the same over what is varied;
+        broken: drops that the library did not survive; literal: what is set for 0.6.
+    """
+    table = []
+    for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
+        off = (group["found"] - group["wanted"]).abs().where(group["found"] < 10.0, math.inf)
+        mine = {
+            f"off_{name}" if name else "off": off[group["varied"] == name].max() for name in VARIED
+        }
+        shown = group[(group["wanted"] == 0.6) & (group["varied"] == "")].iloc[0]
+        broken = int((off == math.inf).sum())
+        table.append(
+            {"engine": engine, "way": way, **mine, "broken": broken, "literal": shown["literal"]}
+        )
+    return pd.DataFrame(table)

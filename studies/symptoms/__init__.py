@@ -1,0 +1,24 @@
+"""From what users see to the setting that mends it."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="symptoms",
+    module="studies.symptoms.study",
+    help="""From what users see to the setting that mends it, with the effect that was measured.
+
+A block creeps, sinks, bounces, tips too early, a moved base carries nothing, ...: for each engine
+what it is by default, the one setting that helps most, and what is left with all of them. It runs
+nothing: it reads the published tables of `rocking contact` and `rocking precision`.""",
+    table="symptoms.csv",
+    products=("symptoms.csv", "symptoms.png", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="symptoms",
+            question="Which setting mends what users of an engine see?",
+            tables=("symptoms.csv",),
+            quick=(),
+            minutes=(0.1, 0.1),
+        ),
+    ),
+)

@@ -1,0 +1,87 @@
+"""What is seen by default, with the one setting that helps most, and with all that is tuned."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.drawing.styles import engine_style
+
+STAGES = {"before": "as seen", "after": "one setting", "tuned": "tuned", "landing": "landing"}
+MEASURES = {
+    "max_error": "largest error of a peak  [–]",
+    "newton_e": "|e| of an impact  [–]",
+    "slip_widths": "slide of the pivot over B  [–]",
+    "sink_widths": "depth of a corner over B  [–]",
+    "energy_growth": "rise of energy  [–]",
+}
+"""Column -> what it is called at an axis."""
+FLOOR = 1e-12
+"""Sizes below are drawn here."""
+BROKEN = 10.0
+"""Where a setting without a result is drawn."""
+
+
+def draw_symptoms(lines: pd.DataFrame) -> Figure:
+    """Draw the size of each symptom by default, with one setting and with all, by engine.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of symptoms.csv.
+    """
+    groups = list(lines.groupby("symptom", sort=False))
+    columns = 4
+    rows = -(-len(groups) // columns)
+    drawing = Figure(figsize=(12.4, 3.0 * rows), layout="constrained")
+    panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
+    for axes, (symptom, group) in zip(panels, groups, strict=False):
+        _panel(axes, group)
+        axes.set_title(_broken(str(symptom)), fontsize=9)
+        axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8)
+    for axes in panels[len(groups) :]:
+        axes.set_axis_off()
+    return drawing
+
+
+def _broken(words: str, width: int = 36) -> str:
+    """Return a title in lines that fit above a panel."""
+    lines = [""]
+    for word in words.split():
+        lines[-1:] = (
+            [f"{lines[-1]} {word}".strip()] if len(lines[-1]) < width - 8 else [lines[-1], word]
+        )
+    return "\n".join(lines)
+
+
+def _panel(axes: Axes, group: pd.DataFrame) -> None:
+    places = np.arange(len(STAGES))
+    for number, row in enumerate(group.to_dict("records")):
+        style = engine_style(str(row["engine"]), "")
+        sizes = np.abs([float(row[name]) for name in STAGES])
+        sizes = np.where(np.isinf(sizes), BROKEN, np.maximum(sizes, FLOOR))
+        shown = np.isfinite(sizes)
+        axes.plot(
+            places[shown],
+            sizes[shown],
+            color=style.colour,
+            marker=style.marker,
+            fillstyle=style.fill,
+            linewidth=1.2,
+        )
+        axes.text(
+            0.97,
+            0.95 - 0.09 * number,
+            str(row["engine"]),
+            color=style.colour,
+            fontsize=8,
+            transform=axes.transAxes,
+            ha="right",
+            va="top",
+        )
+    axes.set(yscale="log", xlim=(-0.3, len(STAGES) - 0.7))
+    axes.set_xticks(places, list(STAGES.values()), fontsize=8)
+    if axes.get_ylim()[1] >= BROKEN:
+        axes.axhline(BROKEN, color="#999999", linewidth=0.6)
+        axes.annotate("no result", (1.0, BROKEN), fontsize=7, color="#555555", va="bottom")
+    axes.grid(alpha=0.25)

@@ -1,0 +1,88 @@
+"""The page from what users see to the setting that mends it, from the published tables."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import pandas as pd
+
+from engines import ENGINES
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
+from studies.kit.runner import own_folder
+from studies.symptoms import STUDY
+from studies.symptoms.lines import LADDER, PUBLISHED, VARIANTS, lines_of
+from studies.symptoms.words import first_claim, page, told
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def command(
+    *,
+    engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    published: Place = PUBLISHED,
+    out: Place | None = None,
+) -> int:
+    """Say what users see, what it measures by default, and which setting leaves how much of it.
+
+    Of the settings changed one at a time from a library's defaults the one that helps most, if it
+    halves what there is and gets no more outcomes wrong; and what is left where all are tuned, with
+    equal steps and with steps that land on impacts.
+
+    Parameters
+    ----------
+    engines
+        Names of engines, without a preset; by default all in the published tables.
+    published
+        Folder of the published tables.
+    out
+        Folder for a table and a figure; none by default.
+    """
+    for name in (VARIANTS, LADDER):
+        if not (published / name).is_file():
+            raise BadInputError(f"--published is {str(published)!r}; it must hold {name}")
+    asked = tuple(ENGINES) if engines is None else engines
+    check_engines(asked)
+    lines = lines_of(published, asked)
+    if lines.empty:
+        problem = f"it must name one in {VARIANTS}"
+        raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
+    text = f"{page(lines)}\n\nFrom {VARIANTS} and {LADDER}."
+    if out is not None:
+        settings = {"engines": list(lines["engine"].unique())}
+        with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
+            _write(out, lines, text)
+    print(text)
+    return 0
+
+
+def _write(folder: Path, lines: pd.DataFrame, text: str) -> None:
+    from studies.drawing.figures import save_all
+
+    provenance.write_text(folder / "symptoms.csv", lines.to_csv(index=False, na_rep="nan"))
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    save_all(pictures(folder), folder)
+
+
+def _read(folder: Path) -> pd.DataFrame:
+    """Read a table back, with empty words as such."""
+    words = dict.fromkeys(("shown_by", "setting", "literal", "threads", "command"), str)
+    path = folder / "symptoms.csv"
+    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+
+
+def headline(folder: Path) -> str:
+    """Say which setting helps most against a wrong peak."""
+    return first_claim(_read(folder))
+
+
+def paragraph(folder: Path) -> str:
+    """Say of every symptom what there is, and what is left of it."""
+    return told(_read(folder))
+
+
+def pictures(folder: Path) -> "dict[str, Figure]":
+    """Draw the size of each symptom from a folder's symptoms.csv alone."""
+    from studies.symptoms.figure import draw_symptoms
+
+    return {"symptoms": draw_symptoms(_read(folder))}

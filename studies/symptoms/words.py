@@ -1,0 +1,120 @@
+"""What a setting changes, in the library's words; and the page as text."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines import ENGINES, Scene
+from studies.cases.variants import variants
+from studies.measures.columns import COLUMNS
+from studies.measures.differences import scientific
+from studies.measures.words import listed
+
+SCENE_STEP = 1e-3
+"""p dt at which settings are written out, that of the study of contacts."""
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+"""The block for which they are."""
+
+GIVEN = re.compile(r"\w+=(?:\"[^\"]*\"|\[[^\]]*\]|\([^)]*\)|[^,()\s]+)")
+"""A named value in a call of Python, or in a model."""
+
+
+def changed(engine: str, preset: str, factor: str, level: str) -> str:
+    """Return what a variant of a preset sets otherwise, in the library's words.
+
+    Empty for an engine that writes no scripts.
+    """
+    script = ENGINES[engine].script
+    if script is None:
+        return ""
+    found = [
+        v for v in variants(engine) if (v.preset, v.factor, v.level) == (preset, factor, level)
+    ]
+    given = []
+    for settings in ({}, dict(found[0].settings)):
+        scene = Scene(
+            block=BLOCK,
+            motion=SinePulse(amplitude=1.0, omega=1.0),
+            preset=preset,
+            step=SCENE_STEP,
+            settings=settings,
+        )
+        chosen = scene.choose(ENGINES[engine].preset(preset).settings)
+        lines = script(scene, chosen, SCENE_STEP / BLOCK.p).settings
+        given.append(dict.fromkeys(GIVEN.findall(" ".join(" ".join(lines).split()))))
+    return ", ".join(word for word in given[1] if word not in given[0])
+
+
+def page(lines: pd.DataFrame) -> str:
+    """Return the page: a paragraph for each symptom, a line for each engine."""
+    parts = []
+    for symptom, group in lines.groupby("symptom", sort=False):
+        head = f"{symptom} ({_measure(str(group.iloc[0]['measure']))})"
+        asked = f"  asked in {group.iloc[0]['threads']}"
+        parts.append("\n".join([head, asked, *map(_line, group.to_dict("records"))]))
+    return "\n\n".join(parts)
+
+
+def _measure(column: str) -> str:
+    return COLUMNS[column].meaning.partition(";")[0].replace("|", "∣")
+
+
+def _line(row: Mapping[Any, Any]) -> str:
+    number = {name: float(str(row[name])) for name in ("before", "after", "tuned", "landing")}
+    words = f"  {row['engine']}: {_number(number['before'])} with {row['shown_by']}"
+    if row["setting"]:
+        words += f"; {_number(number['after'])} with {row['setting']}"
+        words += f" ({row['literal']})" if row["literal"] else ""
+    else:
+        words += "; no single setting halves it"
+    rest = [
+        f"{_number(number[name])} {how}"
+        for name, how in (("tuned", "tuned"), ("landing", "landing"))
+        if number[name] == number[name]
+    ]
+    return f"{words}; {listed(rest)}\n    {row['command']}"
+
+
+def _number(value: float) -> str:
+    if value == float("inf"):
+        return "no result"
+    return scientific(value)
+
+
+def first_claim(lines: pd.DataFrame) -> str:
+    """Say of every engine which single setting helps most against a wrong peak."""
+    first = lines[lines["symptom"] == lines.iloc[0]["symptom"]]
+    words = [_helps(row) for row in first.to_dict("records")]
+    return f"Against a block that tips too early or too late: {'; '.join(words)}."
+
+
+def _helps(row: Mapping[Any, Any]) -> str:
+    before, after = float(str(row["before"])), float(str(row["after"]))
+    if not row["setting"]:
+        return f"in {row['engine']} no single setting halves the error of {scientific(before)}"
+    return (
+        f"in {row['engine']} {row['setting']} alone takes the largest error from "
+        f"{scientific(before)} to {scientific(after)}"
+    )
+
+
+def told(lines: pd.DataFrame) -> str:
+    """Say of every symptom what there is by default, and what one setting and all leave of it."""
+    sentences = []
+    for symptom, group in lines.groupby("symptom", sort=False):
+        words = [_short(row) for row in group.to_dict("records")]
+        sentences.append(f"{str(symptom).capitalize()}: {'; '.join(words)}.")
+    return " ".join(sentences)
+
+
+def _short(row: Mapping[Any, Any]) -> str:
+    number = {name: float(str(row[name])) for name in ("before", "after", "tuned")}
+    words = f"{row['engine']} {_number(number['before'])}"
+    if row["setting"]:
+        words += f", {_number(number['after'])} with {row['setting']}"
+    return f"{words}, {_number(number['tuned'])} tuned"

@@ -1,0 +1,109 @@
+"""The one way a study is made: its folder, tables and exit code, whatever the study."""
+
+import json
+import math
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+from analytic import RigidBlock, SinePulse, simulate
+from analytic.response import Response
+from studies.histories import STUDY as HISTORIES
+from studies.histories import study as histories
+from studies.kit.jobs import Job
+from studies.kit.journal import FolderError
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, by_label, carry_out, fill
+from studies.kit.study import Study
+from studies.kit.tables import write_table
+from studies.stability.study import PatientRunning
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse.in_g(0.4, omega=2.0 * math.pi)
+STUDY = Study(name="made-up", module="studies.sweep.study", help="", products=("made-up.csv",))
+
+
+def job(label, **more):
+    return Job(labels={"table": label, **more}, block=BLOCK, motion=PULSE, source="exact")
+
+
+def answered(job, source):
+    if job.labels["table"] == "lost":
+        return Response.failure("lost")
+    return simulate(job.block, job.motion)
+
+
+def test_each_value_of_a_label_is_a_table(tmp_path):
+    plan = Plan(jobs=[job("b"), job("a"), job("b", n=2)], ask=answered, tabulate=by_label("table"))
+    rows = fill(STUDY, plan, tmp_path)
+    assert list(by_label("table")(rows)) == ["b", "a"]
+    assert [len(pd.read_csv(tmp_path / f"{name}.csv")) for name in "ab"] == [1, 2]
+    assert not (tmp_path / "made-up.csv").exists()
+
+
+def test_a_failure_counts_where_the_row_is_needed(tmp_path, capsys):
+    plan = Plan(jobs=[job("a"), job("lost")], ask=answered)
+    assert carry_out(STUDY, plan, tmp_path, DEFAULT_RUNNING, lambda folder: folder.name) == 1
+    said = capsys.readouterr()
+    assert said.out == f"{tmp_path.name}\n"
+    assert said.err == "failed: exact: lost\n"
+    for label, code in (("a", 0), ("lost", 1)):
+        asked = replace(plan, needed=lambda rows, n=label: [r for r in rows if r["table"] == n])
+        assert carry_out(STUDY, asked, tmp_path, DEFAULT_RUNNING, str) == code
+
+
+def test_tables_that_no_job_makes_are_written_with_their_provenance(tmp_path):
+    made = pd.DataFrame({"x": [1.0, 0.1 + 0.2, math.nan]})
+    assert fill(STUDY, Plan(settings={"n": 3}, tabulate=lambda rows: {"x": made}), tmp_path) == []
+    assert (tmp_path / "x.csv").read_text() == "x\n1.0\n0.30000000000000004\nnan\n"
+    record = json.loads((tmp_path / "provenance.json").read_text())
+    assert record["settings"] == {"n": 3}
+    assert "rows" not in record["runs"][0]
+    with pytest.raises(FolderError, match="settings"):
+        fill(STUDY, Plan(settings={"n": 4}), tmp_path)
+
+
+def test_nobody_else_writes_while_tables_are_made(tmp_path):
+    def tabulate(rows):
+        with pytest.raises(FolderError, match="in use"):
+            fill(STUDY, Plan(), tmp_path)
+        return {}
+
+    fill(STUDY, Plan(tabulate=tabulate), tmp_path)
+
+
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, OSError])
+def test_what_stops_while_tables_are_made_says_how_to_go_on(stop, tmp_path):
+    def tabulate(rows):
+        raise stop
+
+    with pytest.raises(Exception if stop is OSError else stop, match="2 of 2 rows are kept"):
+        fill(STUDY, Plan(jobs=[job("a"), job("b")], ask=answered, tabulate=tabulate), tmp_path)
+    with pytest.raises(stop) as bare:
+        fill(STUDY, Plan(tabulate=tabulate), tmp_path / "no jobs")
+    assert "kept" not in str(bare.value)
+
+
+def test_a_study_with_more_patience_keeps_it_beside_other_options():
+    assert (DEFAULT_RUNNING.time_limit, PatientRunning(jobs=2).time_limit) == (60.0, 180.0)
+
+
+def test_histories_go_on_where_they_stopped_to_the_bit(tmp_path):
+    """Samples come back from the journal as they went in."""
+    plan = histories.plan([5], ["exact", "housner"])
+    whole = fill(HISTORIES, plan, tmp_path / "whole")
+    kept = (tmp_path / "whole" / "figure-5.csv").read_bytes()
+    assert fill(HISTORIES, replace(plan, ask=None), tmp_path / "whole") == whole
+    assert (tmp_path / "whole" / "figure-5.csv").read_bytes() == kept
+    case = plan.jobs[0]
+    direct = simulate(case.block, case.motion, duration=case.duration, times=case.times)
+    found = whole[0]["samples"]["theta_ratio"]
+    assert found == (direct.history.theta / case.block.alpha).tolist()
+
+
+def test_a_table_is_written_to_the_bit(tmp_path):
+    values = [math.pi, 1e-300, 2.0**-1074, 1.0 + 2.0**-52]
+    write_table(tmp_path / "t.csv", pd.DataFrame({"x": values}))
+    back = pd.read_csv(tmp_path / "t.csv")
+    assert back["x"].tolist() == values

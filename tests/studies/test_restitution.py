@@ -1,0 +1,119 @@
+"""A dropped sphere: what comes out of a coefficient of restitution, and what setting gives it."""
+
+import math
+
+import pandas as pd
+import pytest
+from scipy.integrate import solve_ivp
+
+from engines import ENGINES
+from engines.adapters.mujoco_drop import damping_ratio, given_back
+from engines.drop import Drop, rebound
+from studies.__main__ import run
+from studies.page.readme import PUBLISHED
+from studies.restitution import drops, study
+
+BOUNCING = {name: engine.bouncing for name, engine in ENGINES.items() if engine.bouncing}
+
+
+def way(engine, name):
+    return next(way for way in BOUNCING[engine] if way.name == name)
+
+
+def found(engine, name, wanted, **options):
+    return way(engine, name).dropped(Drop(restitution=wanted, **options))
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.3, 0.9, 1.0, 1.5, 4.0])
+def test_a_spring_that_only_pushes_gives_back_what_its_equation_says(ratio):
+    def motion(_, state):
+        return [state[1], -2.0 * ratio * state[1] - state[0]]
+
+    def force(_, state):
+        return motion(_, state)[1]
+
+    force.terminal, force.direction = True, -1.0
+    # x is the gap: it comes in with unit speed, and leaves where the base would have to pull
+    end = solve_ivp(motion, (0.0, 60.0), [0.0, -1.0], events=force, rtol=1e-11, atol=1e-13)
+    assert given_back(ratio) == pytest.approx(end.y[1, -1], rel=1e-6)
+
+
+def test_the_damping_ratio_is_the_inverse():
+    assert damping_ratio(1.0) == pytest.approx(0.0, abs=1e-15)
+    for wanted in (0.05, math.exp(-2.0), 0.5, 0.99):
+        assert given_back(damping_ratio(wanted)) == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("wanted", [0.0, 0.4, 0.8, 1.0])
+def test_a_spring_that_the_step_resolves_keeps_it_in_mujoco(wanted):
+    # an impact in which the weight matters little: 10 m/s against g times 20 ms
+    assert found("mujoco", "spring and damper over 20 steps", wanted, speed=10.0) == pytest.approx(
+        wanted, abs=0.02
+    )
+    assert found("mujoco", "the library's solref, whatever e", wanted) == 0.0
+
+
+def test_a_contact_that_its_step_does_not_resolve_is_no_number():
+    assert math.isnan(found("mujoco", "the damping ratio for e alone", 1.0))
+
+
+@pytest.mark.parametrize("wanted", [0.0, 0.4, 0.8, 1.0])
+def test_pybullet_needs_four_settings(wanted):
+    options = {"dt_s": 1e-4}
+    kept = found("pybullet", "and no depth is corrected", wanted, **options)
+    assert kept == pytest.approx(wanted, abs=0.005)
+    for fewer in ("e on the sphere alone", "e on the sphere, 1 on the plane", "and at all speeds"):
+        assert found("pybullet", fewer, wanted, **options) == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_threshold_of_the_process_is_given_back():
+    before = found("pybullet", "e on the sphere, 1 on the plane", 0.8, speed=10.0, phase=0.2)
+    found("pybullet", "and where they touch alone", 0.8)
+    after = found("pybullet", "e on the sphere, 1 on the plane", 0.8, speed=10.0, phase=0.2)
+    assert before == after != pytest.approx(0.8, abs=0.001)
+
+
+def test_a_rebound_is_read_where_the_sphere_is_off_the_base():
+    drop = Drop(restitution=0.5, speed=2.0)
+    height = 0.01
+    upwards = math.sqrt(0.5**2 * (2.0**2 + 2.0 * 9.81 * drop.height) - 2.0 * 9.81 * height)
+    states = iter([(0.02, -2.0), (-1e-4, -1.0), (-1e-5, 0.5), (height, upwards)])
+    assert rebound(drop, lambda: next(states)) == pytest.approx(0.5, rel=1e-12)
+    assert rebound(drop, lambda: (-1e-5, 0.0)) == 0.0
+
+
+@pytest.mark.parametrize("wrong", [{"restitution": 1.5}, {"restitution": 0.5, "dt_s": 0.0}])
+def test_a_drop_refuses_what_is_not_allowed(wrong):
+    with pytest.raises(ValueError, match="it must be"):
+        Drop(**wrong)
+
+
+def test_the_published_lines_follow_from_the_published_drops():
+    folder = PUBLISHED / "restitution"
+    rows, lines = (study._read(folder, name) for name in ("restitution", "kept"))
+    pd.testing.assert_frame_equal(drops.kept(rows), lines, check_dtype=False, rtol=1e-12)
+    usual = rows[rows["found"].notna() & (rows["found"] < 2.0) & (rows["dt_s"] > 1e-4)]
+    for row in usual.sample(12, random_state=7).to_dict("records"):
+        options = {"dt_s": row["dt_s"], "speed": row["speed_m_s"], "radius": row["radius_m"]}
+        again = found(row["engine"], row["way"], row["wanted"], phase=row["phase"], **options)
+        assert again == pytest.approx(row["found"], rel=1e-6, abs=1e-9)
+
+
+def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(drops, "PHASES", (0.5,))
+    monkeypatch.setattr(drops, "WANTED", (0.0, 0.6, 1.0))
+    assert run(["restitution", "--engines", "mujoco", "--out", str(tmp_path)]) == 0
+    assert "drops broken" in capsys.readouterr().out
+    assert "in mujoco it is off by up to 1.000 with the library's solref" in study.headline(
+        tmp_path
+    )
+    assert "within 0.05 over all of them" in study.paragraph(tmp_path)
+    assert (tmp_path / "restitution.png").stat().st_size > 20_000
+    lines = study._read(tmp_path, "kept").set_index("way")
+    assert lines.loc["the damping ratio for e alone", "off"] == math.inf
+
+
+def test_an_engine_that_was_not_asked_is_refused(tmp_path, capsys):
+    assert run(["restitution", "--engines", "moreau", "--out", str(tmp_path / "a")]) == 2
+    told = capsys.readouterr().err
+    assert "--engines is 'moreau'; it must be one that was asked: pybullet, mujoco" in told
