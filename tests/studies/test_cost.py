@@ -6,7 +6,7 @@ import math
 import pytest
 
 from analytic.response import Outcome, Response
-from engines import Scene, core_engines, installed_engines, run
+from engines import ENGINES, Scene, core_engines, installed_engines, run
 from studies.precision import shares
 from studies.precision.cost import (
     in_a_new_process,
@@ -31,7 +31,8 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
     # a full box keeps contacts that a corner has left: its impact is off by up to 3e-2 in PyBullet;
     # equal steps hold the impact within one: the next 1e-2; nothing else may cost accuracy
     costs = {"full box instead of corners": 3e-2, "steps all equal": 1e-2}
-    allowed = costs.get(omission.name, 1e-4)
+    # but what the roundings of some 1e4 steps add up to, here and where the base has moved
+    allowed = max(costs.get(omission.name, 1e-4), 2e4 * ENGINES[engine].precision.value)
     assert response.peak_ratio == pytest.approx(0.385157, rel=allowed)
     assert (response.history is not None) == ("times" in omission.put_back)
 
