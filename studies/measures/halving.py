@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import pandas as pd
 
-import studies
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines.declaration import Stepping
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.measures.published import PUBLISHED
 from studies.sources.registry import resolve
 
-FACTORS = Path(studies.__file__).parent / "published" / "estimate" / "factors.csv"
+FACTORS = PUBLISHED / "estimate" / "factors.csv"
 """By how much estimates are to be multiplied, as published."""
 
 BOUNDED = 0.95

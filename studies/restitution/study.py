@@ -8,7 +8,8 @@ import pandas as pd
 from engines import ENGINES, core_engines
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several
-from studies.kit.runner import own_folder
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, Tables, carry_out
 from studies.restitution import STUDY
 from studies.restitution.drops import BASE, PHASES, kept, measured
 from studies.restitution.report import first_claim, kept_text, told
@@ -35,14 +36,13 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = core_e
     if mute:
         able = ", ".join(name for name, engine in ENGINES.items() if engine.bouncing)
         raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
-    settings = {"engines": engines}
-    with own_folder(out, STUDY.name, STUDY.products, module=__name__, **settings):
+
+    def tabulate(_: object) -> Tables:
         rows = measured(engines)
-        tables = {"restitution": rows, "kept": kept(rows)}
-        for name, table in tables.items():
-            provenance.write_text(out / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-        print(report(out))
-    return 0
+        return {"restitution": rows, "kept": kept(rows)}
+
+    plan = Plan(settings={"engines": engines}, tabulate=tabulate)
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
 
 def report(folder: Path) -> str:

@@ -7,15 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-import studies
 from engines import ENGINES
 from engines.factors import BEST, DEFAULT, MOVING_BASE
 from studies.kit.journal import Row
 from studies.symptoms.seen import HULL, STEP, SYMPTOMS, THREADS, UNMOVED, Symptom
 from studies.symptoms.words import changed
-
-PUBLISHED = Path(studies.__file__).parent / "published"
-"""Where this project keeps one full run of every study."""
 
 VARIANTS, LADDER = "contact/variants.csv", "precision/work-precision.csv"
 """The tables that are read."""

@@ -10,7 +10,7 @@ from engines import ENGINES
 from engines.adapters.mujoco_drop import damping_ratio, given_back
 from engines.drop import Drop, rebound
 from studies.__main__ import run
-from studies.page.readme import PUBLISHED
+from studies.measures.published import PUBLISHED
 from studies.restitution import drops, study
 
 BOUNCING = {name: engine.bouncing for name, engine in ENGINES.items() if engine.bouncing}

@@ -8,8 +8,9 @@ import pytest
 from engines import ENGINES
 from engines.factors import DEFAULT
 from studies.__main__ import run
+from studies.measures.published import PUBLISHED
 from studies.symptoms import study
-from studies.symptoms.lines import PUBLISHED, VARIANTS, lines_of
+from studies.symptoms.lines import VARIANTS, lines_of
 from studies.symptoms.seen import HULL, SYMPTOMS, THREADS, UNMOVED
 from studies.symptoms.words import changed
 
