@@ -69,3 +69,8 @@ def test_swings_that_rounding_hides_are_left_to_the_contacts() -> None:
     start = (1e-3 * BLOCK.alpha, 0.0)
     asked = Scene(block=BLOCK, motion=Still(), start=start, duration=8.0 / BLOCK.p)
     assert run("rapier", asked).steps < 10_000
+
+
+def test_phases_need_a_spring_to_go_back_to() -> None:
+    with pytest.raises(ValueError, match="frequency is None; it must be given wherever by_phase"):
+        rocked(frequency=None, damping_ratio=None)
