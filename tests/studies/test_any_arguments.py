@@ -33,6 +33,7 @@ BEGINNINGS = {
     "compare": [(*CASE, "--sources", "exact"), (*RECORD, "--sources", "exact")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
+    "score": [("mujoco", "--out", "FOLDER", "--quick")],
     "redraw": [("FOLDER",)],
     "readme": [()],
 }
