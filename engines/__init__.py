@@ -23,6 +23,9 @@ The file holds
   place where it is "world";
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
+- where it can be, ``script``: the scene in the library's own words (`engines.script`), by which
+  `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a dropped
+  sphere (`engines.drop`), by which `rocking restitution` asks for a coefficient of restitution;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own tutorial uses it) to the best there is, and what the studies try of its contact.
 

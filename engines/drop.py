@@ -9,7 +9,7 @@ from analytic.checks import positive
 AHEAD = 20
 """Whole steps from the start to the step of the impact."""
 
-PATIENCE_S, PATIENCE_STEPS = 0.2, 400
+PATIENCE_S, PATIENCE_STEPS = 0.1, 100
 """Time [s] and steps within which a sphere must come off the base again; else it does not."""
 
 

@@ -64,7 +64,8 @@ def _dropped(drop: Drop, solref: tuple[float, float], impedance: str) -> float:
     mj = import_module("mujoco")
     contact = f'solref="{solref[0]!r} {solref[1]!r}" {impedance}'
     model = mj.MjModel.from_xml_string(
-        f'<mujoco><option timestep="{drop.dt_s!r}" gravity="0 0 {-drop.gravity!r}"/><worldbody>'
+        f'<mujoco><option timestep="{drop.dt_s!r}" gravity="0 0 {-drop.gravity!r}"/>'
+        '<size memory="64K"/><worldbody>'
         f'<geom type="plane" size="1 1 1" {contact}/>'
         f'<body pos="0 0 {drop.radius!r}"><joint type="slide" axis="0 0 1"/>'
         f'<geom type="sphere" size="{drop.radius!r}" mass="{drop.mass!r}" {contact}/>'

@@ -6,15 +6,11 @@ from pathlib import Path
 
 import pandas as pd
 
-import studies
 from engines import ENGINES
 from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
 from studies.measures.verdicts import ACCEPTED
 from studies.sources.registry import resolve
-
-PUBLISHED = Path(studies.__file__).parent / "published"
-"""Where this project keeps one full run of every study."""
 
 LADDER = "precision/work-precision.csv"
 """Table of the errors and times of methods along their steps."""

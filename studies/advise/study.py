@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import advice
-from studies.advise.evidence import PUBLISHED, TABLES, published_engines
+from studies.advise.evidence import TABLES, published_engines
 from studies.advise.words import advice_text, claim, settings_text, told
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -27,6 +27,7 @@ from studies.kit.journal import PROVENANCE
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
+from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def command(
     ] = None,
     width: Positive = 0.5,
     height: Positive = 1.5,
-    published: Place = PUBLISHED,
+    published: Place | None = None,
     out: Place | None = None,
 ) -> int:
     """Name the cheapest setting of every engine with which all published cases keep an error.
@@ -70,19 +71,20 @@ def command(
     height
         Full height H of the block [m].
     published
-        Folder of the published tables.
+        Folder of the published tables; by default those that come with this project.
     out
         Folder for the advice as a table and a figure; none by default.
     """
     refuse_repeats("--error", error)
+    tables = published or PUBLISHED
     block = posed_block(width, height)
-    if missing := [name for name in TABLES if not (published / name).is_file()]:
-        raise BadInputError(f"--published is {str(published)!r}; it must hold {missing[0]}")
-    asked = published_engines(published) if engines is None else engines
+    if missing := [name for name in TABLES if not (tables / name).is_file()]:
+        raise BadInputError(f"--published is {str(tables)!r}; it must hold {missing[0]}")
+    asked = published_engines(tables) if engines is None else engines
     check_engines(asked)
-    lines = advice(published, asked, error, block)
+    lines = advice(tables, asked, error, block)
     if out is None:
-        print(_text(lines, block, published))
+        print(_text(lines, block, tables))
         return 0
     settings = {"error": error, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
@@ -90,7 +92,7 @@ def command(
     def report(folder: Path) -> str:
         from studies.drawing.figures import save_all
 
-        text = _text(lines, block, published)
+        text = _text(lines, block, tables)
         provenance.write_text(folder / "findings.txt", text + "\n")
         save_all(pictures(folder), folder)
         return text

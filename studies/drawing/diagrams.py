@@ -47,7 +47,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
     if not bounds:
-        axes.set_title("no case that both survive")
+        axes.set(title="no case that both survive", ylim=(LOWEST, 1.0))
     axes.grid(alpha=0.25)
     beside(axes, bounds, 9.0)
     return drawing

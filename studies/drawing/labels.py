@@ -1,5 +1,6 @@
 """Names written at the lines they name, moved apart where they would cover each other."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -44,8 +45,10 @@ def spread(levels: Sequence[float], gap: float) -> FloatArray:
 def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """Write names at the right of the axes, each level with its point or led to it by a line.
 
-    To be called when all is drawn: the limits of the axes stay what they are then.
+    To be called when all is drawn: the limits of the axes stay what they are then. What has no
+    point, of a source that failed, has no name.
     """
+    names = [name for name in names if math.isfinite(name.x) and math.isfinite(name.y)]
     if not names:
         return
     axes.set(xlim=axes.get_xlim(), ylim=axes.get_ylim())  # what the data ask for, from now on kept
@@ -110,7 +113,7 @@ def around(axes: Axes, names: Sequence[Name], taken: FloatArray, size: float = 8
         costs = [
             _covered(box, spots)
             + 20 * sum(_overlap(box, other) for other in boxes)
-            + 20 * (box[0] < left or box[1] < foot or box[2] > right or box[3] > top)
+            + 100 * (box[0] < left or box[1] < foot or box[2] > right or box[3] > top)
             for box in found
         ]
         best = int(np.argmin(costs))

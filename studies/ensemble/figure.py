@@ -73,7 +73,7 @@ def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.Da
     for upper, lower, size in zip(*grid, sizes, strict=True):
         _curves(upper, _of(stripes, size), _of(curves, size))
         _capacities(lower, _of(agreement, size), others)
-        lower.set_xlim(0.98 * agreement["ratio_low"].min(), 1.02 * agreement["ratio_high"].max())
+        lower.set_xlim(*_known(agreement))
         upper.set_title(_name(size), fontsize=10)
     grid[0, 0].set_ylabel("overturned  [–]")
     beside(grid[0, -1], _ends(_of(curves, sizes[-1]), _of(stripes, sizes[-1])), 7.5)
@@ -131,10 +131,17 @@ def _curves(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> None:
     axes.grid(alpha=0.25)
 
 
+def _known(agreement: pd.DataFrame) -> tuple[float, float]:
+    """Return between what the ratios of capacities lie that the outcomes tell, and 1."""
+    bounds = agreement[["ratio_low", "ratio_high"]].to_numpy(float)
+    known = np.append(bounds[np.isfinite(bounds)], 1.0)
+    return 0.98 * float(known.min()), 1.02 * float(known.max())
+
+
 def _ends(curves: pd.DataFrame, stripes: pd.DataFrame) -> list[Name]:
     """Return the names of the curves, where the exact one is at even odds."""
     exact = curves[curves["source"] == "exact"]
-    even = exact["intensity"].iloc[int((exact["probability"] - 0.5).abs().argmin())]
+    even = exact["intensity"].iloc[int((exact["probability"].fillna(0.0) - 0.5).abs().argmin())]
     names = []
     for source in stripes["source"].unique():
         curve = curves[curves["source"] == source]

@@ -12,6 +12,10 @@ steps, speeds, sizes and where in a step the impact falls. Writes restitution.cs
 restitution.png and findings.txt; a minute.""",
     table="restitution.csv",
     products=("restitution.csv", "kept.csv", "restitution.png", "findings.txt"),
+    captions={
+        "restitution": "What comes out of a coefficient of restitution: wherever in a step the "
+        "impact falls (band), at other steps (dashed) and speeds (dotted).",
+    },
     chapters=(
         Chapter(
             folder="restitution",

@@ -1,6 +1,5 @@
 """A sphere dropped on a base: what comes out of a coefficient of restitution."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -37,14 +36,13 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = core_e
     if mute:
         able = ", ".join(name for name, engine in ENGINES.items() if engine.bouncing)
         raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
-    plan = Plan(settings={"engines": engines}, tabulate=lambda _: tables(engines))
+
+    def tabulate(_: object) -> Tables:
+        rows = measured(engines)
+        return {"restitution": rows, "kept": kept(rows)}
+
+    plan = Plan(settings={"engines": engines}, tabulate=tabulate)
     return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
-
-
-def tables(engines: Sequence[str]) -> Tables:
-    """Drop the spheres; return a row for each, and a line for each way to ask for a coefficient."""
-    rows = measured(engines)
-    return {STUDY.name: rows, "kept": kept(rows)}
 
 
 def report(folder: Path) -> str:

@@ -12,6 +12,9 @@ what it is by default, the one setting that helps most, and what is left with al
 nothing: it reads the published tables of `rocking contact` and `rocking precision`.""",
     table="symptoms.csv",
     products=("symptoms.csv", "symptoms.png", "findings.txt"),
+    captions={
+        "symptoms": "Each symptom as it is seen, with one setting, tuned, and landing.",
+    },
     chapters=(
         Chapter(
             folder="symptoms",

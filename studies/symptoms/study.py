@@ -8,9 +8,11 @@ import pandas as pd
 from engines import ENGINES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
-from studies.kit.plan import Plan, fill
+from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.plan import Plan, carry_out
+from studies.measures.published import PUBLISHED
 from studies.symptoms import STUDY
-from studies.symptoms.lines import LADDER, PUBLISHED, VARIANTS, lines_of
+from studies.symptoms.lines import LADDER, VARIANTS, lines_of
 from studies.symptoms.words import first_claim, page, told
 
 if TYPE_CHECKING:
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
 def command(
     *,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
-    published: Place = PUBLISHED,
+    published: Place | None = None,
     out: Place | None = None,
 ) -> int:
     """Say what users see, what it measures by default, and which setting leaves how much of it.
@@ -34,38 +36,40 @@ def command(
     engines
         Names of engines, without a preset; by default all in the published tables.
     published
-        Folder of the published tables.
+        Folder of the published tables; by default those that come with this project.
     out
         Folder for a table and a figure; none by default.
     """
+    tables = published or PUBLISHED
     for name in (VARIANTS, LADDER):
-        if not (published / name).is_file():
-            raise BadInputError(f"--published is {str(published)!r}; it must hold {name}")
+        if not (tables / name).is_file():
+            raise BadInputError(f"--published is {str(tables)!r}; it must hold {name}")
     asked = tuple(ENGINES) if engines is None else engines
     check_engines(asked)
-    lines = lines_of(published, asked)
+    lines = lines_of(tables, asked)
     if lines.empty:
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
     text = f"{page(lines)}\n\nFrom {VARIANTS} and {LADDER}."
-    if out is not None:
-        settings = {"engines": list(lines["engine"].unique())}
-        fill(STUDY, Plan(settings=settings, tabulate=lambda _: {STUDY.name: lines}), out)
-        _show(out, text)
-    print(text)
-    return 0
+    if out is None:
+        print(text)
+        return 0
+    settings = {"engines": list(lines["engine"].unique())}
+    plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
+    def report(folder: Path) -> str:
+        from studies.drawing.figures import save_all
 
-def _show(folder: Path, text: str) -> None:
-    from studies.drawing.figures import save_all
+        provenance.write_text(folder / "findings.txt", text + "\n")
+        save_all(pictures(folder), folder)
+        return text
 
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
 
 def _read(folder: Path) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("shown_by", "setting", "literal", "threads", "command"), str)
+    words = dict.fromkeys(("shown_by", "setting", "literal", "asked_in", "command"), str)
     path = folder / "symptoms.csv"
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
 

@@ -11,8 +11,9 @@ from engines import ENGINES
 from studies.__main__ import run
 from studies.advise import study
 from studies.advise.choice import advice, cheapest
-from studies.advise.evidence import PUBLISHED, TABLES, declared_step, settings
+from studies.advise.evidence import TABLES, declared_step, settings
 from studies.advise.words import literal
+from studies.measures.published import PUBLISHED
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CORE = [name for name, engine in ENGINES.items() if engine.core]

@@ -8,8 +8,9 @@ import pytest
 from engines import ENGINES
 from engines.factors import DEFAULT
 from studies.__main__ import run
+from studies.measures.published import PUBLISHED
 from studies.symptoms import study
-from studies.symptoms.lines import PUBLISHED, VARIANTS, lines_of
+from studies.symptoms.lines import VARIANTS, lines_of
 from studies.symptoms.seen import HULL, SYMPTOMS, THREADS, UNMOVED
 from studies.symptoms.words import changed
 
@@ -39,7 +40,7 @@ def test_every_symptom_has_a_line_for_every_engine(lines):
     assert {*zip(lines["symptom"], lines["engine"], strict=True)} == {
         (name, engine) for name in names for engine in CORE
     }
-    assert lines["threads"].str.contains("#").all()
+    assert lines["asked_in"].str.contains("#").all()
 
 
 @pytest.mark.parametrize("symptom", SYMPTOMS, ids=lambda symptom: symptom.column)
