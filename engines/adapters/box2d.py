@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.declaration import Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.factors import MOVING_BASE, factor, level
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
@@ -222,6 +222,7 @@ ENGINE = Engine(
             settings=Box2DSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
+            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
         ),
         Preset(
             name="fixed",
