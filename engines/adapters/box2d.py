@@ -40,6 +40,8 @@ class Box2DSettings:
         Of the solver, for velocities and for positions.
     units : float or None
         Units of length in the height of the block; None counts in metres.
+    skins_below : bool
+        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
     continuous : bool
         Whether the library looks for impacts within a step.
     margin : float or None
@@ -56,6 +58,7 @@ class Box2DSettings:
     iterations: int = setting(6, least=1)
     position_iterations: int = setting(2, least=0)
     units: float | None = setting(None, above=0.0)
+    skins_below: bool = False
     continuous: bool = True
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
@@ -155,13 +158,14 @@ class Box2DWorld:
         return body
 
     def _floor(self, number: int) -> Any:
-        """Make a floor; the skin that the library gives a polygon ends at the level of the base."""
+        """Make a floor; a polygon acts from its skin on, and a box has one of its own."""
         b2, far = self._box2d, self._far
         if self.settings.geometry == "box":
-            top, meets = 0.0, b2.b2Filter()
+            skins, meets = 2.0, b2.b2Filter()
         else:
-            top = -b2.b2_polygonRadius
+            skins = 1.0
             meets = b2.b2Filter(categoryBits=4 << number, maskBits=1 << number)
+        top = -skins * b2.b2_polygonRadius if self.settings.skins_below else 0.0
         floor = self._world.CreateKinematicBody(position=(0.0, 0.0))
         corners = [(-far, -far), (far, -far), (far, top), (-far, top)]
         floor.CreateFixture(
@@ -204,6 +208,7 @@ TUNED = Box2DSettings(
     iterations=100,
     position_iterations=0,
     units=20.0,
+    skins_below=True,
     continuous=False,
     margin=10.0,
 )
@@ -252,6 +257,7 @@ ENGINE = Engine(
         factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
         factor("position_iterations", level("2", position_iterations=2)),
         factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
+        factor("skins_below"),
         factor("continuous"),
         factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
         MOVING_BASE,

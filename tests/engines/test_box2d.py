@@ -76,3 +76,14 @@ def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
     settings = {"base_velocity": False}
     response = run("box2d", scene(MOTION, preset=preset, frame="world", settings=settings))
     assert response.outcome in (Outcome.FAILED, Outcome.AT_REST)
+
+
+def test_a_box_acts_from_its_skin_on() -> None:
+    """0.01 units a polygon, 1e-3 of the height here: at it, the corners are round."""
+    peaks = [
+        run("box2d", scene(MOTION, settings={"geometry": "box", "skins_below": below})).peak_ratio
+        for below in (True, False)
+    ]
+    exact = simulate(BLOCK, MOTION).peak_ratio
+    assert peaks[0] == pytest.approx(exact, rel=3e-2)
+    assert peaks[1] < 0.8 * exact
