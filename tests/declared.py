@@ -6,6 +6,7 @@ import pytest
 
 from engines import ENGINES
 from engines.declaration import Miss
+from engines.world import ROUNDINGS
 
 STEPS_ADD_UP = 1e4
 """Steps over whose roundings the errors of two runs may add up that should be equal."""
@@ -24,4 +25,4 @@ def equal_to(engine: str, exactly: float = 1e-9) -> float:
 
 def rounding(engine: str) -> float:
     """Return within what a number comes back that an engine was given."""
-    return max(1e-12, ENGINES[engine].precision.value)
+    return max(1e-12, ROUNDINGS * ENGINES[engine].precision.value)

@@ -54,7 +54,7 @@ class Box2DSettings:
     """
 
     geometry: str = setting("box", names=("box", "corners"))
-    friction: float = setting(1.0, above=0.0)
+    friction: float = setting(1.0, least=0.0)
     iterations: int = setting(6, least=1)
     position_iterations: int = setting(2, least=0)
     units: float | None = setting(None, above=0.0)

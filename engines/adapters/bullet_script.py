@@ -1,5 +1,6 @@
 """A scene in PyBullet's own words, for a script that needs the library alone."""
 
+import math
 from textwrap import fill
 from typing import Any
 
@@ -39,6 +40,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             f"shape = {written(shape)}",
             f"block = {written(body)}",
             *map(written, bodies),
+            *_beginning(scene),
             "p.setTimeStep(DT)",
         ),
         step=("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
@@ -47,6 +49,20 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             "theta = 2.0 * math.atan2(q[1], q[3])",
             "rate = p.getBaseVelocity(block)[1][1]",
         ),
+    )
+
+
+def _beginning(scene: Scene) -> tuple[str, ...]:
+    """Return lines that let the block set out; it has its inertia only after a step, far aloft."""
+    at, half = scene.beginning, 0.5 * scene.beginning.theta
+    turned = (0.0, math.sin(half), 0.0, math.cos(half))
+    velocities = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
+    aloft = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
+    return (
+        f"p.resetBasePositionAndOrientation(block, {aloft[0]}, {aloft[1]})",
+        "p.stepSimulation()",
+        f"p.resetBasePositionAndOrientation(block, {(at.x, 0.0, at.z)}, {turned})",
+        f"p.resetBaseVelocity(block, {velocities[0]}, {velocities[1]})",
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.adapters.mujoco_drop import BOUNCING
-from engines.adapters.mujoco_model import OPTIONS, direct_reference, model_xml
+from engines.adapters.mujoco_model import OPTIONS, coordinates, direct_reference, model_xml
 from engines.adapters.mujoco_script import script
 from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
@@ -102,14 +102,7 @@ class MujocoWorld:
 
     def _put(self, scene: Scene) -> None:
         """Let the block set out from where the scene begins."""
-        at, data = scene.beginning, self._data
-        if self._s.planar:
-            data.qpos[:] = (at.x, at.z - self._height, at.theta)
-            data.qvel[:] = (at.velocity_x, at.velocity_z, at.rate)
-            return
-        half = 0.5 * at.theta
-        data.qpos[:] = (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
-        data.qvel[:] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+        self._data.qpos[:], self._data.qvel[:] = coordinates(scene, self._s)
 
     def _hold(self, step: Step) -> None:
         """Set the step, and the contact in units of it."""

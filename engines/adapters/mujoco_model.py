@@ -1,5 +1,6 @@
 """A scene in MuJoCo's own language."""
 
+import math
 from xml.etree import ElementTree
 
 from engines.adapters.mujoco_settings import MujocoSettings
@@ -83,6 +84,17 @@ def _pair(name: str, s: MujocoSettings, margin: float) -> str:
         f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
         f'solimp="{_row(s.impedance or ())}" {reference}/>'
     )
+
+
+def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return the positions and the velocities from which the block sets out."""
+    at, half = scene.beginning, 0.5 * scene.beginning.theta
+    if s.planar:
+        place = (at.x, at.z - 0.5 * scene.block.height, at.theta)
+        return place, (at.velocity_x, at.velocity_z, at.rate)
+    turned = (math.cos(half), 0.0, math.sin(half), 0.0)
+    velocity = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+    return (at.x, 0.0, at.z, *turned), velocity
 
 
 def direct_reference(

@@ -1,6 +1,6 @@
 """A scene in MuJoCo's own words, for a script that needs the library alone."""
 
-from engines.adapters.mujoco_model import stepped_xml
+from engines.adapters.mujoco_model import coordinates, stepped_xml
 from engines.adapters.mujoco_settings import MujocoSettings, kept
 from engines.scene import Scene
 from engines.script import Script
@@ -19,6 +19,14 @@ FREE_POSE = (
 )
 
 
+def _beginning(scene: Scene, s: MujocoSettings) -> tuple[str, ...]:
+    """Return lines that let the block set out; none where it is at rest."""
+    if scene.beginning.at_rest:
+        return ()
+    place, velocity = coordinates(scene, s)
+    return (f"data.qpos[:] = {place}", f"data.qvel[:] = {velocity}")
+
+
 def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as a model of MuJoCo; see `engines.script`."""
     s = kept(scene, s)
@@ -30,6 +38,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
         build=(
             f'model = mujoco.MjModel.from_xml_path("{MODEL}")',
             "data = mujoco.MjData(model)",
+            *_beginning(scene, s),
         ),
         step=("model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)"),
         pose=PLANAR_POSE if s.planar else FREE_POSE,

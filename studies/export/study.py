@@ -10,7 +10,7 @@ from engines.declaration import Engine, Preset, Stepping
 from studies.cases.paper import free_rocking_window
 from studies.export.writing import Exported, files, written_engines
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, Positive, refuse_given
+from studies.kit.arguments import BadInputError, Place, Positive
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block
@@ -51,16 +51,14 @@ def command(
     asked, used = _asked(engine, preset)
     block = posed_block(width, height)
     posed = excitation.pose(block)
-    if posed.start != (0.0, 0.0):
-        begin = {"tilt": excitation.tilt, "rate": excitation.rate}
-        refuse_given(begin, "only where nothing is exported, whose block begins at rest")
     motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
-    options: dict[str, Any] = {} if step is None else {"step": step}
+    begin: dict[str, Any] = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
+    options = begin if step is None else {**begin, "step": step}
     rows = run_jobs(
         [
-            _job("exact", block, motion, window, {}),
+            _job("exact", block, motion, window, begin),
             _job(f"{engine}:{preset}", block, motion, window, options),
         ],
         executor=Local(workers=1, time_limit_s=time_limit),

@@ -100,6 +100,7 @@ def block_text(what: Exported, script: Script) -> str:
         beside="".join(f", {name}" for name in script.files),
         script=script,
         block=what.scene.block,
+        start=what.scene.start,
         dt_s=what.preset.ordinary_step_s(what.scene),
         shaken=what.scene.motion.duration,
         watched=what.watched_s,

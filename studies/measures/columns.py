@@ -129,7 +129,7 @@ SYMPTOMS = {
     "after": Column("-", "the measure with this setting alone"),
     "tuned": Column("-", "the measure with a tuned contact and a fixed step"),
     "landing": Column("-", "the measure with steps that land on impacts"),
-    "threads": Column("", "threads of trackers in which it is asked"),
+    "asked_in": Column("", "threads of trackers in which it is asked"),
     "command": Column("", "what makes the table that says so"),
 }
 
@@ -140,8 +140,8 @@ RESTITUTION = {
     "speed_m_s": Column("m/s", "speed with which a sphere sets out"),
     "radius_m": Column("m", "radius of the sphere"),
     "phase": Column("-", "part of a step after which it meets the base"),
-    "found": Column("-", "speed after over before; nan where the library went wrong"),
-    "off": Column("-", "largest |found - wanted| wherever in a step the impact falls"),
+    "speed_ratio": Column("-", "speed after over before; nan where the library went wrong"),
+    "off": Column("-", "largest |speed_ratio - wanted| wherever in a step the impact falls"),
     "off_dt_s": Column("-", "the same at other steps"),
     "off_speed": Column("-", "the same at other speeds"),
     "off_radius": Column("-", "the same at other radii"),
@@ -260,7 +260,9 @@ STATISTICS = {
 
 PRINTS = {
     "problem": Column("", "what was printed, in a word"),
-    "side": Column("-", "0 for the larger rotation, 1 for that to the other side"),
+    "side": Column("-", "0 for the first number, 1 for the other side, or a rate beside a time"),
+    "of": Column("", "theory, or test: a measurement"),
+    "why": Column("", "why a print does not come out"),
     "work": Column("", "who printed it"),
     "where": Column("", "the place in the work, or what it says of the block"),
     "printed": Column("", "the print, digit by digit; a bracket of two"),

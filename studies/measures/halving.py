@@ -1,10 +1,10 @@
 """How far off an answer may be, from the engine itself: the same run at half the step."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -50,7 +50,7 @@ def _declared(step_s: float, block: RigidBlock) -> float:
     return 0.0 if math.isnan(step_s) else step_s * block.p
 
 
-def estimate(row: Row, finer: Row) -> float:
+def estimate(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
     """Return the relative difference of a peak from that at half the step.
 
     It is inf where half the step has another outcome, nan where one of the two failed, 0 where the

@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
@@ -42,7 +43,7 @@ def draw_restitution(rows: pd.DataFrame) -> Figure:
 def _panel(axes: Axes, group: pd.DataFrame, colour: str) -> list[Name]:
     """Draw the band over where an impact falls in a step, and lines of what is varied."""
     axes.plot([0.0, 1.0], [0.0, 1.0], color="#777777", linewidth=0.8)
-    base = group[group["varied"] == ""].groupby("wanted")["found"]
+    base = group[group["varied"] == ""].groupby("wanted")["speed_ratio"]
     axes.fill_between(
         base.min().index, base.min(), base.max(), color=colour, alpha=0.35, linewidth=0.0
     )
@@ -52,9 +53,9 @@ def _panel(axes: Axes, group: pd.DataFrame, colour: str) -> list[Name]:
     shades = colormaps["Greys"]
     for name, (column, unit, line) in varied.items():
         for place, (value, rows) in enumerate(group[group["varied"] == name].groupby(column)):
-            found = rows.groupby("wanted")["found"].median()
+            found = rows.groupby("wanted")["speed_ratio"].median()
             shown = found.where(found < TOP)
-            shade = shades(0.55 + 0.35 * place)
+            shade = to_hex(shades(0.55 + 0.35 * place))
             axes.plot(shown.index, shown, color=shade, linestyle=line, linewidth=1.1)
             lost = found[~(found < TOP)]
             axes.plot(lost.index, [TOP - 0.05] * len(lost), "x", color=shade, markersize=5)

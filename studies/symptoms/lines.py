@@ -62,7 +62,7 @@ def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
         "tuned": math.nan,
         "landing": math.nan,
         **values,
-        "threads": ", ".join(threads),
+        "asked_in": ", ".join(threads),
         "command": f"rocking {study} --engines {engine} --out DIR",
     }
 
@@ -112,7 +112,7 @@ def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
     levels = mine[mine["factor"] == MOVING_BASE.name].set_index("level")
     names = [level.name for level in MOVING_BASE.levels]
     if set(names) <= set(levels.index):
-        right, wrong = (levels.loc[name] for name in names)
+        right, wrong = (levels.iloc[levels.index.get_indexer([name])[0]] for name in names)
         yield _row(
             UNMOVED,
             engine,
@@ -163,7 +163,8 @@ def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
             (ladder["method"] == f"{engine} {preset.name}") & (ladder["set"] == "typical")
         ]
         if len(mine):
-            left[preset.name] = float(mine.loc[mine["value"].idxmin(), "max_error"])
+            finest = mine.iloc[int(mine["value"].argmin())]
+            left[preset.name] = float(finest["max_error"])
     if DEFAULT in left and BEST in left:
         yield _row(
             STEP,

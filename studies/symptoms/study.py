@@ -69,7 +69,7 @@ def command(
 
 def _read(folder: Path) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("shown_by", "setting", "literal", "threads", "command"), str)
+    words = dict.fromkeys(("shown_by", "setting", "literal", "asked_in", "command"), str)
     path = folder / "symptoms.csv"
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
 

@@ -20,6 +20,9 @@ SCENE_STEP = 1e-3
 BLOCK = RigidBlock(width=0.5, height=1.5)
 """The block for which they are."""
 
+SHORT = 60
+"""Letters up to which a sentence quotes what a setting is in the library's words."""
+
 GIVEN = re.compile(r"\w+=(?:\"[^\"]*\"|\[[^\]]*\]|\([^)]*\)|[^,()\s]+)")
 """A named value in a call of Python, or in a model."""
 
@@ -55,7 +58,7 @@ def page(lines: pd.DataFrame) -> str:
     parts = []
     for symptom, group in lines.groupby("symptom", sort=False):
         head = f"{symptom} ({_measure(str(group.iloc[0]['measure']))})"
-        asked = f"  asked in {group.iloc[0]['threads']}"
+        asked = f"  asked in {group.iloc[0]['asked_in']}"
         parts.append("\n".join([head, asked, *map(_line, group.to_dict("records"))]))
     return "\n\n".join(parts)
 
@@ -97,8 +100,10 @@ def _helps(row: Mapping[Any, Any]) -> str:
     before, after = float(str(row["before"])), float(str(row["after"]))
     if not row["setting"]:
         return f"in {row['engine']} no single setting halves the error of {scientific(before)}"
+    literal = str(row["literal"])
+    setting = literal if 0 < len(literal) <= SHORT else row["setting"]
     return (
-        f"in {row['engine']} {row['setting']} alone takes the largest error from "
+        f"in {row['engine']} {setting} alone takes the largest error from "
         f"{scientific(before)} to {scientific(after)}"
     )
 

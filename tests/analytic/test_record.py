@@ -290,7 +290,8 @@ NAMES = [
 
 def band(name):
     source, _, preset = name.partition(":")
-    return max(BANDS[preset], equal_to(source)) if source in ENGINES else BANDS[preset]
+    kappa = 6.0
+    return max(BANDS[preset], kappa * equal_to(source)) if source in ENGINES else BANDS[preset]
 
 
 @pytest.mark.parametrize("name", NAMES)

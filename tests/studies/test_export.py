@@ -55,10 +55,23 @@ def run_alone(folder):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
 
 
-@pytest.mark.parametrize("motion", [PULSE, RECORD], ids=["pulse", "record"])
+COSINE = SinePulse(amplitude=4.5, omega=6.0, half_cycles=2, phase=1.5)
+"""It lifts the block at once."""
+
+SCENES = {
+    "pulse": (PULSE, (0.0, 0.0)),
+    "record": (RECORD, (0.0, 0.0)),
+    "lifted at once": (COSINE, (0.0, 0.0)),
+    "released": (PULSE, (0.1, -0.3)),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize(("engine", "preset"), USES)
-def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, motion, tmp_path):
-    asked = scene(motion, preset, **({"step": 2e-3} if preset != "naive" else {}))
+def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_path):
+    motion, start = SCENES[name]
+    step = {} if preset == "naive" else {"step": 2e-3}
+    asked = scene(motion, preset, start=start, **step)
     row = run(engine, asked)
     assert row.peak_ratio > 0.05
     written(tmp_path, engine, asked, row.peak_ratio)
@@ -114,7 +127,6 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
         ),
         (["--engine", "mujoco", *SHAKEN, "--pga", "1"], "--pga is 1.0; it may be given only with"),
         (["--engine", "mujoco"], "--amplitude and --omega missing"),
-        (["--engine", "mujoco", *SHAKEN, "--tilt", "0.5"], "--tilt is 0.5; it may be given only"),
         (["--engine", "mujoco", *SHAKEN, "--record", "x"], "it may be given only without --record"),
     ],
 )

@@ -125,6 +125,13 @@ def test_the_engines_answers_are_those_of_the_tables():
         assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.8g}"))
 
 
+@pytest.mark.parametrize("place", CHAPTERS, ids=lambda place: place[1].folder)
+def test_what_failed_is_found_in_any_study_s_table(place):
+    study, chapter = place
+    found = page.failures(PUBLISHED / chapter.folder, study.table)
+    assert all(item["n"] > 0 and item["message"] for item in found)
+
+
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
     with pytest.raises(report.FolderError, match="quick report"):
         report.command(out=made, full=True)

@@ -92,11 +92,11 @@ def test_the_published_lines_follow_from_the_published_drops():
     folder = PUBLISHED / "restitution"
     rows, lines = (study._read(folder, name) for name in ("restitution", "kept"))
     pd.testing.assert_frame_equal(drops.kept(rows), lines, check_dtype=False, rtol=1e-12)
-    usual = rows[rows["found"].notna() & (rows["found"] < 2.0) & (rows["dt_s"] > 1e-4)]
+    usual = rows[rows["speed_ratio"].notna() & (rows["speed_ratio"] < 2.0) & (rows["dt_s"] > 1e-4)]
     for row in usual.sample(12, random_state=7).to_dict("records"):
         options = {"dt_s": row["dt_s"], "speed": row["speed_m_s"], "radius": row["radius_m"]}
         again = found(row["engine"], row["way"], row["wanted"], phase=row["phase"], **options)
-        assert again == pytest.approx(row["found"], rel=1e-6, abs=1e-9)
+        assert again == pytest.approx(row["speed_ratio"], rel=1e-6, abs=1e-9)
 
 
 def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch):

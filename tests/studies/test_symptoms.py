@@ -40,7 +40,7 @@ def test_every_symptom_has_a_line_for_every_engine(lines):
     assert {*zip(lines["symptom"], lines["engine"], strict=True)} == {
         (name, engine) for name in names for engine in CORE
     }
-    assert lines["threads"].str.contains("#").all()
+    assert lines["asked_in"].str.contains("#").all()
 
 
 @pytest.mark.parametrize("symptom", SYMPTOMS, ids=lambda symptom: symptom.column)
