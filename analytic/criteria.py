@@ -6,6 +6,8 @@ They use nothing of the solvers, and so are checks on them.
 import math
 from collections.abc import Callable
 
+import numpy as np
+from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkinc
 
@@ -44,6 +46,36 @@ def free_amplitude(block: RigidBlock, theta: float, impacts: int) -> float:
     left = block.restitution ** (2 * impacts) * lift
     barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
     return block.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - left)))
+
+
+def frictionless_fall(block: RigidBlock, theta: float) -> tuple[float, float]:
+    """Return the time [s] and the rate [rad/s] at which a frictionless block strikes its base.
+
+    It is released at rest at `theta` [rad] on one corner, which slides: the centre of mass falls
+    straight down. With z = R cos(alpha - theta) its height, energy gives theta'^2 (B^2 + H^2)/12 +
+    z'^2 = 2 g (z0 - z), and the time is a quadrature, substituted so that the release is regular.
+
+    Raises
+    ------
+    ValueError
+        If theta is not between 0 and alpha, from where the block falls back.
+    """
+    if not 0.0 < theta < block.alpha:
+        raise ValueError(f"theta is {theta!r}; it must be between 0 and {block.alpha}")
+    gyration = (block.width**2 + block.height**2) / 12.0
+
+    def slowness(root: float) -> float:
+        """Return d time/d root at theta - root^2, whose rate is root times a regular function."""
+        turned = root * root
+        # z0 - z over root^2, as a product of sines
+        mean = math.sin(block.alpha - theta + 0.5 * turned)
+        fallen = 2.0 * block.R * mean * 0.5 * np.sinc(0.5 * turned / math.pi)
+        lever = block.R * math.sin(block.alpha - theta + turned)
+        return 2.0 * math.sqrt((gyration + lever * lever) / (2.0 * block.gravity * fallen))
+
+    end = math.sqrt(theta)
+    time, _ = quad(slowness, 0.0, end, epsabs=0.0, epsrel=1e-13)
+    return float(time), 2.0 * end / slowness(end)
 
 
 def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:

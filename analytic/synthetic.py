@@ -1,7 +1,9 @@
 """Ground motions that need no data: a wavelet, near-fault pulses, filtered noise.
 
 Each is a formula sampled into a `Record`, which is straight between its samples: of a component of
-circular frequency w the interpolant misses up to (w dt)^2/8.
+circular frequency w the interpolant misses up to (w dt)^2/8, and a peak of a response kappa times
+as much, kappa being its condition number. A segment of a motion is one sine or one straight line,
+which the published pulses, a sum of three sines and a Gaussian, are not.
 """
 
 import math
@@ -13,7 +15,10 @@ from analytic.motion import FloatArray
 from analytic.record import Record
 
 PER_CYCLE = 200
-"""Default samples in a cycle of a pulse: the interpolant then misses (2 pi/200)^2/8 = 1.2e-4."""
+"""Default samples in a cycle of a pulse, ..."""
+
+MISSED = (2.0 * math.pi / PER_CYCLE) ** 2 / 8.0
+"""... and the part of it, 1.2e-4, that the interpolant then misses."""
 
 RICKER_HALF = 1.5
 """Half length of a Ricker wavelet over its period; there its acceleration is 1e-8 of the peak."""

@@ -31,7 +31,7 @@ class Miss(enum.Enum):
     """What an engine gets wrong as it comes, without a word."""
 
     MIRROR = "shaken the other way, the block does not answer the other way"
-    PEAK = "a block of the paper that survives overturns, or its peak is off by more than 0.3"
+    PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
     RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 

@@ -1,10 +1,16 @@
 """Every engine by its name: the project's own, and those of other packages."""
 
+import os
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 
 from engines.declaration import Engine
+from engines.undeclared import undeclared
+
+FURTHER = "ROCKING_ENGINES"
+"""Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
+between, known to this process and to those that it starts."""
 
 GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""
@@ -13,6 +19,7 @@ OWN = {
     "pybullet": "engines.adapters.bullet:ENGINE",
     "mujoco": "engines.adapters.mujoco:ENGINE",
     "pymunk": "engines.adapters.pymunk:ENGINE",
+    "box2d": "engines.adapters.box2d:ENGINE",
     "dart": "engines.adapters.dart:ENGINE",
     "rapier": "engines.adapters.rapier:ENGINE",
 }
@@ -39,8 +46,49 @@ ENGINES = Engines()
 def _places() -> dict[str, EntryPoint]:
     """Return where each engine is declared, the project's own first: no other may replace them."""
     own = {name: EntryPoint(name, place, GROUP) for name, place in OWN.items()}
-    others = {point.name: point for point in entry_points(group=GROUP)}
+    others = {point.name: point for point in (*entry_points(group=GROUP), *_further())}
     return own | {name: others[name] for name in sorted(others.keys() - own.keys())}
+
+
+def _further() -> list[EntryPoint]:
+    pairs = (word.partition("=") for word in os.environ.get(FURTHER, "").split())
+    return [EntryPoint(name, place, GROUP) for name, _, place in pairs]
+
+
+def announce(place: str) -> str:
+    """Make an engine known that no package announces; return its name.
+
+    Parameters
+    ----------
+    place : str
+        "module:ENGINE", a declaration, or "module:build", what builds a world: its engine is then
+        called as its module.
+
+    Raises
+    ------
+    ValueError
+        If neither stands there, or the name is taken.
+    """
+    module, _, attribute = place.partition(":")
+    if not (module and attribute) or any(mark in place for mark in "= \t\n"):
+        raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
+    found = _found(place, EntryPoint(module, place, GROUP))
+    if not (isinstance(found, Engine) or callable(found)):
+        raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
+    name = found.name if isinstance(found, Engine) else module.rpartition(".")[2]
+    if name in ENGINES:
+        raise ValueError(f"engine {place!r} is called {name!r}, as another is")
+    os.environ[FURTHER] = " ".join([*os.environ.get(FURTHER, "").split(), f"{name}={place}"])
+    _places.cache_clear()
+    _declared(name, _places()[name])
+    return name
+
+
+def _found(name: str, place: EntryPoint) -> object:
+    try:
+        return place.load()
+    except Exception as error:  # it is anybody's code
+        raise ValueError(f"engine {name!r} cannot be loaded from {place.value}: {error}") from error
 
 
 @cache
@@ -52,10 +100,9 @@ def _declared(name: str, place: EntryPoint) -> Engine:
     ValueError
         If what stands there is none, or one of another name.
     """
-    try:
-        found = place.load()
-    except (ImportError, AttributeError) as error:
-        raise ValueError(f"engine {name!r} cannot be loaded from {place.value}: {error}") from error
+    found = _found(name, place)
+    if callable(found) and place in _further():
+        return undeclared(name, found)
     if not isinstance(found, Engine) or found.name != name:
         raise ValueError(f"engine {name!r}: {place.value} is no declaration of that name")
     return found

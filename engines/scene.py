@@ -70,7 +70,8 @@ class Scene:
     depth : float, optional
         Size of the block out of the plane [m]; its width by default.
     friction : float, optional
-        Coefficient between block and base; the preset's by default.
+        Coefficient between block and base; the preset's by default. Where it is 0 the block is
+        meant to slide, and a slide is no failure.
     step : float, optional
         p dt, the ordinary step in units of 1/p; the preset's by default.
     duration : float, optional
@@ -115,9 +116,11 @@ class Scene:
         object.__setattr__(self, "start", self._checked_start(self.start))
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
         one_of("frame", self.frame, FRAMES)
-        for name in ("density", "depth", "friction", "step", "time_limit_s", "max_steps"):
+        for name in ("density", "depth", "step", "time_limit_s", "max_steps"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, positive(name, getattr(self, name)))
+        if self.friction is not None:
+            object.__setattr__(self, "friction", _not_negative("friction", self.friction))
         object.__setattr__(self, "max_steps", int(self.max_steps))
         if self.duration is not None:
             object.__setattr__(self, "duration", self._checked_duration(self.duration))
@@ -213,6 +216,12 @@ def _moves(motion: Motion) -> bool:
     """Return whether the base is accelerated at any time."""
     accelerating = [SEGMENT_COLUMNS.index(name) for name in ("amplitude", "offset", "slope")]
     return bool(motion.segments()[:, accelerating].any())
+
+
+def _not_negative(name: str, value: float) -> float:
+    if finite(name, value) < 0.0:
+        raise ValueError(f"{name} is {value!r}; it must not be negative")
+    return finite(name, value)
 
 
 def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:

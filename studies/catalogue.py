@@ -18,6 +18,7 @@ from studies import (
     overturning,
     precision,
     restitution,
+    score,
     stability,
     sweep,
     symptoms,
@@ -50,6 +51,7 @@ STUDIES: tuple[Study, ...] = (
     validity.STUDY,
     ensemble.STUDY,
     throughput.STUDY,
+    score.STUDY,
 )
 """In the order in which the help lists them and a report shows them."""
 
@@ -73,6 +75,7 @@ if TYPE_CHECKING:
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
     from studies.restitution import study as _restitution
+    from studies.score import study as _score
     from studies.stability import study as _stability
     from studies.sweep import study as _sweep
     from studies.symptoms import study as _symptoms
@@ -82,6 +85,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _estimate, _symptoms, _restitution),
+        *(_advise, _estimate, _symptoms, _restitution, _score),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

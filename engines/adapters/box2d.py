@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.declaration import Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.factors import MOVING_BASE, factor, level
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
@@ -52,7 +52,7 @@ class Box2DSettings:
     """
 
     geometry: str = setting("box", names=("box", "corners"))
-    friction: float = setting(1.0, above=0.0)
+    friction: float = setting(1.0, least=0.0)
     iterations: int = setting(6, least=1)
     position_iterations: int = setting(2, least=0)
     unit: float = setting(1.0, above=0.0)
@@ -222,6 +222,7 @@ ENGINE = Engine(
             settings=Box2DSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
+            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
         ),
         Preset(
             name="fixed",

@@ -16,12 +16,13 @@ from engines.adapters.bullet_calls import (
     block_shape,
     engine_call,
 )
+from engines.adapters.bullet_clients import given_back, taken
 from engines.adapters.bullet_drop import BOUNCING
 from engines.adapters.bullet_script import script
 from engines.adapters.bullet_settings import (
     FACTORS,
     LANDING,
-    LIBRARY_BREAKING_THRESHOLD,
+    LIBRARY_STEP_S,
     TUNED,
     BulletSettings,
     spring,
@@ -34,7 +35,7 @@ from engines.world import Grip, Moment, Pose, Step
 
 
 class BulletWorld:
-    """A block on a base in a PyBullet client of its own.
+    """A block on a base in a PyBullet client that no other run uses meanwhile.
 
     The base is a multibody without mass, whether it moves or not: of the bases PyBullet offers,
     the only one whose velocity friction feels. On a static rigid body the response to the mirrored
@@ -46,7 +47,7 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
-        self._client = self._p.connect(self._p.DIRECT)
+        self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
         self._dt = 0.0
@@ -90,11 +91,8 @@ class BulletWorld:
         return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
 
     def close(self) -> None:
-        """Disconnect the client, and give the library back what it holds for the process."""
-        self._p.setPhysicsEngineParameter(
-            contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD, physicsClientId=self._client
-        )
-        self._p.disconnect(self._client)
+        """Leave the client to the next run."""
+        given_back(self._p, self._client)
 
     def _take_inertia(self, scene: Scene) -> None:
         """Take a step far from the base: only after its first has a body the inertia that was set.
@@ -190,7 +188,7 @@ ENGINE = Engine(
             name="naive",
             title="the library's defaults",
             settings=BulletSettings(),
-            step_s=1.0 / 240.0,
+            step_s=LIBRARY_STEP_S,
             step_source="the library's own time step, 1/240 s",
         ),
         Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),

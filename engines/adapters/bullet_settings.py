@@ -7,6 +7,9 @@ from engines.factors import BEST, BOTH, DEFAULT, MOVING_BASE, Factor, factor, le
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES
 
+LIBRARY_STEP_S = 1.0 / 240.0
+"""The library's own time step [s]."""
+
 LIBRARY_BREAKING_THRESHOLD = 0.02
 """The library's own gap, over a body's size, up to which it keeps a contact."""
 

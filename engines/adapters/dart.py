@@ -200,7 +200,6 @@ ENGINE = Engine(
             title="best at a fixed step",
             settings=TUNED,
             step=5e-4,
-            helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",

@@ -75,10 +75,9 @@ TUNED = DartSettings(
     collision="DART",
     sleeping=False,
     unit=1e5,
-    margin=0.5,
 )
 
-LANDING = replace(TUNED, reflection=True)
+LANDING = replace(TUNED, margin=0.5, reflection=True)
 
 MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
@@ -90,10 +89,10 @@ FACTORS = (
     factor("sleeping"),
     Factor(
         "geometry",
-        ("geometry", "planar", "aside", "margin"),
+        ("geometry", "planar", "aside"),
         (
             level("4 corners", planar=False, aside=False),
-            level("planar box", geometry="box", margin=None),
+            level("planar box", geometry="box"),
         ),
     ),
     factor(
@@ -110,7 +109,7 @@ FACTORS = (
         name="inertia",
     ),
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
-    factor("margin", level("0.1", margin=0.1), level("10", margin=10.0)),
+    factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
     factor("friction"),
     MOVING_BASE,
 )

@@ -62,7 +62,7 @@ class PymunkSettings:
     """
 
     geometry: str = setting("box", names=("box", "corners"))
-    friction: float = setting(1.0, above=0.0)
+    friction: float = setting(1.0, least=0.0)
     iterations: int | None = setting(None, least=1)
     slop: float | None = setting(None, least=0.0)
     bias: float | None = setting(None, least=0.0, most=1.0)

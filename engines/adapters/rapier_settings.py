@@ -30,7 +30,7 @@ class RapierSettings:
         Natural frequency [Hz] and damping ratio of the contact; both or neither. The library's are
         30 and 10, and 60 Hz on what does not move.
     by_phase : bool
-        Correct no positions in the short steps around an impact.
+        Correct no positions in the short steps around an impact; needs a frequency.
     recycling : bool or None
         Whether contacts are taken from the last step where bodies have hardly moved.
     warm_starting : float or None
@@ -69,6 +69,8 @@ class RapierSettings:
 
     def __post_init__(self) -> None:
         check(self)
+        if self.by_phase and self.frequency is None:
+            raise ValueError("frequency is None; it must be given wherever by_phase is set")
 
 
 TUNED = RapierSettings(

@@ -146,19 +146,27 @@ class LandingSteps:
         ahead = self._until_impact(pose)
         self._approaching = self._approaching and ahead < math.inf
         if self._approaching or ahead < min(2.0 * longest, self._times.left):
-            return self._towards_impact(ahead, longest, pose.rate)
+            return self._towards_impact(ahead, longest, pose)
         return Choice(self._times.even(longest), Grip.SWING, self._side)
 
-    def _towards_impact(self, ahead: float, longest: float, rate: float) -> Choice:
+    def _towards_impact(self, ahead: float, longest: float, pose: Pose) -> Choice:
         if not self._approaching and ahead > longest:
             return Choice(0.5 * ahead, Grip.SWING, self._side)
         self._approaching = True
-        least = max(self._least, abs(rate) / MOST_ACCELERATION)
-        if ahead > least:
+        least = max(self._least, abs(pose.rate) / MOST_ACCELERATION)
+        if ahead > least and not self._stands(ahead, pose):
             return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, self._side)
         self._approaching = False
         self._strikes, self._strike_s = 1, least
         return Choice(least, Grip.STRIKE, self._side)
+
+    def _stands(self, ahead: float, pose: Pose) -> bool:
+        """Whether the free corner touches the base as it is: the way that is left no longer halves.
+
+        A rounding of its height would otherwise be approached for ever.
+        """
+        touches = self._last.grip is Grip.APPROACH and self._gap(pose) < self._touching
+        return touches and (1.0 - REMAINDER) * ahead >= self._last.dt_s
 
     def _through(self, pose: Pose) -> Choice:
         """Step on in the shortest steps until the impact is over."""

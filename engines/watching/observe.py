@@ -142,7 +142,7 @@ class Observer:
         elif depth > THROWN_WIDTHS * width:
             words = f"the block was thrown {depth:.3g} m off the base"
             self.broken = Problem(Reason.THROWN, words)
-        elif self._slide > SLIDE_WIDTHS * width:
+        elif self._slide > SLIDE_WIDTHS * width and self._scene.friction != 0.0:
             words = f"the pivot slid {self._slide:.3g} m along the base"
             self.broken = Problem(Reason.SLID, words)
 

@@ -13,7 +13,7 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome
 from studies.cases.paper import Case, free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
-from studies.kit.executors import Executor, choose
+from studies.kit.executors import Executor
 from studies.kit.jobs import Job, one_line, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
@@ -80,7 +80,7 @@ def command(
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
         raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
-    executor = choose(running.jobs, running.time_limit, running.cluster)
+    executor = running.executor()
     rows = shown(block, posed, sources, times, executor)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
     if usable:

@@ -14,16 +14,16 @@ from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
 from studies.drawing.comparison import baseline_note, draw, json_lines, table_text
 from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
-from studies.kit.executors import Executor, choose
+from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
-from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort
+from studies.sources.registry import DEFAULT_EFFORT, Effort
 
 TIMED_IMPACTS = 5
 """First impacts whose times are compared."""
@@ -38,8 +38,7 @@ def command(
     excitation: Excitation = DEFAULT_EXCITATION,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     duration: Positive | None = None,
-    step: Positive | None = None,
-    accuracy: Accuracy | None = None,
+    effort: EffortOptions = OWN_EFFORT,
     estimate: bool = False,
     plot: Place | None = None,
     json: bool = False,
@@ -58,10 +57,6 @@ def command(
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
         8/p of free rocking.
-    step
-        p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
-    accuracy
-        loose, standard or tight, for engines whose steps land on impacts; standard by default.
     estimate
         Run every engine at half the step, too: the relative difference of the two peaks, and that
         times the factor which bounds 95 % of the errors on random cases (`rocking estimate`).
@@ -83,9 +78,9 @@ def command(
         sources,
         window,
         times=np.linspace(0.0, window, 1501) if plot else None,
-        effort=Effort(step, accuracy),
+        effort=effort,
         estimate=estimate,
-        executor=choose(running.jobs, running.time_limit, running.cluster),
+        executor=running.executor(),
     )
     if json:
         print(json_lines(rows, note))

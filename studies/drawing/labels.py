@@ -113,7 +113,7 @@ def around(axes: Axes, names: Sequence[Name], taken: FloatArray, size: float = 8
         costs = [
             _covered(box, spots)
             + 20 * sum(_overlap(box, other) for other in boxes)
-            + 20 * (box[0] < left or box[1] < foot or box[2] > right or box[3] > top)
+            + 100 * (box[0] < left or box[1] < foot or box[2] > right or box[3] > top)
             for box in found
         ]
         best = int(np.argmin(costs))

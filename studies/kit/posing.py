@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from cyclopts import Parameter
 
@@ -35,8 +35,9 @@ class Posed(NamedTuple):
     start: tuple[float, float]
 
 
+@Parameter(name="*")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Excitation:
+class Excitation:
     """What happens to a block: a pulse or a record, or a release on ground that does not move.
 
     Attributes
@@ -161,10 +162,7 @@ class _Excitation:
         return math.radians(value) if self.degrees else value * unit
 
 
-Excitation = Annotated[_Excitation, Parameter(name="*")]
-"""The options that say what happens to a block, as the type of a command's parameter."""
-
-DEFAULT_EXCITATION = _Excitation()
+DEFAULT_EXCITATION = Excitation()
 """Nothing is given."""
 
 

@@ -7,9 +7,10 @@ STUDY = Study(
     module="studies.literature.study",
     help="""Printed numbers on rocking blocks against the models and the engines.
 
-Steady states under harmonic shaking, least accelerations that overturn a block, the end of a mode:
-each with its source, the printed value and its digits. Writes literature.csv, literature.png and
-findings.txt; resumable. Less than a minute.""",
+Steady states under harmonic shaking and their limits of stability, least accelerations that
+overturn a block, the end of a mode, a drop without friction, measured velocity ratios: each with
+its source, the printed value and its digits, and why where it does not come out. Writes
+literature.csv, agreement.csv, literature.png and findings.txt; resumable. Less than a minute.""",
     table="literature.csv",
     products=("literature.csv", "agreement.csv", "literature.png", "findings.txt"),
     chapters=(

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.drawing.styles import style_of
+from studies.measures.differences import scientific
 
 WIDEST = 12.0
 """Answers further than this from the print, in units of its half interval, stand at the edge."""
@@ -36,6 +38,7 @@ def draw_literature(table: pd.DataFrame) -> Figure:
                 **{**style.points(6.0), "marker": style.marker or "D", "fillstyle": filled},
                 zorder=3,
             )
+    _say_how_far(axes, table)
     labels = table.drop_duplicates(["problem", "side"])
     axes.set_yticks(
         -np.arange(len(places)),
@@ -44,7 +47,10 @@ def draw_literature(table: pd.DataFrame) -> Figure:
     )
     axes.set_xlim(-1.06 * WIDEST, 1.06 * WIDEST)
     axes.set_ylim(-len(places) + 0.4, 0.6)
-    axes.set_xlabel("answer less print, in units of half of what the print's digits allow")
+    axes.set_xlabel(
+        "answer less print, in units of half of what the print's digits allow;\n"
+        "at the edges: further away, by this part of the print at most"
+    )
     axes.set_title("Inside the band: agrees to every printed digit", fontsize=10)
     axes.grid(axis="y", color="#EEEEEE")
     looks = ({**style_of(name).points(6.0), "fillstyle": "full"} for name in sources)
@@ -56,3 +62,12 @@ def draw_literature(table: pd.DataFrame) -> Figure:
     drawing.legend(handles=handles, loc="outside lower center", fontsize=9, ncols=len(sources),
                    title="filled: the model of the print; open: others", frameon=False)  # fmt: skip
     return drawing
+
+
+def _say_how_far(axes: Axes, table: pd.DataFrame) -> None:
+    """Write beside the points at either edge by what part of the print the furthest misses it."""
+    far = table[table["off"].abs() == WIDEST]
+    for (height, off), rows in far.groupby(["height", "off"]):
+        side = "right" if off > 0.0 else "left"
+        words = scientific(float(rows["miss"].max()))
+        axes.text(0.965 * off, height, words, ha=side, va="center", fontsize=7.5, color="#444444")

@@ -7,16 +7,22 @@ from functools import singledispatch
 
 import numpy as np
 
+from analytic.block import housner_restitution
+from analytic.criteria import frictionless_fall
 from analytic.maps import overturning_modes
 from analytic.motion import FloatArray
+from analytic.orbits import orbit_limits
 from analytic.response import Outcome, Response
 from studies.kit.jobs import Job, ask
 from studies.kit.journal import Row
+from studies.literature.prints import PROBLEMS
 from studies.literature.problems import (
-    PROBLEMS,
     Cascade,
+    Drop,
     ModeEnd,
+    OrbitLimit,
     Problem,
+    Restitution,
     SteadyState,
     Threshold,
 )
@@ -99,6 +105,26 @@ def _(problem: ModeEnd, response: Response, source: str) -> tuple[float, ...]:
     return (0.5 * (below + above),)
 
 
+@read.register
+def _(problem: OrbitLimit, response: Response, source: str) -> tuple[float, ...]:
+    w = problem.pulse.omega / problem.block.p
+    birth, loss = orbit_limits(problem.block.restitution, w, problem.half_periods)
+    return (birth if problem.birth else loss,)
+
+
+@read.register
+def _(problem: Drop, response: Response, source: str) -> tuple[float, ...]:
+    if source == problem.model:
+        return frictionless_fall(problem.block, problem.start[0])
+    strike = response.impacts[0]
+    return strike.time, abs(strike.velocity_before)
+
+
+@read.register
+def _(problem: Restitution, response: Response, source: str) -> tuple[float, ...]:
+    return (response.impacts[0].ratio / housner_restitution(problem.block.alpha),)
+
+
 def _threshold(problem: Threshold, job: Job, once: Put, width: float) -> Response:
     low, high = (
         bound * (1.0 + sign * REACH)
@@ -113,7 +139,10 @@ def _threshold(problem: Threshold, job: Job, once: Put, width: float) -> Respons
 
     first, last = at(low).outcome, at(high)
     if (first is Outcome.OVERTURNED) == (last.outcome is Outcome.OVERTURNED):
-        raise ValueError(f"{first.value} from {low:.4g} to {high:.4g}: no threshold there")
+        words = f"{first.value} from {low:.4g} to {high:.4g}: no threshold there"
+        if job.source == problem.model:
+            raise ValueError(words)
+        return replace(last, message=words)
     while high - low > width * low:
         middle = 0.5 * (low + high)
         same = (at(middle).outcome is Outcome.OVERTURNED) == (first is Outcome.OVERTURNED)

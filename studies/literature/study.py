@@ -8,7 +8,8 @@ from studies.kit.naming import several_engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.literature import STUDY
-from studies.literature.problems import PROBLEMS, ModeEnd, Problem
+from studies.literature.prints import PROBLEMS
+from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
 from studies.literature.readings import put, reduce, times_of
 from studies.literature.report import headline, paragraph, pictures, report
 from studies.sources.groups import core_sources
@@ -17,6 +18,8 @@ from studies.sources.registry import resolve
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 DEFAULT_SOURCES = core_sources()
+AFTER_A_RELEASE = 3.0
+"""Time, in units of 1/p, in which a released block strikes its base, and is seen to rise again."""
 
 
 def command(
@@ -57,17 +60,31 @@ def can_answer(problem: Problem, source: str) -> bool:
     kind = resolve(source).kind
     if isinstance(problem, ModeEnd):
         return kind == "model"
+    if isinstance(problem, OrbitLimit | Drop) and kind != "engine":
+        return source == problem.model
+    if isinstance(problem, OrbitLimit):
+        return False
     return kind != "engine" or problem.ideal
 
 
 def literature_job(problem: Problem, source: str) -> Job:
     """Return the job that puts a problem to a source."""
+    options: dict[str, object] = {"start": problem.start} if problem.start != (0.0, 0.0) else {}
+    if problem.friction is not None and resolve(source).kind == "engine":
+        options["friction"] = problem.friction
     return Job(
         labels={"problem": problem.name, "model": problem.model},
         block=problem.block,
         motion=problem.pulse,
         source=source,
-        duration=problem.pulse.duration if times_of(problem) is not None else None,
+        duration=_observed(problem),
         times=times_of(problem),
-        options={"start": problem.start} if problem.start != (0.0, 0.0) else {},
+        options=options,
     )
+
+
+def _observed(problem: Problem) -> float | None:
+    """Return until when [s] a source is watched; None where its peak and outcome are enough."""
+    if isinstance(problem, Drop | Restitution):
+        return AFTER_A_RELEASE / problem.block.p
+    return problem.pulse.duration if times_of(problem) is not None else None

@@ -260,7 +260,9 @@ STATISTICS = {
 
 PRINTS = {
     "problem": Column("", "what was printed, in a word"),
-    "side": Column("-", "0 for the larger rotation, 1 for that to the other side"),
+    "side": Column("-", "0 for the first number, 1 for the other side, or a rate beside a time"),
+    "of": Column("", "theory, or test: a measurement"),
+    "why": Column("", "why a print does not come out"),
     "work": Column("", "who printed it"),
     "where": Column("", "the place in the work, or what it says of the block"),
     "printed": Column("", "the print, digit by digit; a bracket of two"),

@@ -144,7 +144,7 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
     found: list[dict[Any, Any]] = []
     for path in sorted(folder.glob(pattern)):
         rows = pd.read_csv(path, keep_default_na=False, na_values=["nan"])
-        if "message" in rows:
+        if {"source", "outcome", "message"} <= set(rows.columns):
             failed = rows[rows["outcome"] == "failed"]
             counts = failed.groupby(["source", "message"], sort=False).size().reset_index(name="n")
             found += counts.to_dict("records")

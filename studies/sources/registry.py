@@ -105,6 +105,15 @@ SOURCES: dict[str, Source] = {
 """Every source; a new model or engine appears here by being registered in its own storey."""
 
 
+def announce(place: str) -> str:
+    """Make an engine a source that no package announces; see `engines.registry.announce`."""
+    from engines.registry import announce as announce_engine
+
+    name = announce_engine(place)
+    SOURCES[name] = _engine(name, ENGINES[name].best.name)
+    return name
+
+
 def resolve(name: str) -> Source:
     """Return the source called `name`, which may be an engine with a preset after a colon.
 

@@ -112,7 +112,8 @@ def _errors(axes: Axes, panel: pd.DataFrame, *, pale: bool) -> None:
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
     """Write the sources beside their lines: in the band above, and at the end of their errors."""
     colours = {source: style_of(source).colour for source in sources}
-    beside(upper, [Name(s, 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], 7.5)
+    size = 7.5 if len(sources) < 9 else 6.0
+    beside(upper, [Name(s, 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size)
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
     last = known.sort_values("omega_over_p").groupby("source", sort=False).last()
     beside(

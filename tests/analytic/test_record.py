@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from declared import held_to
+from declared import equal_to, held_to
 from independent import history_under_samples
 from scipy.integrate import quad
 
@@ -274,7 +274,9 @@ RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
 BANDS = {"naive": 0.6, "fixed": 0.1, "landing": 2e-4, "": 1e-3}
 """Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
 fixed step of p dt = 5e-4 is of first order in each of the five impacts, landing steps of 1/200
-are of second order; the paper's solvers end an excursion up to 1e-6 rad late."""
+are of second order, or add up the engine's roundings; the paper's solvers end an excursion up to
+1e-6 rad late."""
+
 
 NAMES = [
     *(name for name, source in SOURCES.items() if source.kind != "engine"),
@@ -284,6 +286,12 @@ NAMES = [
         for use in ENGINES[name].presets
     ),
 ]
+
+
+def band(name):
+    source, _, preset = name.partition(":")
+    kappa = 6.0
+    return max(BANDS[preset], kappa * equal_to(source)) if source in ENGINES else BANDS[preset]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -296,10 +304,10 @@ def test_every_source_takes_a_record(name):
     assert len(exact.impacts) >= 5
     assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
     worst = np.abs(response.history.theta - exact.history.theta).max()
-    assert worst < BANDS[name.partition(":")[2]] * np.abs(exact.history.theta).max()
+    assert worst < band(name) * np.abs(exact.history.theta).max()
     there = respond(name, BLOCK, RECORD.scaled(-1.0), times=times, duration=times[-1])
     apart = np.abs(there.history.theta + response.history.theta).max()
-    assert apart < BANDS[name.partition(":")[2]] * np.abs(exact.history.theta).max()
+    assert apart < band(name) * np.abs(exact.history.theta).max()
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
@@ -321,8 +329,7 @@ def test_a_long_record_through_every_source(name):
     response = respond(name, BLOCK, record)
     assert len(exact.rests) >= 2
     assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
-    band = 2.0 * BANDS[name.partition(":")[2]]
-    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=band)
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2.0 * band(name))
 
 
 def test_a_long_record_costs_a_step_for_each_sample_while_it_rocks():

@@ -17,7 +17,7 @@ from analytic import (
     ricker,
     simulate,
 )
-from analytic.synthetic import soil_kernel
+from analytic.synthetic import MISSED, soil_kernel
 
 MOTIONS = {
     "half sine": SinePulse(amplitude=3.0, omega=5.0),
@@ -97,9 +97,29 @@ def test_a_finer_step_changes_a_peak_by_the_square_of_the_step():
         assert 0.01 < peaks[0] < 1
         errors = np.abs(np.array(peaks[:3]) - peaks[5])
         assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2.0, abs=0.35)
-        # the default step, 200 in a cycle
-        default = simulate(block, make(None)).peak_ratio
-        assert default == pytest.approx(peaks[5], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda size, dt: ricker(5.0 * size, 2.0, dt=dt),
+        lambda size, dt: near_fault(0.5 * size, 1.6, 1.8, 0.5, dt=dt),
+    ],
+    ids=["ricker", "near-fault"],
+)
+def test_default_samples_cost_a_peak_what_they_miss_times_its_condition(make):
+    """The stated error, and its order: half the step leaves a quarter of it."""
+    block = RigidBlock(width=0.5, height=1.5)
+
+    def peak(step, size=1.0):
+        return math.log(simulate(block, make(size, step)).peak_ratio)
+
+    default = make(1.0, None).dt
+    fine = default / 40.0
+    kappa = (peak(fine, 1.0 + 1e-5) - peak(fine)) / 1e-5
+    errors = [abs(peak(default / part) - peak(fine)) for part in (1, 2)]
+    assert 0.3 * MISSED < errors[0] / kappa < 1.05 * MISSED
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02)
 
 
 def test_noise_is_the_seeds():

@@ -12,6 +12,7 @@ import sys
 from dataclasses import replace
 
 import pytest
+from declared import equal_to
 from uses import (
     BLOCK,
     FIXED,
@@ -19,11 +20,11 @@ from uses import (
     MIRRORED,
     TUNED,
     TUNED_IN_FRAMES,
-    equal_to,
     every_fixed_use,
     every_tuned_use,
     every_use,
     in_both_frames,
+    noise,
     pulse,
     scene,
 )
@@ -180,13 +181,15 @@ def test_geometry_can_be_put_back(engine: str) -> None:
     motion = pulse(1.3, 2.0)
     plane = run(engine, scene(motion, preset="fixed"))
     space = run(engine, scene(motion, preset="fixed", settings={"planar": False}))
-    assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=1e-3)
+    assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=1e-3 + equal_to(engine))
     assert space.peak_ratio != plane.peak_ratio
 
 
 @every_fixed_use
 def test_history(engine: str) -> None:
-    """Samples stand where the exact ones do, within the first-order error of one impact."""
+    """Samples stand where the exact ones do, within the first-order error of one impact, whose time
+    is off by up to p dt, and its velocity by that times the acceleration, some ten times it; and
+    within what that velocity lacks for being made of rounded places."""
     motion = pulse(1.3, 3.0, 2)
     times = [0.05 * i for i in range(60)]
     response = run(engine, scene(motion, preset="fixed", duration=3.0, times=times))
@@ -194,7 +197,9 @@ def test_history(engine: str) -> None:
     assert response.history is not None
     assert exact.history is not None
     assert response.history.time == pytest.approx(times)
-    assert response.history.theta == pytest.approx(exact.history.theta, abs=1e-2 * BLOCK.alpha)
+    step = HERE[engine].preset("fixed").step
+    allowed = 20.0 * step + noise(engine, step)
+    assert response.history.theta == pytest.approx(exact.history.theta, abs=allowed * BLOCK.alpha)
 
 
 @every_fixed_use

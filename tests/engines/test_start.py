@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, LANDING, band, every_fixed_use, every_landing_use
+from declared import rounding
+from uses import (
+    BLOCK,
+    HERE,
+    LANDING,
+    band,
+    every_fixed_use,
+    every_landing_use,
+    speed_band,
+)
 
 from analytic import simulate
 from analytic.criteria import free_amplitude, quarter_period
@@ -39,7 +48,8 @@ def test_quarter_period_and_decay(engine: str, preset: str, frame: str, side: fl
     response = run(engine, released((side * TILT, 0.0), preset=preset, frame=frame))
     times = [impact.time for impact in response.impacts]
     assert response.outcome is Outcome.ROCKED
-    assert response.peak_ratio == pytest.approx(0.4, rel=1e-12)  # where it was released
+    # where it was released, as the engine's numbers have it
+    assert response.peak_ratio == pytest.approx(0.4, rel=rounding(engine))
     assert not response.crossed
     assert response.uplifts == ()
     assert times[0] == pytest.approx(quarter_period(BLOCK, TILT), rel=band(engine))
@@ -47,8 +57,9 @@ def test_quarter_period_and_decay(engine: str, preset: str, frame: str, side: fl
         swing = 2.0 * quarter_period(BLOCK, free_amplitude(BLOCK, TILT, n))
         assert gap == pytest.approx(swing, rel=band(engine))
     speed = BLOCK.p * math.sqrt(2.0 * (math.cos(BLOCK.alpha - TILT) - math.cos(BLOCK.alpha)))
-    assert response.impacts[0].velocity_before == pytest.approx(-side * speed, rel=band(engine))
-    assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=band(engine))
+    first, nearly = response.impacts[0], speed_band(engine)
+    assert first.velocity_before == pytest.approx(-side * speed, rel=nearly)
+    assert first.ratio == pytest.approx(BLOCK.restitution, rel=nearly)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -62,7 +73,8 @@ def test_set_turning_while_upright(engine: str, preset: str, side: float) -> Non
     assert response.impacts[0].time == pytest.approx(
         2.0 * quarter_period(BLOCK, peak), rel=band(engine)
     )
-    assert response.impacts[0].velocity_before == pytest.approx(-rate, rel=1e-3)
+    nearly = max(1e-3, speed_band(engine))
+    assert response.impacts[0].velocity_before == pytest.approx(-rate, rel=nearly)
 
 
 @every_landing_use
@@ -160,7 +172,7 @@ def test_beyond_alpha_and_back(engine: str) -> None:
     barrier = BLOCK.p * math.sqrt(2.0 * (1.0 - math.cos(BLOCK.alpha - tilt)))
     back = run(engine, released((tilt, -1.1 * barrier)))
     assert (back.outcome, back.crossed) == (Outcome.ROCKED, True)
-    assert back.peak_ratio == pytest.approx(1.2, rel=1e-12)
+    assert back.peak_ratio == pytest.approx(1.2, rel=rounding(engine))
     for rate in (0.0, -0.9 * barrier):
         assert run(engine, released((tilt, rate))).outcome is Outcome.OVERTURNED
 
@@ -169,7 +181,7 @@ def test_beyond_alpha_and_back(engine: str) -> None:
 def test_a_small_release_comes_to_rest(engine: str) -> None:
     response = run(engine, released((1e-3 * BLOCK.alpha, 0.0)))
     assert response.outcome is Outcome.ROCKED
-    assert response.peak_ratio == pytest.approx(1e-3, rel=1e-12)
+    assert response.peak_ratio == pytest.approx(1e-3, rel=rounding(engine))
     assert response.uplifts == ()
 
 

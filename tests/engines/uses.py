@@ -9,11 +9,9 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import Miss, Stepping
+from engines.world import ROUNDINGS
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
-
-STEPS_ADD_UP = 1e4
-"""Steps over whose roundings the errors of two runs may add up that should be equal."""
 
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
@@ -44,9 +42,20 @@ def in_both_frames(uses: list[tuple[str, str]]) -> list[tuple[str, str]]:
     return [use for use in uses if set(FRAMES) <= set(HERE[use[0]].frames)]
 
 
-def equal_to(engine: str, exactly: float = 1e-9) -> float:
-    """Return within what two numbers agree that only the engine's rounding may tell apart."""
-    return max(exactly, STEPS_ADD_UP * HERE[engine].precision.value)
+def noise(engine: str, step: float) -> float:
+    """Return the part of an impact's velocity, some p H/10, that is a rounding of a block's place.
+
+    Over a step of p dt such a rounding is a velocity.
+    """
+    return ROUNDINGS * HERE[engine].precision.value / (0.1 * step)
+
+
+def speed_band(engine: str) -> float:
+    """Return within what landing steps meet a closed form for the velocity of an impact.
+
+    It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
+    """
+    return max(band(engine), 17.0 * noise(engine, 5e-3))
 
 
 def band(engine: str) -> float:

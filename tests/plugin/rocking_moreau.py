@@ -6,9 +6,9 @@ the one is taken that contradicts nothing. An impact is plastic, friction is Cou
 """
 
 import itertools
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.factors import factor, level
@@ -21,6 +21,30 @@ SLACK = 1e-12
 
 WAYS = (((), 0), *itertools.product(((0,), (1,), (0, 1)), (0, 1, -1)))
 """Which corners touch, and whether they stick (0) or slide, to which side."""
+
+
+Triple = tuple[float, float, float]
+"""Along the base, up, and about the corner: plain numbers, as so few are faster than arrays."""
+
+
+def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def moved(a: Triple, by: float, b: Sequence[float]) -> Triple:
+    return a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]
+
+
+def solved(matrix: list[list[float]], right: list[float]) -> list[float]:
+    """Solve up to three linear equations, by elimination with the largest pivots."""
+    rows = [[*row, value] for row, value in zip(matrix, right, strict=True)]
+    for i in range(len(rows)):
+        rows[i:] = sorted(rows[i:], key=lambda row: -abs(row[i]))
+        for j in range(len(rows)):
+            if j != i:
+                part = rows[j][i] / rows[i][i]
+                rows[j] = [a - part * b for a, b in zip(rows[j], rows[i], strict=True)]
+    return [row[-1] / row[i] for i, row in enumerate(rows)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,20 +64,20 @@ class MoreauWorld:
     def __init__(self, scene: Scene, settings: MoreauSettings, dt_s: float) -> None:
         at = scene.beginning
         self._s, self._way = settings, ((0, 1), 0)
-        self._place = np.array([at.x, at.z, at.theta])
-        self._velocity = np.array([at.velocity_x, at.velocity_z, at.rate])
-        self._light = 1.0 / np.array([scene.mass, scene.mass, scene.inertia[1]])
+        self._place = (at.x, at.z, at.theta)
+        self._velocity = (at.velocity_x, at.velocity_z, at.rate)
+        self._light = (1.0 / scene.mass, 1.0 / scene.mass, 1.0 / scene.inertia[1])
         x, z = 0.5 * scene.block.width, 0.5 * scene.block.height
-        self._corners = np.array([[-x, -z], [x, -z]])
+        self._corners = ((-x, -z), (x, -z))
 
     def step(self, step: Step) -> None:
-        self._place += 0.5 * step.dt_s * self._velocity
-        free = self._velocity + step.dt_s * np.array([step.pull_x, step.pull_z, 0.0])
+        self._place = moved(self._place, 0.5 * step.dt_s, self._velocity)
+        free = moved(self._velocity, step.dt_s, (step.pull_x, step.pull_z, 0.0))
         self._velocity = self._after_contact(free, step.dt_s)
-        self._place += 0.5 * step.dt_s * self._velocity
+        self._place = moved(self._place, 0.5 * step.dt_s, self._velocity)
 
     def pose(self) -> Pose:
-        return Pose(*self._place.tolist(), float(self._velocity[2]))
+        return Pose(*self._place, self._velocity[2])
 
     def fault(self) -> str:
         return ""
@@ -61,16 +85,18 @@ class MoreauWorld:
     def close(self) -> None:
         pass
 
-    def _after_contact(self, free: np.ndarray, dt_s: float) -> np.ndarray:
+    def _after_contact(self, free: Triple, dt_s: float) -> Triple:
         """Return the velocity that the corners leave of `free`."""
-        sine, cosine = np.sin(self._place[2]), np.cos(self._place[2])
-        x, z = np.array([[cosine, sine], [-sine, cosine]]) @ self._corners.T
-        zero, one = np.zeros(2), np.ones(2)
-        ups = np.stack([zero, one, -x], axis=1)  # times the velocity: a corner's, up
-        alongs = np.stack([one, zero, z], axis=1)  # and along the base
-        gaps = self._place[1] + z
-        least = np.where(gaps > 0.0, -gaps / dt_s if self._s.closing else -np.inf, 0.0)
-        slack, tried = SLACK * float(np.abs(free).max()), []
+        sine, cosine = math.sin(self._place[2]), math.cos(self._place[2])
+        ups, alongs, least = [], [], []
+        for across, upward in self._corners:
+            x, z = cosine * across + sine * upward, cosine * upward - sine * across
+            ups.append((0.0, 1.0, -x))  # times the velocity: a corner's, up
+            alongs.append((1.0, 0.0, z))  # and along the base
+            gap = self._place[1] + z
+            late = -gap / dt_s if self._s.closing else -math.inf
+            least.append(late if gap > 0.0 else 0.0)
+        slack, tried = SLACK * max(map(abs, free)), []
         for way in (self._way, *WAYS):
             velocity, contradiction = self._go(way, free, ups, alongs, least)
             tried.append((contradiction, way, velocity))
@@ -82,29 +108,38 @@ class MoreauWorld:
     def _go(
         self,
         way: tuple[tuple[int, ...], int],
-        free: np.ndarray,
-        ups: np.ndarray,
-        alongs: np.ndarray,
-        least: np.ndarray,
-    ) -> tuple[np.ndarray, float]:
+        free: Triple,
+        ups: list[Triple],
+        alongs: list[Triple],
+        least: list[float],
+    ) -> tuple[Triple, float]:
         """Return the velocity if the corners go a way, and by how much that contradicts itself."""
-        touching, slides = list(way[0]), way[1]
-        if not np.isfinite(least[touching]).all():
-            return free, np.inf
-        velocity, limits = free, []
+        touching, slides = way
+        wanted = [least[i] for i in touching]
+        if -math.inf in wanted:
+            return free, math.inf
+        velocity, limits = free, [0.0]
         if touching:
-            told, wanted, mu = ups[touching], least[touching], self._s.friction
-            pushes = told - slides * mu * alongs[touching]
+            told, along, mu = [ups[i] for i in touching], alongs[touching[0]], self._s.friction
+            pushes = [moved(ups[i], -slides * mu, alongs[i]) for i in touching]
             if not slides:  # two corners stick by one force along the base
-                told = pushes = np.vstack([told, alongs[touching[0]]])
-                wanted = np.append(wanted, 0.0)
-            changes = pushes * self._light
-            impulses = np.linalg.solve(told @ changes.T, wanted - told @ free)
-            velocity = free + impulses @ changes
-            press, slip = impulses[: len(touching)], float(alongs[touching[0]] @ velocity)
-            grip = slides * slip if slides else mu * press.sum() - abs(impulses[-1])
-            limits = [*(press * self._light[0]), grip if slides else grip * self._light[0]]
-        return velocity, -min(*limits, *(ups @ velocity - least), 0.0)
+                told = pushes = [*told, along]
+                wanted.append(0.0)
+            heavy = [[a * b for a, b in zip(push, self._light, strict=True)] for push in pushes]
+            impulses = solved(
+                [[dot(one, other) for other in heavy] for one in told],
+                [least - dot(one, free) for one, least in zip(told, wanted, strict=True)],
+            )
+            for impulse, change in zip(impulses, heavy, strict=True):
+                velocity = moved(velocity, impulse, change)
+            press = impulses[: len(touching)]
+            limits += [impulse * self._light[0] for impulse in press]
+            if slides:
+                limits.append(slides * dot(along, velocity))
+            else:
+                limits.append((mu * sum(press) - abs(impulses[-1])) * self._light[0])
+        limits += [dot(up, velocity) - needed for up, needed in zip(ups, least, strict=True)]
+        return velocity, -min(limits)
 
 
 TUNED = MoreauSettings(friction=10.0, closing=True)

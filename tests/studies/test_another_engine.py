@@ -27,6 +27,7 @@ ARGUMENTS = {
     "overturning": ("--quick", "--sources", "exact", "moreau"),
     "validity": ("--quick", "--sources", "moreau:fixed"),
     "ensemble": ("--quick", "--sources", "moreau"),
+    "score": ("moreau", "--quick"),
 }
 OF_NO_ENGINE = {"linearizations"}
 OF_ENGINES_THAT_WERE_ASKED = {"symptoms", "restitution"}

@@ -4,6 +4,7 @@ import contextlib
 import math
 
 import pytest
+from declared import equal_to
 
 from analytic.response import Outcome, Response
 from engines import Scene, core_engines, installed_engines, run
@@ -28,10 +29,11 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
         assert response.message.startswith("not available: ")
         return
     assert response.outcome is Outcome.ROCKED, response.message
-    # a full box keeps contacts that a corner has left: its impact is off by up to 3e-2 in PyBullet;
-    # equal steps hold the impact within one: the next 1e-2; nothing else may cost accuracy
-    costs = {"full box instead of corners": 3e-2, "steps all equal": 1e-2}
-    allowed = costs.get(omission.name, 1e-4)
+    # a full box keeps contacts that a corner has left: its impact is off by some per cent; equal
+    # steps hold the impact within one: the next 1e-2; nothing else may cost more than roundings,
+    # here and where the base has moved
+    costs = {"full box instead of corners": 1e-1, "steps all equal": 1e-2}
+    allowed = max(costs.get(omission.name, 1e-4), 2.0 * equal_to(engine))
     assert response.peak_ratio == pytest.approx(0.385157, rel=allowed)
     assert (response.history is not None) == ("times" in omission.put_back)
 

@@ -36,7 +36,7 @@ def test_a_study_has_a_command_and_one_with_a_table_can_be_drawn_and_told(study)
 
 def test_every_study_is_a_chapter_but_those_shown_elsewhere():
     shown = {study.name for study, _ in CHAPTERS}
-    alone = {"compare", "animate", "export", "cost", "throughput"}
+    alone = {"compare", "animate", "export", "cost", "throughput", "score"}
     assert {study.name for study in STUDIES} - shown == alone
 
 
@@ -123,6 +123,13 @@ def test_the_engines_answers_are_those_of_the_tables():
         half_cycles = {"half-sine": 1, "full-sine": 2}[case.pulse]
         peak = shown[half_cycles, case.aspect, case.width_m, amplitude, case.omega_over_p]
         assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.8g}"))
+
+
+@pytest.mark.parametrize("place", CHAPTERS, ids=lambda place: place[1].folder)
+def test_what_failed_is_found_in_any_study_s_table(place):
+    study, chapter = place
+    found = page.failures(PUBLISHED / chapter.folder, study.table)
+    assert all(item["n"] > 0 and item["message"] for item in found)
 
 
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):

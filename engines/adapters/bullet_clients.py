@@ -1,0 +1,27 @@
+"""PyBullet's clients, each used for one run after another: most runs are shorter than connecting.
+
+A reset gives a client a new world with a solver and settings of its own; what it keeps is put back.
+"""
+
+from typing import Any
+
+from engines.adapters.bullet_settings import LIBRARY_BREAKING_THRESHOLD, LIBRARY_STEP_S
+
+idle: list[int] = []
+"""Clients of this process whose run has ended."""
+
+
+def taken(p: Any) -> int:
+    """Return a client of the library `p` that no run uses, as good as new."""
+    return idle.pop() if idle else int(p.connect(p.DIRECT))
+
+
+def given_back(p: Any, client: int) -> None:
+    """Empty a client, and give the library back what it holds for the process."""
+    p.resetSimulation(physicsClientId=client)
+    p.setPhysicsEngineParameter(
+        contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
+        fixedTimeStep=LIBRARY_STEP_S,
+        physicsClientId=client,
+    )
+    idle.append(client)

@@ -1,0 +1,46 @@
+"""An engine of which nothing is known but what builds its world."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from engines.declaration import Engine, Help, Preset, Stepping
+from engines.parts.settings import check, setting
+from engines.scene import Scene
+from engines.world import World
+
+FIXED_STEP = 1e-3
+"""p dt of equal steps."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlainSettings:
+    """The one setting that every engine must take: friction between block and base."""
+
+    friction: float = setting(1.0, above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+def undeclared(name: str, build: Callable[[Scene, Any, float], World]) -> Engine:
+    """Return an engine that is used as it is built, with equal steps and with ones that land."""
+    return Engine(
+        name=name,
+        title=name,
+        library=build.__module__.partition(".")[0],
+        packages=(),
+        install=build.__module__.partition(".")[0],
+        build=build,
+        presets=(
+            Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=FIXED_STEP),
+            Preset(
+                name="landing",
+                title="steps that land on impacts",
+                settings=PlainSettings(),
+                stepping=Stepping.LANDING,
+                helped_by={Help.STEPS: None},
+            ),
+        ),
+        frames=("base",),
+    )

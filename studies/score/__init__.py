@@ -1,0 +1,27 @@
+"""One engine, on one page: outcomes, errors and time, extreme cases, what it is helped by."""
+
+from studies.kit.study import Study
+
+STUDY = Study(
+    name="score",
+    module="studies.score.study",
+    help="""One engine on one page, registered or at MODULE:ENGINE or MODULE:build.
+
+The paper's 960 cases with each of its presets, its errors along the step beside the published
+engines, its verdicts on extreme cases, what it is helped by. Writes score-sweep.csv,
+score-steps.csv, score-extremes.csv, score.txt, two figures and provenance.json; resumable.""",
+    table="score-sweep.csv",
+    products=(
+        "score-sweep.csv",
+        "score-steps.csv",
+        "score-extremes.csv",
+        "score.txt",
+        "score.png",
+        "extremes.png",
+    ),
+    captions={
+        "score": "The engine's presets along their steps, largest error against run time; grey "
+        "behind them the published engines.",
+        "extremes": "Extreme cases, a column for each preset: what its answer is worth.",
+    },
+)

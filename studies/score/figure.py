@@ -1,0 +1,57 @@
+"""The place of an engine on the diagram of error against run time."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.drawing.labels import Name, beside
+from studies.drawing.styles import LOWEST, Style
+from studies.precision.choices import engines_of, joint
+from studies.precision.figure import style_of
+
+BACKGROUND = "#b5b5b5"
+"""Colour of the published engines."""
+WRONG = 10.0
+"""Where settings that fail or get an outcome wrong are drawn."""
+
+
+def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
+    """Draw the largest error over all cases against the run time of a case.
+
+    Parameters
+    ----------
+    along, published : DataFrame
+        The columns of work-precision.csv, of the engine and of the published ones.
+    """
+    drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
+    axes = drawing.subplots()
+    axes.set(xscale="log", yscale="log", ylim=(1e-6, 30.0))
+    mine, others = joint(along), joint(engines_of(published))
+    others = others[~others["method"].isin(mine["method"])]
+    grey = Style(BACKGROUND, "-", ".", 0.9)
+    names = [_line(axes, str(name), line, grey) for name, line in _methods(others)]
+    names += [_line(axes, str(name), line, style_of(str(name))) for name, line in _methods(mine)]
+    axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
+    axes.text(0.01, 0.985, "failed, or a wrong outcome", va="top", fontsize=8, color="#666666",
+              transform=axes.transAxes)  # fmt: skip
+    axes.set_xlabel("run time of a case, set-up apart  [s]")
+    axes.set_ylabel(f"largest relative error of the peak, {mine['cases'].max()} cases  [–]")
+    axes.set_title("Error against run time along the step; grey: the published engines")
+    axes.grid(alpha=0.25)
+    beside(axes, names)
+    return drawing
+
+
+def _methods(lines: pd.DataFrame) -> list[tuple[object, pd.DataFrame]]:
+    return list(lines.groupby("method", sort=False))
+
+
+def _line(axes: Axes, name: str, line: pd.DataFrame, style: Style) -> Name:
+    right = (line["failed"] == 0) & np.isfinite(line["max_error"])
+    error = line["max_error"].where(right, WRONG).clip(lower=LOWEST)
+    colour = "#777777" if style.colour == BACKGROUND else style.colour
+    look = {**style.points(), "linestyle": style.line or "none", "linewidth": style.width}
+    axes.plot(line["wall_s"], error, **look)
+    last = int(np.argmax(line["wall_s"]))
+    return Name(name, float(line["wall_s"].iloc[last]), float(error.iloc[last]), colour)

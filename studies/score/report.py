@@ -1,0 +1,165 @@
+"""An engine's page, from its three tables and the published ones."""
+
+import json
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from engines import ENGINES
+from engines.declaration import Engine, Precision
+from studies.advise.evidence import LADDER
+from studies.kit import provenance
+from studies.kit.journal import PROVENANCE
+from studies.measures.differences import scientific, summarize, summary_text, with_reference
+from studies.measures.published import PUBLISHED
+from studies.measures.words import listed, out_of, part
+from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
+from studies.precision.report import with_errors, work_precision
+from studies.stability.findings import first_claim
+from studies.stability.report import failures_text, verdicts_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH = 99
+"""Of the page, in letters."""
+
+
+def report(folder: Path) -> str:
+    """Draw a folder's figures, and write and return its page."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    engine = ENGINES[engine_of(folder)]
+    along = ladder(folder)
+    extremes = _table(folder, "extremes")
+    text = "\n\n".join(
+        [
+            introduction(engine),
+            "The paper's cases: errors of the peak are relative, over cases that survive:\n"
+            + summary_text(swept(folder)),
+            "Along the step, on typical cases and near overturning together:\n" + along_text(along),
+            "The cheapest setting below an error on all of these, and the published one:\n"
+            + places_text(along),
+            "Verdicts on extreme cases:\n" + verdicts_text(extremes),
+            "Of these failures, and the first setting that avoids each:\n"
+            + failures_text(extremes),
+            help_text(engine),
+        ]
+    )
+    provenance.write_text(folder / "score.txt", text + "\n")
+    return text
+
+
+def engine_of(folder: Path) -> str:
+    """Return the name of the engine that a folder is about."""
+    record = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
+    return str(record["settings"]["engine"])
+
+
+def headline(folder: Path) -> str:
+    """Say how many outcomes the engine's presets get right, and how far peaks are off."""
+    words = [
+        f"{line['source']} gets {out_of(line['agree'], line['cases'])} outcomes right, "
+        f"and peaks to {part(line['max_error'])}"
+        for _, line in swept(folder).iterrows()
+    ]
+    return f"{listed(words)}."
+
+
+def paragraph(folder: Path) -> str:
+    """Say the same, and how many extreme cases are right."""
+    return f"{headline(folder)} {first_claim(_table(folder, 'extremes'))}"
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
+    from studies.score.figure import draw_score
+    from studies.stability.figure import draw_matrix
+
+    return {
+        "score": draw_score(ladder(folder), published()),
+        "extremes": draw_matrix(_table(folder, "extremes")),
+    }
+
+
+def swept(folder: Path) -> pd.DataFrame:
+    """Return the lines of all figures together, one for each preset."""
+    lines = summarize(with_reference(_table(folder, "sweep")))
+    found: pd.DataFrame = lines[lines["figure"] == lines["figure"].iloc[-1]]
+    return found.reset_index(drop=True)
+
+
+def ladder(folder: Path) -> pd.DataFrame:
+    """Return errors and times of each method and setting; see `work_precision`."""
+    return work_precision(with_errors(_table(folder, "steps")))
+
+
+def published() -> pd.DataFrame:
+    """Return the published table of the same."""
+    return pd.read_csv(PUBLISHED / LADDER)
+
+
+def _table(folder: Path, name: str) -> pd.DataFrame:
+    path = folder / f"score-{name}.csv"
+    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
+
+
+def introduction(engine: Engine) -> str:
+    """Say which engine this is, and what it can do."""
+    versions = [f"{name} {provenance.version_of(name)}" for name in engine.packages]
+    precision = "single" if engine.precision is Precision.SINGLE else "double"
+    return fill(
+        f"{engine.title}{f' ({listed(versions)})' if versions else ''}, in {precision} precision, "
+        f"{'in space' if engine.spatial else 'in the plane'}; frames {listed(engine.frames)}, "
+        f"geometries {listed(engine.geometries)}.",
+        WIDTH,
+    )
+
+
+def along_text(along: pd.DataFrame) -> str:
+    """Return the errors and the time of a case of every method and setting."""
+    lines = joint(along)
+    typical = along[along["set"] == "typical"].set_index(["method", "value"])
+    keys = pd.MultiIndex.from_frame(lines[["method", "value"]])
+    return pd.DataFrame(
+        {
+            "method": lines["method"].mask(lines["method"] == lines["method"].shift(), ""),
+            "setting": lines["value"].map("{:g}".format),
+            "median": typical["median_error"].reindex(keys).map(scientific).to_numpy(),
+            "largest": lines["max_error"].map(scientific),
+            "failed": lines["failed"],
+            "ms a case": (1e3 * lines["wall_s"]).map("{:.3g}".format),
+        }
+    ).to_string(index=False)
+
+
+def places_text(along: pd.DataFrame) -> str:
+    """Return, for each error, the cheapest setting of this engine and of the published ones."""
+    mine, others = joint(along), joint(engines_of(published()))
+    return pd.DataFrame(
+        {
+            "error": f"{target:g}",
+            "this engine": _setting(cheapest_below(mine, target)),
+            "published": _setting(cheapest_below(others, target)),
+        }
+        for target in TARGETS
+    ).to_string(index=False)
+
+
+def _setting(line: "pd.Series[Any] | None") -> str:
+    if line is None:
+        return "none"
+    return f"{line['method']} at {line['value']:g}, {1e3 * line['wall_s']:.3g} ms"
+
+
+def help_text(engine: Engine) -> str:
+    """Say what each preset is helped by, and what the library's defaults are known to miss."""
+    sentences = []
+    for preset in engine.presets:
+        helps = listed([help_.value for help_ in preset.helped_by]) if preset.helped_by else ""
+        sentences.append(f"{preset.name} is helped by {helps or 'nothing'}.")
+        sentences += [f"{preset.name} misses: {miss.value}." for miss in preset.misses]
+    return "\n".join(fill(sentence, WIDTH) for sentence in sentences)

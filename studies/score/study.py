@@ -1,0 +1,135 @@
+"""One engine, put to what the sweep, the study of precision and that of stability ask."""
+
+import functools
+import hashlib
+import inspect
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from analytic.response import Response
+from engines import ENGINES
+from studies.kit.arguments import BadInputError, Place
+from studies.kit.jobs import Job, summary
+from studies.kit.jobs import ask as plain
+from studies.kit.journal import Row
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, by_label, carry_out
+from studies.measures.verdicts import BANDS
+from studies.precision import study as precision
+from studies.score import STUDY
+from studies.score.report import headline, paragraph, pictures, report
+from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
+from studies.stability import study as stability
+from studies.stability.remedies import answer
+from studies.sweep.study import sweep_jobs
+
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+
+FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
+QUICK_EVERY = 11
+"""Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
+SWEEP, STEPS, EXTREMES = "score-sweep", "score-steps", "score-extremes"
+"""The tables."""
+
+
+def command(
+    engine: Annotated[str, Parameter(name="ENGINE")],
+    /,
+    *,
+    out: Place,
+    quick: bool = False,
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Score one engine.
+
+    Parameters
+    ----------
+    engine
+        Its name, or MODULE:ENGINE where its declaration stands, or MODULE:build of what builds its
+        world, in this folder or among the installed packages.
+    out
+        Folder for the results; made if there is none.
+    quick
+        Every 11th case of two figures, every other step, fewer extremes: a minute or two.
+    """
+    chosen = plan(known(engine), quick, running.time_limit)
+    return carry_out(STUDY, chosen, out, running, report)
+
+
+def known(engine: str) -> str:
+    """Return the name of an engine; one at a place is made known.
+
+    Raises
+    ------
+    BadInputError
+        If there is none.
+    """
+    if engine in ENGINES:
+        return engine
+    if ":" not in engine:
+        words = f"{', '.join(ENGINES)}, MODULE:ENGINE or MODULE:build"
+        raise BadInputError(f"ENGINE is {engine!r}; it must be one of {words}")
+    sys.path.insert(0, str(Path.cwd()))
+    try:
+        return announce(engine)
+    except ValueError as error:
+        raise BadInputError(f"ENGINE: {error}") from error
+
+
+def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
+    """Return the plan of the three tables."""
+    return Plan(
+        jobs=score_jobs(name, quick),
+        settings={"engine": name, "adapter": adapter(name), "quick": quick, "bands": BANDS},
+        ask=functools.partial(put, quick=quick, time_limit_s=time_limit_s),
+        reduce=reduce,
+        tabulate=by_label("table"),
+        needed=lambda rows: [row for row in rows if row["table"] == SWEEP],
+    )
+
+
+def adapter(name: str) -> str:
+    """Return a hash of the module that builds an engine's worlds, which may be anybody's."""
+    module = inspect.getmodule(ENGINES[name].build)
+    source = inspect.getsource(module) if module else ""
+    return hashlib.sha256(source.encode()).hexdigest()[:12]
+
+
+def score_jobs(name: str, quick: bool) -> list[Job]:
+    """Return the jobs of the three tables, preset by preset."""
+    uses = [f"{name}:{preset}" for preset in presets_of(SOURCES[name])]
+    swept = sweep_jobs(QUICK_FIGURES if quick else FIGURES, uses, DEFAULT_EFFORT)
+    if quick:
+        swept = [job for number, job in enumerate(swept) if number // len(uses) % QUICK_EVERY == 0]
+    along = [job for job in precision.precision_jobs(quick, [name]) if job.source in uses]
+    extreme = stability.matrix_jobs(uses, quick)
+    return [*_in(SWEEP, swept), *_in(STEPS, along), *_in(EXTREMES, extreme)]
+
+
+def _in(table: str, jobs: Sequence[Job]) -> list[Job]:
+    return [replace(job, labels={**job.labels, "table": table}) for job in jobs]
+
+
+def put(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
+    """Put a job of any of the three tables to its source."""
+    if job.labels["table"] == STEPS:
+        budget_s = precision.QUICK_BUDGET_S if quick else precision.BUDGET_S
+        return precision.measure(job, source, budget_s=budget_s)
+    if job.labels["table"] == EXTREMES:
+        return answer(stability.case_of(job), job, source, time_limit_s)
+    return plain(job, source)
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the columns that follow the labels of a job's table."""
+    if job.labels["table"] == STEPS:
+        return precision.reduce(job, response)
+    row = summary(job, response)
+    if job.labels["table"] == EXTREMES:
+        row |= stability.judged(stability.case_of(job), job.source, response)
+    return row

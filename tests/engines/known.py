@@ -1,0 +1,112 @@
+"""An engine that knows the answer: its poses are exact, so that all error is the onlooker's."""
+
+import math
+from dataclasses import dataclass, replace
+
+import pytest
+
+from analytic import simulate
+from analytic.response import Response
+from engines import ENGINES, Scene, run
+from engines.declaration import Preset, Stepping
+from engines.world import Moment, Pose, Step
+
+
+@dataclass(frozen=True)
+class NoSettings:
+    friction: float = 1.0
+
+
+def standing(scene: Scene, theta: float, rate: float) -> Pose:
+    """Return the pose of a block that stands on the corner on the side of its lean."""
+    half_width = math.copysign(0.5 * scene.block.width, theta)
+    half_height = 0.5 * scene.block.height
+    sine, cosine = math.sin(theta), math.cos(theta)
+    x = half_width * (1.0 - cosine) + half_height * sine
+    return Pose(x, half_width * sine + half_height * cosine, theta, rate)
+
+
+class ScriptedWorld:
+    """Has the rotation and rate that `script` says, and keeps the steps that it was given."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.steps: list[Step] = []
+        self._pose = standing(scene, *scene.start)
+
+    @property
+    def moment(self) -> Moment:
+        return Moment.END
+
+    def script(self, time: float, rate_s: float) -> tuple[float, float]:
+        """Return the rotation at a time, and the rate at the moment of its step [s]."""
+        raise NotImplementedError
+
+    def step(self, step: Step) -> None:
+        self.steps.append(step)
+        rate_s = step.end_s - (1.0 - self.moment.value) * step.dt_s
+        self._pose = standing(self.scene, *self.script(step.end_s, rate_s))
+
+    def pose(self) -> Pose:
+        return self._pose
+
+    def fault(self) -> str:
+        return ""
+
+    def close(self) -> None:
+        pass
+
+
+class KnownWorld(ScriptedWorld):
+    """The exact solution, its velocity at some moment of the step."""
+
+    def __init__(self, scene: Scene, moment: Moment, stepping: Stepping) -> None:
+        super().__init__(scene)
+        self._moment = moment
+        self._ahead: dict[int, tuple[float, float]] = {}
+        if stepping is Stepping.FIXED and scene.step and scene.duration:
+            dt_s = scene.step / scene.block.p
+            # equal steps are known before: one solution for all of them
+            ends = [dt_s * (i + 1) for i in range(math.ceil(scene.duration / dt_s) + 1)]
+            rated = [end - (1.0 - moment.value) * dt_s for end in ends]
+            # they end where the block lies on its side
+            found = zip(self._exact(ends)[0], self._exact(rated)[1], strict=False)
+            self._ahead = dict(enumerate(found, start=1))
+
+    @property
+    def moment(self) -> Moment:
+        return self._moment
+
+    def _exact(self, times: list[float]) -> tuple[list[float], list[float]]:
+        scene = self.scene
+        long = max(scene.motion.duration, times[-1])
+        found = simulate(scene.block, scene.motion, start=scene.start, duration=long, times=times)
+        assert found.history is not None
+        return found.history.theta.tolist(), found.history.velocity.tolist()
+
+    def script(self, time: float, rate_s: float) -> tuple[float, float]:
+        if self._ahead:
+            lying = math.copysign(0.5 * math.pi, self._pose.theta), self._pose.rate
+            return self._ahead.get(len(self.steps), lying)
+        first, last = sorted((time, rate_s))
+        thetas, rates = self._exact([first, last] if first < last else [first])
+        return thetas[time > rate_s], rates[rate_s > time]
+
+
+def watched(
+    monkeypatch: pytest.MonkeyPatch, world: ScriptedWorld, scene: Scene, stepping: Stepping
+) -> Response:
+    """Run a scene as if the world were an engine's, in the steps of a preset."""
+    step = {"step": 1e-2} if stepping is Stepping.FIXED else {}
+    use = Preset(name="known", title="", settings=NoSettings(), stepping=stepping, **step)
+    engine = replace(ENGINES["mujoco"], build=lambda *_: world, presets=(use,))
+    monkeypatch.setattr("engines.drive.find", lambda name: engine)
+    return run("known", scene)
+
+
+def exactly(
+    monkeypatch: pytest.MonkeyPatch, scene: Scene, moment: Moment, stepping: Stepping
+) -> tuple[Response, list[Step]]:
+    """Run a scene with exact poses; return what was made of them, and the steps."""
+    world = KnownWorld(scene, moment, stepping)
+    return watched(monkeypatch, world, scene, stepping), world.steps

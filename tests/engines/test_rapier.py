@@ -1,0 +1,77 @@
+"""Rapier: how near single precision comes, and the traps that it sets without a word."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from declared import equal_to
+from test_landing import errors_of_sweep
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic import simulate
+from analytic.motion import Still
+from analytic.response import Outcome, Response
+from engines import Scene, run
+
+pytestmark = pytest.mark.skipif("rapier" not in HERE, reason="rapier3d is not installed")
+
+MOTION = pulse(1.3, 3.0, 2)
+
+
+def rocked(preset: str = "landing", **settings: Any) -> Response:
+    return run("rapier", scene(MOTION, preset=preset, settings=settings))
+
+
+def error(**settings: Any) -> float:
+    return abs(rocked(**settings).peak_ratio / simulate(BLOCK, MOTION).peak_ratio - 1.0)
+
+
+def test_some_of_the_sweep() -> None:
+    """Thousands of roundings add up to some 1e-4; one at an impact may cost ten times that."""
+    errors = errors_of_sweep("rapier", every=96)
+    assert np.median(errors) < equal_to("rapier") / 6.0
+    assert max(errors) < 10.0 * equal_to("rapier")
+
+
+def test_contacts_that_are_recycled_let_the_pivot_go() -> None:
+    """It slides by inches, and the block overturns or leaves the problem."""
+    assert rocked().outcome is simulate(BLOCK, MOTION).outcome is Outcome.ROCKED
+    assert rocked(recycling=True).outcome is not Outcome.ROCKED
+
+
+def test_a_block_locked_into_the_plane_has_no_friction() -> None:
+    """Rotations may be locked, or the translation out of the plane, but not all of them."""
+    response = rocked(locked_aside=True)
+    assert response.outcome is Outcome.FAILED
+    assert "slid" in response.message
+
+
+def test_gravity_that_changes_wakes_nothing() -> None:
+    """A block that was put to sleep at the turn of its motion is no result, and no endless run."""
+    motion = pulse(1.3, 0.3)
+    asleep = run("rapier", scene(motion, preset="naive"))
+    assert asleep.outcome is Outcome.FAILED
+    assert "asleep" in asleep.message or "to sleep" in asleep.message
+    assert asleep.steps < 2000
+    awake = run("rapier", scene(motion, preset="naive", settings={"sleeping": False}))
+    assert awake.outcome is simulate(BLOCK, motion).outcome
+
+
+def test_a_soft_contact_and_the_stabilization_cost_all_accuracy() -> None:
+    """The library's own contact has a spring of 30 Hz, and takes velocities out again."""
+    best = error()
+    assert best < 2.0 * equal_to("rapier")
+    assert error(stabilization=1) > 10.0 * best
+    assert error(frequency=30.0, damping_ratio=10.0, by_phase=False) > 10.0 * best
+
+
+def test_swings_that_rounding_hides_are_left_to_the_contacts() -> None:
+    """Below 1e-6 of the height a swing cannot be told from rest, and need not be followed."""
+    start = (1e-3 * BLOCK.alpha, 0.0)
+    asked = Scene(block=BLOCK, motion=Still(), start=start, duration=8.0 / BLOCK.p)
+    assert run("rapier", asked).steps < 10_000
+
+
+def test_phases_need_a_spring_to_go_back_to() -> None:
+    with pytest.raises(ValueError, match="frequency is None; it must be given wherever by_phase"):
+        rocked(frequency=None, damping_ratio=None)

@@ -1,0 +1,154 @@
+"""What is made of exact poses: times, velocities, uplift, rest and peak, and their order in dt.
+
+An engine has its own errors beside these; here there are none, so that the onlooker's stand alone.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from known import exactly
+from uses import BLOCK, pulse, scene
+
+from analytic import simulate
+from analytic.block import RigidBlock
+from analytic.response import Outcome, Response
+from engines import Scene
+from engines.declaration import Stepping
+from engines.world import Moment
+
+MOTION = pulse(1.3, 3.0, 2)
+SEEN_S = 2.0
+"""Three impacts, and most of the swing after the third."""
+TIMES = tuple(np.linspace(0.0, SEEN_S, 81).tolist())
+EXACT = simulate(BLOCK, MOTION, duration=SEEN_S, times=TIMES)
+FEW, MANY = 100, 400
+"""Steps in 1/p."""
+ODD = (1.0, 1.09, 1.17, 1.26, 1.38)
+"""Parts by which steps are changed, so that impacts fall into different parts of a step."""
+
+
+def errors_of(response: Response) -> dict[str, float]:
+    """Return the errors of what was seen: times in 1/p, velocities and the peak by their part."""
+    assert EXACT.history is not None
+    assert response.history is not None
+    assert len(response.impacts) == len(EXACT.impacts) == 3
+    pairs = list(zip(response.impacts, EXACT.impacts, strict=True))
+    apart = np.abs(response.history.theta - EXACT.history.theta).max()
+    # the largest are of the steps in which the impacts are
+    faster = np.median(np.abs(response.history.velocity - EXACT.history.velocity))
+    return {
+        "time": max(abs(i.time - e.time) for i, e in pairs) * BLOCK.p,
+        "before": max(abs(i.velocity_before / e.velocity_before - 1.0) for i, e in pairs),
+        "after": max(abs(i.velocity_after / e.velocity_after - 1.0) for i, e in pairs),
+        "ratio": max(abs(i.ratio / e.ratio - 1.0) for i, e in pairs),
+        "uplift": abs(response.uplifts[0] - EXACT.uplifts[0]) * BLOCK.p,
+        "peak": abs(response.peak_ratio / EXACT.peak_ratio - 1.0),
+        "history": float(apart) / BLOCK.alpha,
+        "velocity": float(faster) / (BLOCK.p * BLOCK.alpha),
+    }
+
+
+def largest(monkeypatch: pytest.MonkeyPatch, moment: Moment, steps: int) -> dict[str, float]:
+    """Return the largest errors over some equal steps of about 1/p over `steps`."""
+    found = []
+    for part in ODD:
+        asked = scene(MOTION, duration=SEEN_S, times=TIMES, step=1.0 / (steps * part))
+        response, _ = exactly(monkeypatch, asked, moment, Stepping.FIXED)
+        found.append(errors_of(response))
+    return {name: max(errors[name] for errors in found) for name in found[0]}
+
+
+@pytest.mark.parametrize("moment", Moment)
+def test_order_of_what_is_seen_in_equal_steps(
+    moment: Moment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    coarse, fine = (largest(monkeypatch, moment, steps) for steps in (FEW, MANY))
+    order = {name: math.log(coarse[name] / fine[name], MANY / FEW) for name in coarse}
+    # an impact is met by a straight line from the last end of a step before it, half of p dt^2
+    # times acceleration over velocity off, and the velocities are taken at that time; those of
+    # swings of a few steps bend by the next power
+    for name in ("time", "before", "after", "ratio"):
+        assert 1.7 < order[name] < 2.7, (name, order)
+    # theta grows as the cube of the time since uplift, so that the threshold of some g dt^2 is
+    # passed dt^(2/3) late; the rates there, and some steps later, bend off their square law by that
+    # time, squared: between dt^(4/3) and dt^2
+    assert 4.0 / 3.0 < order["uplift"] < 2.0
+    # a parabola through the rates on both sides of a maximum
+    assert order["peak"] > 3.0
+    # parabolas between ends, whose curvature is that of the step before or after
+    assert order["history"] > 1.7
+    assert order["velocity"] > 1.7
+    # some p dt^2 = 1.6e5 times ten for a first swing as short as a twelfth of 1/p
+    assert fine["time"] < 2e-5
+    assert fine["ratio"] < 2e-4
+    assert fine["peak"] < 1e-11
+
+
+@pytest.mark.parametrize("moment", Moment)
+def test_steps_that_land_see_impacts_to_their_shortest_step(
+    moment: Moment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = scene(MOTION, duration=SEEN_S, times=TIMES, accuracy="loose")
+    response, _ = exactly(monkeypatch, asked, moment, Stepping.LANDING)
+    errors = errors_of(response)
+    # a millionth of the ordinary step is left when the impact is near
+    assert errors["time"] < 1e-6 / 40.0
+    # velocities are still read from some ordinary steps before and after, to their third power:
+    # 1/40^3 = 1.6e-5 times as much as a swing of a few steps bends
+    assert errors["ratio"] < 2e-3
+    assert errors["peak"] < 1e-7
+
+
+def test_what_exact_poses_do_not_do_is_not_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No slide, no penetration, no hop, but for roundings of the pose."""
+    response, _ = exactly(
+        monkeypatch, scene(MOTION, duration=SEEN_S, step=0.01), Moment.END, Stepping.FIXED
+    )
+    assert max(response.slip_m, response.sink_m, response.hop_m) < 1e-15 * BLOCK.height
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("onsets", "outcome"), [(0.99, Outcome.AT_REST), (6.0, Outcome.OVERTURNED)]
+)
+def test_outcomes(
+    sign: float, onsets: float, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion = pulse(sign * onsets, 1.0)
+    response, _ = exactly(
+        monkeypatch, scene(motion, duration=4.0, step=0.01), Moment.MIDDLE, Stepping.FIXED
+    )
+    exact = simulate(BLOCK, motion, duration=4.0)
+    assert response.outcome is exact.outcome is outcome
+    assert response.peak_ratio == exact.peak_ratio
+
+
+@pytest.mark.parametrize("moment", Moment)
+def test_rest_begins_where_swings_are_shorter_than_steps(
+    moment: Moment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exact = simulate(BLOCK, MOTION, duration=6.0)
+    late = []
+    for steps in (FEW, MANY):
+        asked = scene(MOTION, duration=6.0, step=1.0 / steps)
+        response, _ = exactly(monkeypatch, asked, moment, Stepping.FIXED)
+        assert len(response.rests) == len(exact.rests) == 1
+        late.append((response.rests[0] - exact.rests[0]) * BLOCK.p)
+    # swings of some steps are not seen; of 0.79 of each swing's velocity what is left lasts as
+    # long as 1/(1 - 0.79) of the last one that was
+    assert -0.03 < late[0] < late[1] < 0.0
+    assert late[1] > -0.01
+
+
+def test_a_block_that_came_to_rest_lifts_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second half of a slow pulse lifts a block that the first half had left to rest."""
+    block = RigidBlock(width=0.5, height=0.75)
+    motion = pulse(1.03, 0.4, 2, block)
+    exact = simulate(block, motion)
+    asked = Scene(block=block, motion=motion, duration=motion.duration, step=0.01)
+    response, _ = exactly(monkeypatch, asked, Moment.MIDDLE, Stepping.FIXED)
+    assert len(response.uplifts) == len(exact.uplifts) == 2
+    late = (np.array(response.uplifts) - exact.uplifts) * block.p
+    assert np.abs(late).max() < 3e-3
+    assert response.rests[0] < response.uplifts[1]

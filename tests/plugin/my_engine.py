@@ -1,0 +1,34 @@
+"""A ninth engine for `rocking score my_engine:World`: here a box on the ground in pymunk."""
+
+import pymunk
+
+from engines.world import Moment, Pose
+
+
+class World:
+    moment = Moment.NEXT  # pymunk moves a body first, and then changes its velocity
+
+    def __init__(self, scene, settings, dt_s):
+        block, at = scene.block, scene.beginning
+        self.space = pymunk.Space()
+        self.body = pymunk.Body(scene.mass, scene.inertia[1])
+        self.body.position, self.body.angle = (at.x, at.z), -at.theta
+        self.body.velocity = at.velocity_x, at.velocity_z
+        self.body.angular_velocity = -at.rate
+        box = pymunk.Poly.create_box(self.body, (block.width, block.height))
+        ground = pymunk.Segment(self.space.static_body, (-1e3, 0.0), (1e3, 0.0), 0.0)
+        box.friction, ground.friction = settings.friction, 1.0
+        self.space.add(self.body, box, ground)
+
+    def step(self, step):
+        self.space.gravity = step.pull_x, step.pull_z
+        self.space.step(step.dt_s)
+
+    def pose(self):
+        return Pose(*self.body.position, -self.body.angle, -self.body.angular_velocity)
+
+    def fault(self):
+        return ""
+
+    def close(self):
+        pass
