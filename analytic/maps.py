@@ -13,7 +13,7 @@ from analytic.kernels.closed_form import work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import MAX_STEPS
 from analytic.kernels.law import Law
-from analytic.kernels.rest import ANGLE_TOLERANCE, comes_to_rest, time_to_rest
+from analytic.kernels.rest import ANGLE_TOLERANCE, side_after, time_to_rest
 from analytic.kernels.swings import (
     LANDED,
     LEFT_OVER,
@@ -156,11 +156,10 @@ def pulse_mode(
             return mode, margin, steps
         a = pulse.amplitude * math.sin(angle)
         wait = time_to_rest(law, side, v, a)
-        if comes_to_rest(law, side, a, ground_after(pulse, angle, wait), wait):
+        if side_after(law, side, v, a, ground_after(pulse, angle, wait), wait) == 0.0:
             turned, angle = whole_half_cycles(angle + pulse.omega * wait)
             pulse, side, v = later(pulse, turned), 0.0, 0.0
         elif v == 0.0:
-            # no velocity is left, but the ground lifts the block again at once
             side = 0.0
 
 

@@ -31,10 +31,10 @@ from analytic.kernels.excursions import (
 from analytic.kernels.law import Law, Start
 from analytic.kernels.rest import (
     acceleration,
-    comes_to_rest,
     ground,
     is_finite,
     next_uplift,
+    side_after,
     time_to_rest,
 )
 from analytic.models import Model, find_model
@@ -257,9 +257,8 @@ def tread(
         wait = time_to_rest(law, side, v, a)
         # what stays below the tolerance cannot be told from rest
         unseen = wait < math.inf and 0.5 * v * v < -tolerance * acceleration(law, side, a, 0.0)
-        if unseen or comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
-            tau += wait
+        onward = side_after(law, side, v, a, ground(segments, j, tau + wait), wait)
+        side = 0.0 if unseen else onward
+        if side == 0.0:
+            tau, v = tau + wait, 0.0
             events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-            side = v = 0.0
-        elif v == 0.0:
-            side = -math.copysign(1.0, a)

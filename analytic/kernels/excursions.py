@@ -17,10 +17,10 @@ from analytic.kernels.law import FloatArray, Law, Start
 from analytic.kernels.polynomial import MAX_DEPTH, ORDER, highest, next_root, slope, value
 from analytic.kernels.rest import (
     acceleration,
-    comes_to_rest,
     ground,
     is_finite,
     next_uplift,
+    side_after,
     time_to_rest,
 )
 from analytic.kernels.taylor import (
@@ -294,12 +294,13 @@ def march(
         side, y, v, lead = -side, 0.0, -law.eta * v, 1
         a = ground(segments, j, tau)
         wait = time_to_rest(law, side, v, a)
-        if comes_to_rest(law, side, a, ground(segments, j, tau + wait), wait):
+        onward = side_after(law, side, v, a, ground(segments, j, tau + wait), wait)
+        if onward == 0.0:
             if notes.limits.size > 0:
                 watch_train(notes.limits, law, side, a, v)
             tau += wait
             events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-            side = v = 0.0
+            v = 0.0
         elif v == 0.0:
-            # no velocity is left, but the ground lifts the block again at once
-            side, lead = -math.copysign(1.0, a), 2
+            lead = 2
+        side = onward

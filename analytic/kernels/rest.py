@@ -153,5 +153,27 @@ def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) 
     return change <= ZENO * min(abs(here), abs(there))
 
 
+@kernel
+def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
+    """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
+
+    Parameters
+    ----------
+    law : Law
+    side, v : float
+        The side that it turns to, and how fast.
+    now, later : float
+        Ground acceleration at the impact, and `wait` after it.
+    wait : float
+        `time_to_rest`.
+    """
+    if comes_to_rest(law, side, now, later, wait):
+        return 0.0
+    if v == 0.0:
+        # no velocity is left, but the ground lifts the block again at once
+        return -math.copysign(1.0, now)
+    return side
+
+
 ZENO = 1e-4
 """Longest train of impacts that is summed [1/p]; the error of its length is a part ZENO of it."""

@@ -15,7 +15,7 @@ import numpy as np
 from analytic import MODELS
 from analytic.block import RigidBlock
 from analytic.kernels.excursions import BROKEN
-from analytic.kernels.rest import comes_to_rest, ground, is_finite, next_uplift, time_to_rest
+from analytic.kernels.rest import ground, is_finite, next_uplift, side_after, time_to_rest
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES, scaled_segments
@@ -64,7 +64,7 @@ def solve_ivp_response(
     overturned = outcome is Outcome.OVERTURNED
     return Response(
         outcome=outcome,
-        peak_ratio=math.inf if overturned else march.peak / block.alpha,
+        peak_ratio=math.inf if overturned else float(march.peak) / block.alpha,
         crossed=overturned or march.peak > block.alpha,
         impacts=tuple(march.impacts),
         steps=march.evaluations,
@@ -181,9 +181,9 @@ class _March:
         j = int(np.searchsorted(self.segments[:, 1], tau, side="right"))
         a = ground(self.segments, j, tau)
         wait = time_to_rest(self.law, -side, after, a)
-        if comes_to_rest(self.law, -side, a, ground(self.segments, j, tau + wait), wait):
-            return 0.0, wait
-        return -side, after
+        later = ground(self.segments, j, tau + wait)
+        onward = side_after(self.law, -side, after, a, later, wait)
+        return onward, after if onward else wait
 
     def _sample(self, path: Any, side: float) -> None:
         wanted = self.times * self.p

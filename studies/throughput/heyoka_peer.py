@@ -10,7 +10,7 @@ from typing import Any
 import heyoka
 import numpy as np
 
-from analytic.kernels.rest import comes_to_rest, time_to_rest
+from analytic.kernels.rest import side_after, time_to_rest
 from analytic.kernels.swings import Pulse, parity, whole_half_cycles
 from analytic.maps import decide, ground_after, later, next_lift
 from analytic.models import MODELS
@@ -72,7 +72,9 @@ class HeyokaSolver:
             side, v = -side * parity(turned), -law.eta * step.state[1]
             a = ground_after(pulse, angle, 0.0)
             wait = time_to_rest(law, side, v, a)
-            if comes_to_rest(law, side, a, ground_after(pulse, angle, wait), wait):
+            if side_after(law, side, v, a, ground_after(pulse, angle, wait), wait) == 0.0:
                 turned, angle = whole_half_cycles(angle + omega * wait)
                 pulse, side, v = later(pulse, turned), 0.0, 0.0
+            elif v == 0.0:
+                side = 0.0
         raise RuntimeError(f"more than {MOST_IMPACTS} impacts")

@@ -268,3 +268,21 @@ def test_mirrored_starts_and_motions_mirror_the_response():
         other = simulate(block, mirrored, start=(-theta, -rate))
         assert one.peak_ratio == other.peak_ratio
         assert [i.time for i in one.impacts] == [i.time for i in other.impacts]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("omega_over_p", [6.0, 8.0])
+def test_a_block_that_does_not_rebound_is_lifted_again_at_once(source, omega_over_p):
+    """A squat block stops dead, and the ground, which is beyond the onset, turns it about the same
+    corner as before: the other one does not strike."""
+    block = RigidBlock(width=1.5, height=1.0)
+    assert block.restitution == 0.0
+    pulse = SinePulse(
+        amplitude=5.0 * G * math.tan(block.alpha), omega=omega_over_p * block.p, half_cycles=3
+    )
+    exact, found = simulate(block, pulse), respond(source, block, pulse)
+    assert len(exact.impacts) == 1
+    assert [i.time for i in found.impacts] == pytest.approx([exact.impacts[0].time], abs=1e-4)
+    # average acceleration is of second order in its step, 1e-3 of 1/p, and omega is eight times p
+    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
+    assert type(found.peak_ratio) is float

@@ -39,6 +39,7 @@ BEGINNINGS = {
     "export": [(*CASE, "--engine", "pybullet", "--out", "FOLDER")],
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
+    "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "redraw": [("FOLDER",)],
     "readme": [()],
 }
