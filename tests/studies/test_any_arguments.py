@@ -36,7 +36,6 @@ BEGINNINGS = {
         (*RECORD, "--sources", "exact"),
         (*RELEASE, "--sources", "exact"),
     ],
-    "export": [(*CASE, "--engine", "pybullet", "--out", "FOLDER")],
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
