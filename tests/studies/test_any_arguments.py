@@ -23,6 +23,7 @@ BACKSTOP_S = 600
 """Ends a test that hangs; nothing is expected within it."""
 CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
 RECORD = ("--record", "RECORD", "--units", "g", "--width", "0.5", "--height", "1.5")
+RELEASE = ("--tilt", "0.5", "--width", "0.5", "--height", "1.5")
 PEER = "\n".join(
     [
         *("PEER", "A", "ACCELERATION TIME SERIES IN UNITS OF G", "NPTS= 5, DT= .1 SEC"),
@@ -30,7 +31,12 @@ PEER = "\n".join(
     ]
 )
 BEGINNINGS = {
-    "compare": [(*CASE, "--sources", "exact"), (*RECORD, "--sources", "exact")],
+    "compare": [
+        (*CASE, "--sources", "exact"),
+        (*RECORD, "--sources", "exact"),
+        (*RELEASE, "--sources", "exact"),
+    ],
+    "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "score": [("mujoco", "--out", "FOLDER", "--quick")],
