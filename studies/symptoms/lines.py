@@ -112,7 +112,7 @@ def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
     levels = mine[mine["factor"] == MOVING_BASE.name].set_index("level")
     names = [level.name for level in MOVING_BASE.levels]
     if set(names) <= set(levels.index):
-        right, wrong = (levels.iloc[levels.index.get_indexer([name])[0]] for name in names)
+        right, wrong = (levels.iloc[list(levels.index).index(name)] for name in names)
         yield _row(
             UNMOVED,
             engine,
