@@ -76,7 +76,7 @@ def missing(published: Path) -> list[str]:
 def presets(published: Path) -> pd.DataFrame:
     """Return a line for each preset and engine over the paper's cases."""
     lines = [preset_table(whole(published / name)) for name in PRESETS_FROM]
-    return pd.concat(lines, ignore_index=True)
+    return pd.concat(lines).drop_duplicates("source", ignore_index=True)
 
 
 def presets_text(lines: pd.DataFrame) -> str:
