@@ -39,7 +39,6 @@ BEGINNINGS = {
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
-    "score": [("mujoco", "--out", "FOLDER", "--quick")],
     "redraw": [("FOLDER",)],
     "readme": [()],
 }
