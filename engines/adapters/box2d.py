@@ -1,9 +1,9 @@
 """Box2D: how a scene is built, set, read back and stepped.
 
-The library computes in single precision and is made for lengths of metres: in metres a block rises
-by less than it tells apart, so a tuned preset counts in centimetres. Contacts lie halfway between
-the surfaces of two shapes, so that half of the pivot's margin is the corner's radius, and half is
-the height by which its floor is raised.
+The library computes in single precision, and clamps without a word what moves further than two
+units of length in a step: a tuned preset counts in parts of the block's height. Contacts lie
+halfway between the surfaces of two shapes, so that half of the pivot's margin is the corner's
+radius, and half is the height by which its floor is raised.
 """
 
 import warnings
@@ -14,7 +14,7 @@ from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.factors import MOVING_BASE, factor, level
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
-from engines.parts.shapes import FLOOR_HEIGHTS
+from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
 
@@ -38,8 +38,10 @@ class Box2DSettings:
         Coefficient between block and base.
     iterations, position_iterations : int
         Of the solver, for velocities and for positions.
-    unit : float
-        Units of length in a metre.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    skins_below : bool
+        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
     continuous : bool
         Whether the library looks for impacts within a step.
     margin : float or None
@@ -55,7 +57,8 @@ class Box2DSettings:
     friction: float = setting(1.0, least=0.0)
     iterations: int = setting(6, least=1)
     position_iterations: int = setting(2, least=0)
-    unit: float = setting(1.0, above=0.0)
+    units: float | None = setting(None, above=0.0)
+    skins_below: bool = False
     continuous: bool = True
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
@@ -72,10 +75,10 @@ class Box2DWorld:
 
     def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
         self.settings = settings
-        self._box2d, self._unit = imported(), settings.unit
+        block, self._box2d = scene.block, imported()
+        self._unit = 1.0 if settings.units is None else settings.units / block.height
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
-        block = scene.block
         self._half = (0.5 * block.width * self._unit, 0.5 * block.height * self._unit)
         fall = (block.alpha * block.p * dt_s) ** 2 * block.height
         self._reach = 0.5 * (settings.margin or 0.0) * fall * self._unit
@@ -155,13 +158,14 @@ class Box2DWorld:
         return body
 
     def _floor(self, number: int) -> Any:
-        """Make a floor; the skin that the library gives a polygon ends at the level of the base."""
+        """Make a floor; a polygon acts from its skin on, and a box has one of its own."""
         b2, far = self._box2d, self._far
         if self.settings.geometry == "box":
-            top, meets = 0.0, b2.b2Filter()
+            skins, meets = 2.0, b2.b2Filter()
         else:
-            top = -b2.b2_polygonRadius
+            skins = 1.0
             meets = b2.b2Filter(categoryBits=4 << number, maskBits=1 << number)
+        top = -skins * b2.b2_polygonRadius if self.settings.skins_below else 0.0
         floor = self._world.CreateKinematicBody(position=(0.0, 0.0))
         corners = [(-far, -far), (far, -far), (far, top), (-far, top)]
         floor.CreateFixture(
@@ -200,9 +204,11 @@ def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
 
 TUNED = Box2DSettings(
     geometry="corners",
+    friction=NO_JAM,
     iterations=100,
     position_iterations=0,
-    unit=100.0,
+    units=20.0,
+    skins_below=True,
     continuous=False,
     margin=10.0,
 )
@@ -250,7 +256,8 @@ ENGINE = Engine(
         factor("geometry"),
         factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
         factor("position_iterations", level("2", position_iterations=2)),
-        factor("unit", level("1", unit=1.0), level("10", unit=10.0)),
+        factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
+        factor("skins_below"),
         factor("continuous"),
         factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
         MOVING_BASE,

@@ -1,9 +1,9 @@
 """pymunk (Chipmunk2D): how a scene is built, set, read back and stepped.
 
 The library moves positions before it changes velocities, and scales cached impulses by the ratio
-of two steps: a short step before a long one would throw the block. A tuned preset therefore keeps
-the library's step as it is, gives each step its own gravity, and moves the positions itself, by the
-library's own function, from the library's own velocities.
+of two steps: a short step before a long one would throw the block. Where steps differ, a preset
+therefore keeps the library's step as it is, gives each step its own gravity, and moves the
+positions itself, by the library's own function, from the library's own velocities.
 """
 
 import math
@@ -15,7 +15,7 @@ from engines.factors import MOVING_BASE, factor, level
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
-from engines.parts.shapes import FLOOR_HEIGHTS
+from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
 
@@ -209,19 +209,14 @@ def build(scene: Scene, settings: PymunkSettings, dt_s: float) -> PymunkWorld:
     return PymunkWorld(scene, settings, dt_s)
 
 
-NO_JAM = 1.3
-"""Just below 4/3, from which on the pivot of a homogeneous block may jam (Painlevé's paradox): the
-solver finds no force then, and the pivot falls through the base."""
-
 TUNED = PymunkSettings(
     geometry="corners",
     friction=NO_JAM,
     sweeps=20.0,
     bias=0.0,
-    positions=True,
     margin=10.0,
 )
-LANDING = replace(TUNED, reflection=True)
+LANDING = replace(TUNED, positions=True, reflection=True)
 
 ENGINE = Engine(
     name="pymunk",
@@ -244,10 +239,7 @@ ENGINE = Engine(
             title="best at a fixed step",
             settings=TUNED,
             step=2.5e-4,
-            helped_by={
-                Help.POSITIONS: {"positions": False},
-                Help.MARGIN: {"margin": None},
-            },
+            helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",
@@ -265,7 +257,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     factors=(
         factor("geometry"),
-        factor("positions"),
+        factor("positions", level("moved by the adapter", positions=True), by_default=False),
         factor("iterations", level("10", iterations=10), level("100", iterations=100)),
         factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
         factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),

@@ -6,6 +6,10 @@ from engines.scene import Scene
 
 Point = tuple[float, float, float]
 
+NO_JAM = 1.3
+"""Friction just below 4/3, from which on a corner of a homogeneous block may jam (Painlevé's
+paradox): a solver by impulses finds no force then, and lets the corner through the base."""
+
 FLOOR_HEIGHTS = 100.0
 """Half of the extent of a base that is a box, in heights of the block and in its depths."""
 

@@ -132,14 +132,17 @@ class Stage:
         self._blocks = [
             axes.add_patch(self._outline(row)) for axes, row in zip(panels, rows, strict=True)
         ]
-        self._exact = next((row["theta"] for row in rows if row["source"] == "exact"), None)
+        exact: FloatArray | None = next(
+            (row["theta"] for row in rows if row["source"] == "exact"), None
+        )
+        self._right = np.zeros(len(times)) if exact is None else exact
         self._ghosts = [
             axes.add_patch(Polygon(outline(block, 0.0), fill=False, edgecolor="#000000",
                                    linestyle=(0, (3, 2)), linewidth=1.2, zorder=4))
             for axes, row in zip(panels, rows, strict=True)
-            if self._exact is not None and row["source"] != "exact"
+            if exact is not None and row["source"] != "exact"
         ]  # fmt: skip
-        self._told = [verdict(row, self._exact, block.alpha) for row in rows]
+        self._told = [verdict(row, exact, block.alpha) for row in rows]
         self._verdicts = [
             axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top", fontsize=9,
                       color=style_of(row["source"]).colour, fontweight="bold")
@@ -210,7 +213,7 @@ class Stage:
             places = self._post_places(float(self.shift[frame]))
             posts.set_segments([[(x, 0.0), (x, 1.2 * reach)] for x in places])
         for ghost in self._ghosts:
-            ghost.set_xy(outline(self.block, float(self._exact[frame])))
+            ghost.set_xy(outline(self.block, float(self._right[frame])))
         for text, (since, words) in zip(self._verdicts, self._told, strict=True):
             text.set_text(words if frame >= since else "")
         self._clock.set_xdata([self.times[frame]] * 2)

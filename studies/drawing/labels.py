@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.typing import ColorType
 
 from analytic.motion import FloatArray
 
@@ -20,7 +21,7 @@ class Name:
     text: str
     x: float
     y: float
-    colour: str
+    colour: ColorType
 
 
 def spread(levels: Sequence[float], gap: float) -> FloatArray:

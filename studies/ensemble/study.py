@@ -27,7 +27,6 @@ from studies.kit.arguments import (
     refuse_repeats,
     several_or_none,
 )
-from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -183,9 +182,7 @@ def command(
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
         many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
         asked = f"--motions is {count}"
-        refuse_excess(asked, many * (MOTION_BYTES + len(everyone) * CASE_BYTES))
-        duration = expected_s(many, everyone, jobs=running.jobs, time_limit_s=running.time_limit)
-        refuse_days(asked, duration, yes)
+        running.refuse_too_much(asked, many, everyone, yes=yes, case_bytes=MOTION_BYTES)
         ground = drawn(name, count, seed or 1)
     cases = list(ensemble_cases(name, ground, sizes, intensities))
     origin = [path.name for path in records] if records else [name, str(seed or 1)]

@@ -31,6 +31,7 @@ def command(
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
     running: Running = DEFAULT_RUNNING,
+    yes: bool = False,
 ) -> int:
     """Hold the difference of every run from that at half its step against the true error.
 
@@ -44,8 +45,13 @@ def command(
         Seed of the random numbers, a positive whole number; another one draws other cases.
     sources
         Engines, as they are declared; those that choose their own steps have none to halve.
+    yes
+        Begin even what takes longer than a day.
     """
     check_sources(sources)
+    # at a step and at half of it, which takes twice as long
+    everyone = ("exact", *3 * sources)
+    running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes)
     jobs = pairs(cases, seed, sources)
     growing = {"case": range(cases), "source": sources}
     plan = Plan(jobs=jobs, settings={"seed": seed}, growing=growing)

@@ -1,15 +1,16 @@
 """Options that studies share: each a dataclass, which is the type of a command's parameter."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cyclopts import Parameter
 
 from analytic.response import Response
 from studies.kit.arguments import Count, Positive
+from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, ask
-from studies.sources.registry import Accuracy, Effort, Source
+from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source
 
 
 @Parameter(name="*")
@@ -40,6 +41,40 @@ class Running:
             As `studies.kit.executors.choose`.
         """
         return choose(self.jobs, self.time_limit, self.cluster, ask)
+
+    def refuse_too_much(
+        self,
+        asked: str,
+        cases: int,
+        sources: Sequence[str],
+        *,
+        yes: bool,
+        effort: Effort = DEFAULT_EFFORT,
+        case_bytes: float = 0.0,
+    ) -> None:
+        """Refuse more cases than fit into memory, or, without a yes, into a day.
+
+        Parameters
+        ----------
+        asked : str
+            What the user asked for, as the refusal begins.
+        cases : int
+        sources : sequence of str
+            Who is asked about each case, with a name for every time.
+        yes : bool
+            Whether it is begun even if it takes longer than a day.
+        effort : Effort, optional
+        case_bytes : float, optional
+            What a case holds besides its rows.
+
+        Raises
+        ------
+        BadInputError
+        """
+        refuse_excess(asked, cases * (case_bytes + len(sources) * CASE_BYTES))
+        limit = self.time_limit
+        seconds = expected_s(cases, sources, jobs=self.jobs, time_limit_s=limit, effort=effort)
+        refuse_days(asked, seconds, yes)
 
 
 DEFAULT_RUNNING = Running()

@@ -67,7 +67,8 @@ def draw_literature(table: pd.DataFrame) -> Figure:
 def _say_how_far(axes: Axes, table: pd.DataFrame) -> None:
     """Write beside the points at either edge by what part of the print the furthest misses it."""
     far = table[table["off"].abs() == WIDEST]
-    for (height, off), rows in far.groupby(["height", "off"]):
+    worst = far.groupby(["height", "off"], as_index=False)["miss"].max()
+    for height, off, miss in worst.to_numpy(dtype=np.float64).tolist():
         side = "right" if off > 0.0 else "left"
-        words = scientific(float(rows["miss"].max()))
-        axes.text(0.965 * off, height, words, ha=side, va="center", fontsize=7.5, color="#444444")
+        place = (0.965 * off, height)
+        axes.text(*place, scientific(miss), ha=side, va="center", fontsize=7.5, color="#444444")

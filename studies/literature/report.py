@@ -52,7 +52,8 @@ def paragraph(folder: Path) -> str:
         rounding = int(missed["why"].str.startswith("comes out").sum())
         words += (
             f"; the others miss the print by {missed['miss'].min():.1e} to "
-            f"{missed['miss'].max():.1e}, {rounding} of which come out with a frequency at most 0.2 % off"
+            f"{missed['miss'].max():.1e}, {rounding} of which come out "
+            "with a frequency at most 0.2 % off"
         )
     tests = table[(table["of"] == "test") & (table["source"] == table["model"])]
     if len(tests):

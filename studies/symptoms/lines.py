@@ -109,10 +109,11 @@ def _name(line: "pd.Series[Any]") -> str:
 
 def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
     """Yield what a base that moves by position alone does, and one with its velocity."""
-    levels = mine[mine["factor"] == MOVING_BASE.name].set_index("level")
+    asked = mine[mine["factor"] == MOVING_BASE.name]
+    levels = {str(line["level"]): line for _, line in asked.iterrows()}
     names = [level.name for level in MOVING_BASE.levels]
-    if set(names) <= set(levels.index):
-        right, wrong = (levels.iloc[levels.index.get_indexer([name])[0]] for name in names)
+    if set(names) <= set(levels):
+        right, wrong = (levels[name] for name in names)
         yield _row(
             UNMOVED,
             engine,

@@ -14,7 +14,6 @@ import pandas as pd
 from studies.cases.drawn import draw
 from studies.kit import provenance
 from studies.kit.arguments import Count, Place, check_sources
-from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
@@ -65,21 +64,10 @@ def command(
         Begin even what takes longer than a day.
     """
     check_sources(sources)
-    refuse_too_much(cases, sources, effort, running, yes)
-    return carry_out(STUDY, plan(cases, seed, sources, effort), out, running, report)
-
-
-def refuse_too_much(
-    cases: int, sources: Sequence[str], effort: Effort, running: Running, yes: bool
-) -> None:
-    """Raise BadInputError if the cases need more memory than there is, or days without a yes."""
-    asked = f"--cases is {cases}"
-    refuse_excess(asked, cases * len(sources) * CASE_BYTES)
     # the exact solution is asked, too, whether a case is kept
     everyone = ("exact", *sources)
-    jobs, limit = running.jobs, running.time_limit
-    seconds = expected_s(cases, everyone, jobs=jobs, time_limit_s=limit, effort=effort)
-    refuse_days(asked, seconds, yes)
+    running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)
+    return carry_out(STUDY, plan(cases, seed, sources, effort), out, running, report)
 
 
 def plan(cases: int, seed: int, sources: Sequence[str], effort: Effort = OWN_EFFORT) -> Plan:

@@ -1,6 +1,7 @@
 """Advice: the cheapest published setting that keeps an error, and the library's words for it."""
 
 import math
+import tomllib
 from pathlib import Path
 
 import pandas as pd
@@ -13,7 +14,9 @@ from studies.advise import study
 from studies.advise.choice import advice, cheapest
 from studies.advise.evidence import TABLES, declared_step, settings
 from studies.advise.words import literal
+from studies.measures.halving import FACTORS
 from studies.measures.published import PUBLISHED
+from studies.symptoms.lines import LADDER, VARIANTS
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CORE = [name for name, engine in ENGINES.items() if engine.core]
@@ -130,3 +133,12 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert study.headline(out).startswith("Errors are kept cheapest: 10 % by ")
     assert study.paragraph(out).count("nothing does") == 4
     assert Path(out / "provenance.json").is_file()
+
+
+def test_the_tables_that_are_read_come_with_an_installation():
+    project = tomllib.loads((PUBLISHED.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
+    packed = set(project["tool"]["setuptools"]["package-data"]["studies"])
+    beside = f"{TABLES[0].partition('/')[0]}/provenance.json"
+    read = [*TABLES, VARIANTS, LADDER, str(FACTORS.relative_to(PUBLISHED)), beside]
+    assert {f"published/{name}" for name in read} == packed
+    assert all((PUBLISHED.parent / name).is_file() for name in packed)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from analytic.response import Reason, Response
 from studies.__main__ import COMMANDS, run
-from studies.kit import runner
+from studies.kit import plan
 from studies.kit.app import make_app
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
@@ -23,6 +23,7 @@ BACKSTOP_S = 600
 """Ends a test that hangs; nothing is expected within it."""
 CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
 RECORD = ("--record", "RECORD", "--units", "g", "--width", "0.5", "--height", "1.5")
+RELEASE = ("--tilt", "0.5", "--width", "0.5", "--height", "1.5")
 PEER = "\n".join(
     [
         *("PEER", "A", "ACCELERATION TIME SERIES IN UNITS OF G", "NPTS= 5, DT= .1 SEC"),
@@ -30,8 +31,14 @@ PEER = "\n".join(
     ]
 )
 BEGINNINGS = {
-    "compare": [(*CASE, "--sources", "exact"), (*RECORD, "--sources", "exact")],
+    "compare": [
+        (*CASE, "--sources", "exact"),
+        (*RECORD, "--sources", "exact"),
+        (*RELEASE, "--sources", "exact"),
+    ],
+    "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
+    "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "redraw": [("FOLDER",)],
     "readme": [()],
 }
@@ -85,7 +92,7 @@ def place(tmp_path_factory):
     kept = Path.cwd()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(runner, "open_journal", refuse)
+        patch.setattr(plan, "open_journal", refuse)
         patch.setattr(Local, "_in_processes", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)

@@ -110,7 +110,7 @@ def test_bad_input_is_one_clear_line(arguments, name, value, allowed, tmp_path, 
     assert not folder.exists()
 
 
-@pytest.mark.parametrize(("arguments", "name", "value", "allowed"), BAD_INPUT[::3])
+@pytest.mark.parametrize(("arguments", "name", "value", "allowed"), BAD_INPUT[::7])
 def test_bad_input_ends_the_process_with_2(arguments, name, value, allowed, tmp_path):
     done = rocking(*[tmp_path / "DIR" if item == "DIR" else item for item in arguments])
     assert (done.returncode, done.stdout) == (2, "")

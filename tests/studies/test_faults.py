@@ -1,0 +1,92 @@
+"""Every study where nothing answers, no picture can be written, or its folder is removed."""
+
+import errno
+import os
+import shutil
+
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from analytic.response import Response
+from studies.__main__ import run
+from studies.catalogue import STUDIES
+from studies.kit.executors import Local
+from studies.kit.journal import FolderError
+from studies.kit.plan import Plan, fill
+from studies.sweep import STUDY as SWEEP
+
+ASKING = [
+    *("histories", "free", "literature", "validate"),
+    *(
+        pytest.param(name, marks=pytest.mark.slow)
+        for name in (
+            *("contact", "validity", "stability", "harmonic", "sweep"),
+            *("ensemble", "overturning"),
+        )
+    ),
+]
+"""Studies that put jobs to sources, those apart whose jobs or reports take longer."""
+
+
+def command_line(name, folder):
+    study = next(study for study in STUDIES if study.name == name)
+    return study.command_line(study.chapters[0], folder, full=False)
+
+
+def never(_, jobs):
+    for number in range(len(jobs)):
+        yield number, Response.failure("it never answers")
+
+
+def full(*_, **__):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize("name", ASKING)
+def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(Local, "__call__", never)
+    drawn = []
+    # ticks and layout, without the pixels
+    monkeypatch.setattr(
+        Figure, "savefig", lambda self, *_, **__: drawn.append(self.draw_without_rendering())
+    )
+    assert run(command_line(name, tmp_path)) == 1
+    output = capsys.readouterr()
+    assert all(line.startswith("failed: ") for line in output.err.splitlines())
+    assert "it never answers" in output.err
+    assert output.out
+    if name == "histories":
+        assert output.out.count("not tested: ") == 3
+    if not drawn:
+        return
+    monkeypatch.setattr(Figure, "savefig", full)
+    assert run(command_line(name, tmp_path)) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "No space left on device" in line
+    assert f"{tmp_path}/" in line
+    assert ".png'" in line
+    assert not list(tmp_path.glob(".part*"))
+
+
+@pytest.mark.parametrize("name", ASKING)
+def test_a_folder_that_is_removed_during_a_run_is_no_success(name, tmp_path, monkeypatch, capsys):
+    def removing(_, jobs):
+        shutil.rmtree(tmp_path)
+        yield from never(_, jobs)
+
+    monkeypatch.setattr(Local, "__call__", removing)
+    assert run(command_line(name, tmp_path)) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "removed during the run" in line
+    assert not tmp_path.exists()
+
+
+def test_a_folder_that_is_removed_while_tables_are_made_is_no_success(tmp_path):
+    def removing(_):
+        shutil.rmtree(tmp_path)
+        return {SWEEP.name: pd.DataFrame({"a": [1]})}
+
+    with pytest.raises(FolderError, match="removed during the run"):
+        fill(SWEEP, Plan(tabulate=removing), tmp_path)
+    assert not tmp_path.exists()
