@@ -45,7 +45,7 @@ def whole_half_cycles(value: float) -> int:
     return int(number)
 
 
-def held(what: str, value: float, cause: str) -> None:
+def finite_result(what: str, value: float, cause: str) -> None:
     """Raise ValueError unless a value that follows from the arguments in `cause` is finite."""
     if not math.isfinite(value):
         raise ValueError(f"{cause}; {what}, which follows as {value!r}, must be finite")

@@ -157,7 +157,7 @@ def follow(
             law, accuracy, segments, j, side, tau, until, lead, y, v, state, peak, moved, work
         )
     if log[-1, 0] != RESTED:
-        peak = come_down(law, y, v, state, peak, moved)
+        peak = peak_to_come(law, y, v, state, peak, moved)
     return moved[AMPLITUDE] / peak, moved[RESTITUTION] / peak
 
 
@@ -254,7 +254,7 @@ def expand_derivatives(
 
 
 @kernel
-def come_down(
+def peak_to_come(
     law: Law, y: float, v: float, state: FloatArray, peak: float, moved: FloatArray
 ) -> float:
     """Take the derivatives on to the peak of the free rocking after the motion, if it is higher."""

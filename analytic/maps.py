@@ -18,7 +18,7 @@ from analytic.kernels.swings import (
     LANDED,
     LEFT_OVER,
     MAP_ORDER,
-    OVERTURNED,
+    TOPPLED,
     Pulse,
     parity,
     swing_exact,
@@ -29,7 +29,7 @@ from analytic.models import find_model
 from analytic.motion import FloatArray
 from analytic.simulate import check_cases
 
-AT_REST, SURVIVES, FAILED = -2, -1, -3
+NOT_LIFTED, SURVIVES, FAILED = -2, -1, -3
 """Modes that are no number of impacts."""
 
 QUIET = 5e-4
@@ -46,7 +46,7 @@ class Modes(NamedTuple):
     Attributes
     ----------
     mode : ndarray of int16
-        The number of impacts before the block overturns, or SURVIVES, AT_REST, FAILED.
+        The number of impacts before the block overturns, or SURVIVES, NOT_LIFTED, FAILED.
     margin : ndarray
         The distance from overturning, positive when overturned; -1 at rest. When the pulse ends
         the larger of two velocities, over that which just overturns a block from its base: the
@@ -121,7 +121,7 @@ def pulse_mode(
 ) -> tuple[int, float, int]:
     """Return mode, margin and steps of one case."""
     if pulse.amplitude <= law.onset:
-        return AT_REST, -1.0, 0
+        return NOT_LIFTED, -1.0, 0
     level = math.asin(law.onset / pulse.amplitude)
     angle = v = side = lifted = 0.0
     impacts = steps = 0
@@ -138,7 +138,7 @@ def pulse_mode(
         else:
             swing = swing_exact(law, pulse, angle, v, side, lifted, series, f, sine, cosine)
         steps += swing.steps
-        if swing.end == OVERTURNED:
+        if swing.end == TOPPLED:
             return impacts, math.inf, steps
         if swing.end == LEFT_OVER:
             mode, margin = decide(law, swing.y, swing.v, impacts)

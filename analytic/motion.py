@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import STANDARD_GRAVITY
-from analytic.checks import finite, held, measurable, whole_half_cycles
+from analytic.checks import finite, finite_result, measurable, whole_half_cycles
 from analytic.kernels.law import FloatArray as FloatArray
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
@@ -77,7 +77,7 @@ class SinePulse:
         object.__setattr__(self, "omega", measurable("omega", self.omega))
         object.__setattr__(self, "phase", finite("phase", self.phase))
         object.__setattr__(self, "half_cycles", whole_half_cycles(self.half_cycles))
-        held(
+        finite_result(
             "the displacement of the ground",
             self.amplitude / self.omega**2 * (self.half_cycles * math.pi),
             f"amplitude is {self.amplitude!r} and omega {self.omega!r}",

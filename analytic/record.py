@@ -6,10 +6,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.checks import finite, held, measurable, positive
+from analytic.checks import finite, finite_result, measurable, positive
 from analytic.motion import FloatArray
 
-ROUNDING = 1e-12
+LEFT_OF_TREND = 1e-12
 """Part of a record that taking away its trend may leave of one that is nothing else."""
 
 
@@ -50,8 +50,8 @@ class Record:
             raise ValueError(f"samples[{bad[0]}] is {samples[bad[0]]}; it must be a finite number")
         most = float(np.abs(samples).max())
         cause = f"dt is {self.dt!r} and a sample {most!r}"
-        held("the displacement of the ground", most * (self.dt * samples.size) ** 2, cause)
-        held("the slope between samples", 2.0 * most / self.dt, cause)
+        finite_result("the displacement of the ground", most * (self.dt * samples.size) ** 2, cause)
+        finite_result("the slope between samples", 2.0 * most / self.dt, cause)
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
 
@@ -114,7 +114,7 @@ class Record:
         from scipy.signal import detrend
 
         left = Record(dt=self.dt, samples=detrend(self.samples / (self.peak or 1.0), type=kind))
-        if left.peak <= ROUNDING:
+        if left.peak <= LEFT_OF_TREND:
             raise ValueError(f"the record is its own {kind} trend; nothing is left without it")
         return left.scaled(self.peak)
 

@@ -9,7 +9,7 @@ import pytest
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from studies import respond
 from studies.cases.paper import Case
-from studies.linearizations.study import held, summarize
+from studies.linearizations.study import errors_on, summarize
 
 PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
 
@@ -62,7 +62,7 @@ def test_random_cases_are_what_comes_out_today():
 
 def test_linearizations_are_what_comes_out_today():
     kept = published("linearizations/linearizations.csv", dtype={"changed": str})
-    today = summarize(held("paper")).drop(columns="title")
+    today = summarize(errors_on("paper")).drop(columns="title")
     kept = kept[kept["grid"] == "paper"].drop(columns="title").reset_index(drop=True)
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-9)
 

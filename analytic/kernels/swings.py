@@ -23,7 +23,7 @@ from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import slope, value
 from analytic.kernels.taylor import expand_exact
 
-LANDED, OVERTURNED, LEFT_OVER, STUCK = 0, 1, 2, 3
+LANDED, TOPPLED, LEFT_OVER, STUCK = 0, 1, 2, 3
 """How a swing ends: an impact, overturned, still up when the pulse ends, too many steps."""
 
 MAP_ORDER = 16
@@ -180,7 +180,7 @@ def swing_linear(
         lifts, stop = stretch(out, angle, level)
         onward = out and c <= LYING and n == pulse.half_cycles - 1
         if onward and y >= c and v >= 0.0:
-            return Swing(OVERTURNED, n, angle, y, v, steps)
+            return Swing(TOPPLED, n, angle, y, v, steps)
         if lifts:
             h = math.inf if v >= 0.0 else max(y, 0.0) / -v
         else:
@@ -198,7 +198,7 @@ def swing_linear(
         y, v, noise = arc_at(law, pulse, segment, arc, t, n, angle)
         top = max(top, y)
         if LYING - y <= CONTACT:
-            return Swing(OVERTURNED, n, angle, y, v, steps)
+            return Swing(TOPPLED, n, angle, y, v, steps)
         contact = max(CONTACT * top, noise)
         while y < -contact and v < 0.0 and not lifts and steps < MAX_STEPS:
             steps += 1
@@ -265,7 +265,7 @@ def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple
 
 
 @kernel
-def lies(y: FloatArray, end: float, most: float) -> bool:
+def reaches(y: FloatArray, end: float, most: float) -> bool:
     """Tell whether the series reaches the rotation at which the block lies, on [0, end]."""
     x = 0.0
     for _ in range(200):
@@ -339,8 +339,8 @@ def swing_exact(
             h, landed = lands(series, clear, h, most, top)
         if not (out and last) and highest_bound(series, h) >= LYING:
             most = high + (force if out or straddles else 0.0)
-            if lies(series, h, most):
-                return Swing(OVERTURNED, n, angle, y, v, steps)
+            if reaches(series, h, most):
+                return Swing(TOPPLED, n, angle, y, v, steps)
         y, v = value(series, MAP_ORDER, h), slope(series, MAP_ORDER, h)
         top = max(top, y)
         turned, angle = whole_half_cycles(angle + omega * h)
@@ -350,5 +350,5 @@ def swing_exact(
         if ended or n >= pulse.half_cycles:
             return Swing(LEFT_OVER, n, angle, y, v, steps)
         if side < 0.0 and n == pulse.half_cycles - 1 and y >= alpha and v >= 0.0:
-            return Swing(OVERTURNED, n, angle, y, v, steps)
+            return Swing(TOPPLED, n, angle, y, v, steps)
     return Swing(STUCK, n, angle, y, v, steps)

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.motion import FloatArray, Motion
 from engines.scene import Scene
 
-ROUNDING = 1e-9
+SAME_TIME = 1e-9
 """Times closer than this part of the ordinary step are the same."""
 
 PULLS = np.array([1.0, -1.0])
@@ -47,7 +47,7 @@ class Timetable:
 
     def __init__(self, scene: Scene, dt_s: float, resolved_s: float = 0.0) -> None:
         block, hints = scene.block, scene.hints
-        self._same = max(ROUNDING * dt_s, resolved_s)
+        self._same = max(SAME_TIME * dt_s, resolved_s)
         loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
         if hints.swapped:
             loads = [load._replace(side=-load.side) for load in loads]
@@ -106,7 +106,7 @@ class Timetable:
 
 
 def _even(left: float, longest: float) -> float:
-    return longest if left == math.inf else left / math.ceil(left / longest * (1.0 - ROUNDING))
+    return longest if left == math.inf else left / math.ceil(left / longest * (1.0 - SAME_TIME))
 
 
 def loads_of(motion: Motion, onset: float) -> list[Load]:

@@ -79,7 +79,7 @@ def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArr
 def _likeliest(logs: FloatArray, overturned: FloatArray, survived: FloatArray) -> FloatArray:
     """Return level and slope of the normal quantile in the logarithm of the intensity."""
 
-    def surprise(line: FloatArray) -> tuple[float, FloatArray]:
+    def unlikelihood(line: FloatArray) -> tuple[float, FloatArray]:
         """Return the negative logarithm of the likelihood, which is convex, and its gradient."""
         z = line[0] + line[1] * logs
         below, above = log_ndtr(z), log_ndtr(-z)
@@ -88,7 +88,7 @@ def _likeliest(logs: FloatArray, overturned: FloatArray, survived: FloatArray) -
         gradient = -np.array([growth.sum(), growth @ logs])
         return -float(overturned @ below + survived @ above), gradient
 
-    best: FloatArray = minimize(surprise, [0.0, 2.0], jac=True, method="BFGS").x
+    best: FloatArray = minimize(unlikelihood, [0.0, 2.0], jac=True, method="BFGS").x
     return best
 
 

@@ -117,10 +117,10 @@ def tabulate(_: Sequence[Row] = ()) -> Tables:
 @functools.cache
 def all_errors() -> pd.DataFrame:
     """Return the cases of both grids through every variant."""
-    return pd.concat([held(name) for name in GRIDS], ignore_index=True)
+    return pd.concat([errors_on(name) for name in GRIDS], ignore_index=True)
 
 
-def held(name: str) -> pd.DataFrame:
+def errors_on(name: str) -> pd.DataFrame:
     """Return every case of a grid through every variant, held against the exact solution."""
     cases = grid(name)
     posed = posed_cases(cases)

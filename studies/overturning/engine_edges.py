@@ -93,7 +93,7 @@ def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.Da
     return (pd.concat(kept) if kept else edges.iloc[:0]), narrow
 
 
-def put(job: Job, source: Source) -> Response:
+def ask_for_table(job: Job, source: Source) -> Response:
     """Put a job of any of the three tables to its source."""
     if job.labels["table"] != "thresholds":
         return ask(job, source)

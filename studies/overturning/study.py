@@ -29,7 +29,13 @@ from studies.kit.plan import Plan, Tables, by_label, carry_out
 from studies.kit.provenance import usable_cores
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
-from studies.overturning.engine_edges import chosen_edges, edge_jobs, grid_jobs, put, reduce
+from studies.overturning.engine_edges import (
+    ask_for_table,
+    chosen_edges,
+    edge_jobs,
+    grid_jobs,
+    reduce,
+)
 from studies.overturning.report import headline, paragraph, pictures, report
 from studies.sources.groups import core_sources
 
@@ -195,7 +201,7 @@ def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
         jobs=jobs,
         settings={"window": asdict(window), "quick": quick},
         growing={"source": engines},
-        ask=put,
+        ask=ask_for_table,
         reduce=reduce,
         tabulate=tabulate,
     )

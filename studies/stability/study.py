@@ -91,14 +91,14 @@ def plan(sources: Sequence[str], quick: bool, time_limit_s: float) -> Plan:
         ],
         settings={"quick": quick, "bands": BANDS},
         growing={"source": sources},
-        ask=functools.partial(put, time_limit_s=time_limit_s),
+        ask=functools.partial(ask_for_table, time_limit_s=time_limit_s),
         reduce=reduce,
         tabulate=by_label("table"),
-        needed=speechless,
+        needed=without_result,
     )
 
 
-def speechless(rows: Sequence[Row]) -> list[Row]:
+def without_result(rows: Sequence[Row]) -> list[Row]:
     """Return the rows of sources that gave no result at all; other failures are answers."""
     failed = {row["source"] for row in rows if row["outcome"] == "failed"}
     failed -= {row["source"] for row in rows if row["outcome"] != "failed"}
@@ -128,7 +128,7 @@ def case_of(job: Job) -> Extreme:
     return next(case for case in extremes(False) if case.name == job.labels["case"])
 
 
-def put(job: Job, source: Source, *, time_limit_s: float) -> Response:
+def ask_for_table(job: Job, source: Source, *, time_limit_s: float) -> Response:
     """Put a job of any of the three tables to its source."""
     table = job.labels["table"]
     if table == "steps":

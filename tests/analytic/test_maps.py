@@ -19,7 +19,7 @@ from analytic import (
     simulate,
 )
 from analytic.criteria import overturning_amplitude
-from analytic.maps import AT_REST, FAILED, SURVIVES
+from analytic.maps import FAILED, NOT_LIFTED, SURVIVES
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]
 
@@ -39,7 +39,7 @@ def test_outcomes_are_those_of_the_other_kernel(model, half_cycles):
     restitution = np.where(draw.random(count) < 0.5, draw.uniform(0.0, 1.0, count), 0.8)
     found = overturning_modes(alpha, amplitude, omega, half_cycles, model, restitution)
     _, outcomes = peak_ratios(alpha, amplitude, omega, half_cycles, model, restitution)
-    expected = {SURVIVES: Outcome.ROCKED, AT_REST: Outcome.AT_REST, FAILED: Outcome.FAILED}
+    expected = {SURVIVES: Outcome.ROCKED, NOT_LIFTED: Outcome.AT_REST, FAILED: Outcome.FAILED}
     named = [expected.get(int(mode), Outcome.OVERTURNED) for mode in found.mode]
     assert [n for n, (a, b) in enumerate(zip(named, outcomes, strict=True)) if a is not b] == []
     assert set(named) == {Outcome.ROCKED, Outcome.AT_REST, Outcome.OVERTURNED}

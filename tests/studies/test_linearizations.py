@@ -8,7 +8,7 @@ import pytest
 
 from analytic import MODELS, peak_ratios
 from studies.linearizations import study as linearizations
-from studies.linearizations.study import NAMED, VARIANTS, grid, held
+from studies.linearizations.study import NAMED, VARIANTS, errors_on, grid
 from studies.page import redraw
 
 
@@ -47,7 +47,7 @@ def test_the_saddle_alone_scales_the_rotation_and_changes_no_outcome():
 def test_grids_have_no_copies_and_errors_are_against_the_exact_peak():
     assert len(grid("paper")) == 480
     assert not grid("wide").duplicated().any()
-    errors = held("paper")
+    errors = errors_on("paper")
     row = errors[(errors["changed"] == "111") & errors["error"].notna()].iloc[40]
     posed = (math.atan(1 / row["aspect"]), *row[["amplitude_g", "omega_over_p", "half_cycles"]])
     peaks = [float(peak_ratios(*posed, model=name)[0]) for name in ("modified", "exact")]

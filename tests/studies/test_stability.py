@@ -37,7 +37,14 @@ from studies.stability.sensitivity import (
     perturbed,
     with_growth,
 )
-from studies.stability.study import METHODS, matrix_jobs, plan, put, reduce, speechless
+from studies.stability.study import (
+    METHODS,
+    ask_for_table,
+    matrix_jobs,
+    plan,
+    reduce,
+    without_result,
+)
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)
@@ -238,7 +245,7 @@ def test_growth_of_the_exact_solution_is_its_kappa():
 @pytest.mark.parametrize("source", METHODS)
 def test_every_method_has_a_row_and_so_has_one_that_was_given_up(source):
     job = job_of("ω/p 10", source)
-    answered = reduce(job, put(job, resolve(source), time_limit_s=60.0))
+    answered = reduce(job, ask_for_table(job, resolve(source), time_limit_s=60.0))
     given_up = reduce(job, Response.failure("no result within the time limit"))
     assert answered["outcome"] == "rocked"
     assert answered["verdict"] in [verdict.value for verdict in Verdict]
@@ -268,7 +275,7 @@ def test_only_a_source_without_any_result_is_speechless():
         {"source": "a", "outcome": "rocked"},
         {"source": "b", "outcome": "failed"},
     ]
-    assert speechless(rows) == rows[2:]
+    assert without_result(rows) == rows[2:]
 
 
 def test_a_folder_holds_its_tables_figure_and_findings_and_goes_on(tmp_path):
