@@ -26,7 +26,7 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     """
     drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
     axes = drawing.subplots()
-    axes.set(xscale="log", yscale="log", ylim=(1e-6, 30.0))
+    axes.set(xscale="log", yscale="log", ylim=(1e-8, 30.0))
     mine, others = joint(along), joint(engines_of(published))
     others = others[~others["method"].isin(mine["method"])]
     grey = Style(BACKGROUND, "-", ".", 0.9)
