@@ -2,7 +2,7 @@
 
 from studies.kit import streams
 
-LONGEST_WORD, LONGEST_LINE = 80, 1000
+LONGEST_WORD, LONGEST_LINE = 255, 1000
 """Letters of a refusal beyond which the middle of a word, and of the line, is left out."""
 
 

@@ -31,7 +31,7 @@ from studies.sweep import study as sweep
 from studies.sweep.figure import draw_sweep
 from studies.validity import study as validity
 
-AT_ONCE = ("linearizations",)
+AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
 DEAR = ("overturning", "precision")
 """Studies that take many seconds before their first row."""
 RESUMABLE = [
