@@ -7,13 +7,14 @@ from pathlib import Path
 import pandas as pd
 
 from engines import ENGINES
+from engines.declaration import Help
 from studies.catalogue import CHAPTERS
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
 from studies.measures.differences import scientific
 from studies.measures.presets import in_words, preset_of
-from studies.measures.words import duration, listed, out_of, part
+from studies.measures.words import capital, duration, listed, out_of, part
 from studies.page import hero
 from studies.page.markdown import table
 from studies.precision.choices import NEAR, TYPICAL, Choice, choices
@@ -184,15 +185,19 @@ def glossary() -> list[tuple[str, str]]:
     ]
 
 
-def helps(core: bool = True) -> str:
+def helps() -> str:
     """Return what each engine's adapter does for landing, as the engines declare it."""
-    words = [
-        f"in {engine.title} {'; '.join(help_.value for help_ in preset.helped_by)}"
+    landing = {
+        engine.title: preset.helped_by
         for engine in ENGINES.values()
         for preset in engine.presets
-        if preset.name == "landing" and engine.core == core
+        if preset.name == "landing"
+    }
+    rows = [
+        (capital(each.value), *("yes" if each in helped else "–" for helped in landing.values()))
+        for each in Help
     ]
-    return "; and ".join(words)
+    return table(("landing", *landing), [row for row in rows if "yes" in row])
 
 
 def random_fixed(published: Path) -> str:
