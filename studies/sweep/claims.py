@@ -120,8 +120,9 @@ def verdict(table: pd.DataFrame) -> str:
 
 
 def _of_preset(name: str, lines: pd.DataFrame) -> str:
-    lost = each_out_of(list(lines["cases"] - lines["right"]), list(lines["cases"]))
+    lost = out_of((lines["cases"] - lines["right"]).sum(), lines["cases"].sum())
+    medians = dict.fromkeys([part(lines["median"].min()), part(lines["median"].max())])
     return (
-        f"{in_words(name)} the largest rotation is off by {part(lines['median'].max())} in the "
-        f"median and {part(lines['max'].max())} at worst, and {lost} outcomes are wrong"
+        f"{in_words(name)} {len(lines)} engines err by {' to '.join(medians)} "
+        f"in the median and by {part(lines['max'].max())} at worst, with {lost} outcomes wrong"
     )
