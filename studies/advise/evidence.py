@@ -87,7 +87,7 @@ def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """Return each preset, as it is declared, on the paper's cases."""
     tables = [pd.read_csv(published / name) for name in PAPER]
     lines = pd.concat(tables, ignore_index=True)
-    lines = lines[(lines["figure"].astype(str) == "all")]
+    lines = lines[lines["figure"].astype(str) == "all"].drop_duplicates("source")
     asked = [resolve(str(name)) for name in lines["source"]]
     lines = lines.assign(
         engine=[source.engine for source in asked],

@@ -8,6 +8,7 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import Help
+from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
@@ -188,9 +189,9 @@ def glossary() -> list[tuple[str, str]]:
 def helps() -> str:
     """Return what each engine's adapter does for landing, as the engines declare it."""
     landing = {
-        engine.title: preset.helped_by
-        for engine in ENGINES.values()
-        for preset in engine.presets
+        ENGINES[name].title: preset.helped_by
+        for name in OWN
+        for preset in ENGINES[name].presets
         if preset.name == "landing"
     }
     rows = [

@@ -30,11 +30,11 @@ def test_the_readme_follows_its_tables(tmp_path):
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
     before = readme.pages(tmp_path)[tmp_path / "README.md"]
-    path = copy / "sweep" / "summary.csv"
-    lines = pd.read_csv(path)
-    mine = (lines["source"] == "mujoco") & (lines["figure"] == "all")
-    lines.loc[mine, ["agree", "max_error"]] = [957, 0.0123]
-    lines.to_csv(path, index=False)
+    for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
+        lines = pd.read_csv(path)
+        mine = (lines["source"] == "mujoco") & (lines["figure"] == "all")
+        lines.loc[mine, ["agree", "max_error"]] = [957, 0.0123]
+        lines.to_csv(path, index=False)
     after = readme.pages(tmp_path)[tmp_path / "README.md"]
     assert "957 of 960" in after and "957 of 960" not in before
     assert "1.2 % |" in after
