@@ -22,9 +22,7 @@ from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import FRAMES, Scene, core_engines, run
-from engines.hints import TRUE, Hints
 from engines.scene import ACCURACIES
-from engines.stepping.timetable import loads_of
 from engines.world import Step
 
 
@@ -352,64 +350,3 @@ def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
     assert response.outcome is Outcome.AT_REST
     assert response.history is not None
     assert np.abs(response.history.theta).max() < 1e-8 * block.alpha
-
-
-FALSE_HINTS = [
-    Hints(onset=0.8),
-    Hints(onset=1.2),
-    Hints(swapped=True),
-    Hints(fall=0.5),
-    Hints(fall=2.0),
-]
-
-
-@pytest.mark.parametrize("hints", FALSE_HINTS, ids=str)
-def test_false_hints_choose_other_steps_and_not_what_happens(engine: str, hints: Hints) -> None:
-    """A block that lifts where nothing was expected lifts within a step, p dt = 5e-3 late, of which
-    the peak feels the square. One that was expected to lift and does not may lean into a contact
-    that has been made ready to let go of it, by less than what it could ever show."""
-    motion = pulse(1.3, 3.0, 2)
-    exact = simulate(BLOCK, motion)
-    true, misled = (run(engine, Scene(block=BLOCK, motion=motion, hints=h)) for h in (TRUE, hints))
-    assert misled.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-3)
-    assert len(misled.impacts) == len(exact.impacts)
-    if hints.onset != 1.0:
-        assert misled.steps != true.steps
-        assert abs(misled.peak_ratio - exact.peak_ratio) > abs(true.peak_ratio - exact.peak_ratio)
-    calm = run(engine, Scene(block=BLOCK, motion=pulse(0.9, 3.0, 2), hints=hints))
-    assert calm.peak_ratio < 1e-3
-
-
-def test_fixed_steps_take_no_hints(engine: str) -> None:
-    motion = pulse(1.3, 3.0, 2)
-    peaks = {
-        run(
-            engine, Scene(block=BLOCK, motion=motion, preset="fixed", step=5e-3, hints=h)
-        ).peak_ratio
-        for h in (TRUE, *FALSE_HINTS)
-    }
-    assert len(peaks) == 1
-
-
-@pytest.mark.parametrize(("name", "value"), [("onset", 0.0), ("onset", math.nan), ("fall", -1.0)])
-def test_hints_that_make_no_sense_are_refused(name: str, value: float) -> None:
-    with pytest.raises(ValueError, match=f"{name} is .*; it must be"):
-        Hints(**{name: value})
-
-
-@pytest.mark.parametrize("excess", [1e-9, 0.1, 5.0])
-def test_loads_are_found_however_short(excess):
-    pulse = SinePulse(amplitude=1.0 + excess, omega=3.0, half_cycles=5)
-    loads = loads_of(pulse, 1.0)
-    level = math.asin(1.0 / (1.0 + excess))
-    begins = [(k * math.pi + level) / 3.0 for k in range(5)]
-    ends = [((k + 1) * math.pi - level) / 3.0 for k in range(5)]
-    # near a crest the time of a crossing is known to the root of the rounding only
-    assert [load.begin for load in loads] == pytest.approx(begins, rel=1e-7)
-    assert [load.end for load in loads] == pytest.approx(ends, rel=1e-7)
-    assert [load.side for load in loads] == [-1.0, 1.0, -1.0, 1.0, -1.0]
-
-
-def test_a_motion_below_the_onset_loads_nothing_however_long():
-    pulse = SinePulse(amplitude=0.999, omega=1e-6, half_cycles=2)
-    assert loads_of(pulse, 1.0) == []
