@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from studies.drawing.labels import Name, beside
 from studies.drawing.styles import PRESET_LINES, engine_style
 from studies.measures.words import listed, part
 
@@ -25,26 +26,28 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(8.0, 4.8), layout="constrained")
     axes = drawing.subplots()
     engines = list(lines["engine"].unique())
+    names = []
     for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
         kept = group[group["message"] == ""]
-        _draw(axes, str(engine), str(preset), kept, engines.index(engine) % 2 == 0)
+        if not kept.empty:
+            above = engines.index(engine) % 2 == 0
+            names.append(_draw(axes, str(engine), str(preset), kept, above))
     targets = sorted(lines["target"].unique(), reverse=True)
     axes.set(xscale="log", yscale="log", xticks=targets)
     axes.set_xticks([], minor=True)
     axes.set_xticklabels([part(float(target)) for target in targets])
-    axes.set_xlim(2.0 * targets[0], targets[-1] / 10.0)
+    axes.set_xlim(2.0 * targets[0], targets[-1] / 2.0)
     axes.margins(y=0.15)
     axes.set_xlabel("largest error of a peak, kept on every published case")
     axes.set_ylabel("time of a case  [ms]")
     axes.grid(alpha=0.25)
     axes.set_title(_title(lines, targets), fontsize=11)
+    beside(axes, names)
     return drawing
 
 
-def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool) -> None:
-    """Draw a preset's line, its steps above or below it, and its name at the end."""
-    if kept.empty:
-        return
+def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool) -> Name:
+    """Draw a preset's line, and its steps where they change; return its name, at the end."""
     style = engine_style(engine, preset)
     errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
     axes.plot(
@@ -56,8 +59,10 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
         fillstyle=style.fill,
         markersize=6,
     )
-    axes.annotate(f"  {engine} {preset}", (errors[-1], times[-1]), color=style.colour, va="center")
-    for error, time, value in zip(errors, times, kept["value"], strict=True):
+    changed = kept["value"].ne(kept["value"].shift())
+    for error, time, value in zip(
+        errors[changed], times[changed], kept["value"][changed], strict=True
+    ):
         axes.annotate(
             "its own" if math.isnan(value) else f"{value:g}",
             (error, time),
@@ -68,6 +73,7 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
             fontsize=8,
             color=style.colour,
         )
+    return Name(f"{engine} {preset}", float(errors[-1]), float(times[-1]), style.colour)
 
 
 def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
