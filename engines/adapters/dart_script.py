@@ -33,6 +33,7 @@ def script(scene: Scene, s: DartSettings, dt_s: float) -> Script:
             rough,
         ),
         build=(
+            "",
             *(line.format(rough=rough) for line in SHAPED),
             "",
             "",

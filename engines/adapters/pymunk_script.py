@@ -69,7 +69,8 @@ def _corners(scene: Scene, margin: float) -> tuple[str, ...]:
     deep = [(-far, -far), (far, -far), (far, 0.0), (-far, 0.0)]
     return (
         f"corners = [pymunk.Circle(block, 0.0, (x, {-z!r})) for x in {(-x, x)}]",
-        f"floors = [pymunk.Poly(base, {deep}, radius={margin!r}) for _ in corners]",
+        f"deep = {deep}",
+        f"floors = [pymunk.Poly(base, deep, radius={margin!r}) for _ in corners]",
     )
 
 
