@@ -60,6 +60,7 @@ def environment(folder: Path, release: Release) -> Environment:
     """
     path = folder / MADE
     if path.is_file():
+        share(folder)  # this project may have been moved, or installed elsewhere, since
         return Environment(**json.loads(path.read_text(encoding="utf-8")))
     shutil.rmtree(folder, ignore_errors=True)
     began = time.perf_counter()
