@@ -8,6 +8,9 @@ from engines.parts.settings import check, setting
 DETECTORS = ("DART", "FCL", "BULLET", "ODE")
 """The library's collision detectors, by its own names."""
 
+IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
+"""Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DartSettings:

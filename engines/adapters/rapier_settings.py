@@ -1,9 +1,10 @@
 """What Rapier can be set to: its settings, the tuned ones, and what the studies try of them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
-from engines.parts.settings import check, setting
+from engines.parts.settings import check, given, setting
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +72,20 @@ class RapierSettings:
         check(self)
         if self.by_phase and self.frequency is None:
             raise ValueError("frequency is None; it must be given wherever by_phase is set")
+
+
+def parameters(s: RapierSettings) -> dict[str, Any]:
+    """Return the library's parameters that are set, by their own names; a model by its name."""
+    return given(
+        {
+            "num_solver_iterations": s.substeps,
+            "num_internal_pgs_iterations": s.iterations,
+            "num_internal_stabilization_iterations": s.stabilization,
+            "contact_recycling": s.recycling,
+            "warmstart_coefficient": s.warm_starting,
+            "friction_model": None if s.coulomb is None else "COULOMB",
+        }
+    )
 
 
 TUNED = RapierSettings(
