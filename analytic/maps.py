@@ -125,7 +125,6 @@ def pulse_mode(
     level = math.asin(law.onset / pulse.amplitude)
     angle = v = side = lifted = 0.0
     impacts = steps = 0
-    series, f, sine, cosine = work[0], work[1], work[2], work[3]
     while True:
         if side == 0.0:
             turned, angle = next_lift(angle, level)
@@ -136,7 +135,7 @@ def pulse_mode(
         if law.linear:
             swing = swing_linear(law, pulse, angle, v, side, level, segment)
         else:
-            swing = swing_exact(law, pulse, angle, v, side, lifted, series, f, sine, cosine)
+            swing = swing_exact(law, pulse, angle, v, side, lifted, work)
         steps += swing.steps
         if swing.end == TOPPLED:
             return impacts, math.inf, steps

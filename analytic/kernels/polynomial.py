@@ -45,6 +45,15 @@ def slope(a: FloatArray, degree: int, x: float) -> float:
 
 
 @kernel
+def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
+    """Write the coefficients of sum a[i] (h x)^i into d[0..degree]."""
+    scale = 1.0
+    for i in range(degree + 1):
+        d[i] = a[i] * scale
+        scale *= h
+
+
+@kernel
 def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
     """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
     for i in range(degree + 1):

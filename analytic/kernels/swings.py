@@ -19,7 +19,7 @@ from typing import NamedTuple
 from analytic.kernels.closed_form import linear_state
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import LYING, MAX_STEPS
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.law import FloatArray, Law, State
 from analytic.kernels.polynomial import slope, value
 from analytic.kernels.taylor import expand_exact
 
@@ -135,8 +135,8 @@ def arc_at(
     """
     k, omega = law.k, pulse.omega
     if t * max(k, omega) < SHORT:
-        begin = arc.start / omega
-        y, v = linear_state(law, segment, arc.side, begin, arc.lead, 0.0, arc.v, t)
+        begin = State(arc.side, arc.start / omega, arc.lead, 0.0, arc.v)
+        y, v = linear_state(law, segment, begin, t)
         return y, v, 0.0
     grown = math.exp(k * t)
     rising, falling = arc.rising * grown, arc.falling / grown
@@ -298,21 +298,13 @@ def lowest_bound(y: FloatArray, h: float) -> float:
 
 @kernel
 def swing_exact(
-    law: Law,
-    pulse: Pulse,
-    start: float,
-    v: float,
-    side: float,
-    lifted: float,
-    series: FloatArray,
-    f: FloatArray,
-    sine: FloatArray,
-    cosine: FloatArray,
+    law: Law, pulse: Pulse, start: float, v: float, side: float, lifted: float, work: FloatArray
 ) -> Swing:
     """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`.
 
-    Until the time `lifted` the ground lifts the block.
+    Until the time `lifted` the ground lifts the block; `work` has the shape (4, MAP_ORDER + 1).
     """
+    series, f, sine, cosine = work[0], work[1], work[2], work[3]
     alpha, omega = law.alpha, pulse.omega
     low, high = math.sin(alpha), math.cos(alpha)
     t, angle, y, top = 0.0, start, 0.0, 0.0
