@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
+from analytic.cases import law_of, pose, write_pulse
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import (
@@ -30,7 +31,7 @@ from analytic.kernels.rest import acceleration, ground, segment_at
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.simulate import pulse_law, scaled_segments, stack_cases
+from analytic.simulate import scaled_segments
 from analytic.start import REST, folded
 
 AMPLITUDE, RESTITUTION = 0, 1
@@ -62,12 +63,15 @@ def condition_numbers(
 
     Parameters and errors are those of `peak_ratios`; the arrays have the broadcast shape.
     """
-    declared = find_model(model)
-    cases, shape = stack_cases(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
-    constants = np.stack(declared.constants(cases[0]))
-    found = np.empty((2, cases.shape[1]))
-    condition_pulses(declared.linear, accuracy(TOLERANCE), constants, cases, found)
-    return Conditioning(*(row.reshape(shape) for row in found))
+    cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
+    exactly = accuracy(TOLERANCE)
+    by_amplitude, by_eta = np.empty(cases.size), np.empty(cases.size)
+
+    def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
+        condition_pulses(linear, exactly, constants, given, by_amplitude[part], by_eta[part])
+
+    cases.solve(solve)
+    return Conditioning(by_amplitude.reshape(cases.shape), by_eta.reshape(cases.shape))
 
 
 def conditioning(
@@ -92,16 +96,16 @@ def condition_pulses(
     exactly: Accuracy,
     constants: FloatArray,
     cases: FloatArray,
-    found: FloatArray,
+    by_amplitude: FloatArray,
+    by_eta: FloatArray,
 ) -> None:
-    """Fill `found` with the condition numbers of each case, a column of `stack_cases`."""
+    """Write the condition numbers of each case, one a column."""
     work = workspace()
     segments = np.zeros((1, 7))
     for i in range(cases.shape[1]):
-        law = pulse_law(linear, constants[:, i], cases[:, i], segments)
-        found[AMPLITUDE, i], found[RESTITUTION, i] = condition(
-            law, exactly, segments, UPRIGHT, work
-        )
+        law = law_of(linear, constants[:, i], cases[4, i])
+        write_pulse(cases[:, i], segments[0])
+        by_amplitude[i], by_eta[i] = condition(law, exactly, segments, UPRIGHT, work)
 
 
 @kernel

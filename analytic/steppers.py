@@ -7,7 +7,6 @@ repeated in tenths, and so on, until abs(theta) is below the event tolerance at 
 import math
 from typing import NamedTuple
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
@@ -40,6 +39,7 @@ from analytic.kernels.rest import (
     next_uplift,
     segment_at,
     shaking,
+    then_still,
 )
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
@@ -248,8 +248,9 @@ def tread(
     """
     if not is_finite(segments):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    moving, still = segments[-1, 1], np.zeros(7)
-    last, followed = max(until, moving), until > moving
+    ended = segments[-1, 1]
+    last, followed = max(until, ended), until > ended
+    moving = then_still(segments, until if followed else math.inf)
     side, y, v = start
     tau, peak, h = 0.0, y, solver.step
     j = steps = impacts = events = n = 0
@@ -257,14 +258,14 @@ def tread(
         events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
-            j, rise, side, _ = next_uplift(segments, j, tau, law.onset)
+            j, rise, side, _ = next_uplift(moving, j, tau, law.onset)
             n = sample_rest(notes, min(rise, last), n)
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
-        j = segment_at(segments, j, tau)
+        j = segment_at(moving, j, tau)
         if followed and tau >= until:
             ahead = free_peak(law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
@@ -273,13 +274,9 @@ def tread(
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
-        if j < len(segments):
-            segment, boundary = segments[j], segments[j, 1]
-        else:
-            segment, boundary = still, until if followed else math.inf
-        landed = tau + h >= boundary
-        length = boundary - tau if landed else h
-        begin = State(side, tau, 0, y, v)
+        segment, begin = moving[j], State(side, tau, 0, y, v)
+        landed = tau + h >= segment[1]
+        length = segment[1] - tau if landed else h
         if solver.rk4:
             path = rk4_step(law, segment, begin, length)
         else:
@@ -292,9 +289,9 @@ def tread(
 
         peak = max(peak, turning_value(path) if turns(path) else path.end, path.end)
         n = sample_cubic(path, begin, notes, n)
-        tau = boundary if landed else tau + length
+        tau = segment[1] if landed else tau + length
         y, v = path.end, path.rate
-        found = verdict(law, path, until <= moving < tau)
+        found = verdict(law, path, until <= ended < tau)
         if found != UNDECIDED:
             return End(found, peak, steps, impacts, events, tau)
         if v > 0.0:
@@ -302,9 +299,9 @@ def tread(
         if y <= solver.tolerance and v < 0.0:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
-            j = segment_at(segments, j, tau)
+            j = segment_at(moving, j, tau)
             turned, y, v, h = -side, 0.0, -law.eta * v, solver.step
-            side, wait = next_side(law, segments, j, tau, turned, v, solver.tolerance)
+            side, wait = next_side(law, moving, j, tau, turned, v, solver.tolerance)
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)

@@ -17,10 +17,12 @@ from analytic.kernels.law import FloatArray, Law, Start, State
 from analytic.kernels.polynomial import (
     MAX_DEPTH,
     ORDER,
+    bracketed_root,
     highest,
     next_root,
     slope,
     stretch,
+    trend,
     value,
 )
 from analytic.kernels.rest import (
@@ -30,6 +32,7 @@ from analytic.kernels.rest import (
     is_finite,
     next_uplift,
     segment_at,
+    then_still,
 )
 from analytic.kernels.taylor import (
     Accuracy,
@@ -125,7 +128,7 @@ def expand(
     if law.linear:
         expand_linear(law, accuracy.order, f, y)
         return LINEAR_STEP / max(law.k, segment[3])
-    expand_exact(law, accuracy.order, f, y, work[2], work[3])
+    expand_exact(law, accuracy.order, work)
     return trusted_step(y, accuracy)
 
 
@@ -162,21 +165,15 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
 
 @kernel
 def take_step(
-    law: Law,
-    accuracy: Accuracy,
-    segment: FloatArray,
-    begin: State,
-    end: float,
-    peak: float,
-    work: FloatArray,
+    law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, peak: float, work: FloatArray
 ) -> Step:
-    """Step from a state towards the time `end`, no further than to an impact or a fall.
+    """Step from a state, no further than to an impact, a fall, or the end of a segment.
 
     Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
     work[4].
     """
     series, d, spare = work[0], work[4], work[5:]
-    order, lead = accuracy.order, begin.lead
+    order, lead, end = accuracy.order, begin.lead, segment[1]
     h = expand(law, accuracy, segment, begin, work)
     if not begin.tau * VANISHING < h < math.inf:
         return Step(LOST, h, 0.0, begin.tau, begin.y, begin.v, peak)
@@ -187,10 +184,16 @@ def take_step(
         h = end - begin.tau
     stretch(series, order, h, d)
 
-    x = first_crossing(d, order, lead, 0.0, spare)
+    way = trend(d, order, lead)
+    if way > 0:
+        x, peak = 2.0, max(peak, value(d, order, 1.0))
+    elif way < 0 and lead == 0:
+        x = bracketed_root(d, order, 0.0, 1.0) if value(d, order, 1.0) < 0.0 else 2.0
+    else:
+        x = first_crossing(d, order, lead, 0.0, spare)
+        peak, _ = highest(d, order, lead, min(x, 1.0), peak, spare)
     kind = HIT if x <= 1.0 else FREE
     x = min(x, 1.0)
-    peak, _ = highest(d, order, lead, x, peak, spare)
     fall = first_crossing(d, order, 0, LYING, spare) if peak >= LYING else 2.0
     if fall <= x:
         kind, x = FALLEN, fall
@@ -276,7 +279,7 @@ def march(
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
     watched = notes.limits.size > 0
     last = max(until, segments[-1, 1])
-    still = np.zeros(7)
+    moving = then_still(segments, last)
     side, y, v = start
     tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
@@ -285,16 +288,16 @@ def march(
     while True:
         if side == 0.0:
             resting = j
-            j, rise, side, lead = next_uplift(segments, j, tau, law.onset)
+            j, rise, side, lead = next_uplift(moving, j, tau, law.onset)
             n = sample_rest(notes, min(rise, last), n)
             if watched:
-                watch_rest(notes.limits, segments, resting, tau, rise)
+                watch_rest(notes.limits, moving, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau = rise
             events = note(notes.log, events, UPLIFT, tau, float(lead), 0.0)
-        j = segment_at(segments, j, tau)
+        j = segment_at(moving, j, tau)
         if tau >= last:
             ahead = free_peak(law, y, v)
             if watched:
@@ -305,10 +308,8 @@ def march(
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
-        moving = j < len(segments)
-        segment, boundary = (segments[j], segments[j, 1]) if moving else (still, last)
-        begin = State(side, tau, lead, y, v)
-        step = take_step(law, accuracy, segment, begin, boundary, peak, work)
+        segment, begin = moving[j], State(side, tau, lead, y, v)
+        step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
             return End(BROKEN, peak, steps, impacts, events, tau)
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
@@ -321,10 +322,10 @@ def march(
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
             turned, y, v = -side, 0.0, -law.eta * v
-            side, wait = after_impact(law, segments, j, tau, turned, v)
+            side, wait = after_impact(law, moving, j, tau, turned, v)
             lead = 1 if v != 0.0 else 2
             if side == 0.0:
                 if watched:
-                    watch_train(notes.limits, law, turned, ground(segments, j, tau), v)
+                    watch_train(notes.limits, law, turned, ground(moving, j, tau), v)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from analytic.kernels.compiled import kernel
 from analytic.kernels.law import FloatArray, Law
 
@@ -25,6 +27,16 @@ def shaking(segment: FloatArray, tau: float) -> float:
     start, _, amplitude, omega, phase, offset, rate = segment
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
+
+
+@kernel
+def then_still(segments: FloatArray, end: float) -> FloatArray:
+    """Return a ground motion with one segment more, on which nothing moves until `end`."""
+    count = segments.shape[0]
+    longer = np.zeros((count + 1, segments.shape[1]))
+    longer[:count] = segments
+    longer[count, 0], longer[count, 1] = segments[count - 1, 1], end
+    return longer
 
 
 @kernel
