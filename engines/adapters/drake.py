@@ -12,7 +12,13 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
-from engines.adapters.drake_settings import CENIC, CONTROLLED, TUNED, DrakeSettings
+from engines.adapters.drake_settings import (
+    CENIC,
+    CONTROLLED,
+    FACTORS,
+    TUNED,
+    DrakeSettings,
+)
 from engines.declaration import Engine, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -202,9 +208,7 @@ class DrakeWorld:
         drake, s, simulator = self._pydrake, self._s, self._simulator
         # without an estimate of the error each step goes to where it is told
         longest = LONGEST * self._dt if s.accuracy is None else self._dt
-        drake.ResetIntegratorFromFlags(
-            simulator=simulator, scheme=CENIC, max_step_size=longest
-        )
+        drake.ResetIntegratorFromFlags(simulator=simulator, scheme=CENIC, max_step_size=longest)
         integrator = simulator.get_mutable_integrator()
         integrator.set_fixed_step_mode(s.accuracy is None)
         if s.accuracy is not None:
@@ -277,5 +281,6 @@ ENGINE = Engine(
     frames=("base",),
     geometries=("box", "corners"),
     spatial=True,
+    factors=FACTORS,
     own_step="pydrake.systems.analysis:Simulator.AdvanceTo",
 )

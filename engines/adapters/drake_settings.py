@@ -1,7 +1,8 @@
 """What Drake can be set to: its settings, the tuned ones, and what the studies try of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from engines.factors import BOTH, DEFAULT, Factor, factor, level
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM
 
@@ -65,20 +66,44 @@ class DrakeSettings:
 TUNED = DrakeSettings(
     geometry="corners",
     planar=True,
-    solver="sap",
-    stiffness=1.0,
-    relaxation=10.0,
-    near_rigid=0.0,
     friction=NO_JAM,
-)
-
-CONTROLLED = DrakeSettings(
-    geometry="corners",
-    planar=True,
     solver=CENIC,
-    stiffness=2.5e3,
+    stiffness=1.0,
     dissipation=1e3,
     stiction=1e-5,
-    accuracy=1e-7,
-    friction=NO_JAM,
 )
+
+CONTROLLED = replace(TUNED, stiffness=2.5e3, accuracy=1e-8)
+
+LAGGED = "friction goes by the normal force of the last step, which no impact has foreseen"
+DEEPEST = "a box touches a half-space in one point, its deepest"
+
+FACTORS = (
+    Factor(
+        "solver",
+        ("solver", "relaxation", "near_rigid"),
+        (
+            level("SAP, relaxation 10", solver="sap", relaxation=10.0, near_rigid=0.0),
+            level("SAP, relaxation 1", solver="sap", relaxation=1.0, near_rigid=0.0),
+            level("SAP", (DEFAULT,), solver="sap"),
+            level("similar", BOTH, solver="similar"),
+        ),
+    ),
+    factor("stiffness", level("10", stiffness=10.0), level("0.1", stiffness=0.1)),
+    factor(
+        "dissipation", level("100", dissipation=1e2), level("1e4", trap=LAGGED, dissipation=1e4)
+    ),
+    factor("stiction", level("1e-4", stiction=1e-4)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("4 corners", BOTH, geometry="corners", planar=False),
+            level("planar box", trap=DEEPEST, geometry="box"),
+        ),
+        traps={"fixed": DEEPEST},
+    ),
+    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor("friction", level("10", friction=10.0)),
+)
+"""What its contact can be set to."""
