@@ -42,6 +42,9 @@ MODULES = (
 PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
 """Its columns are z, x and y: a planar joint moves along two axes, and turns about the third."""
 
+GIVEN_UP = (RuntimeError, SystemExit)
+"""What the library raises; the latter where one of its own conditions does not hold."""
+
 LONGEST = 10.0
 """No step that is told is longer than this many ordinary ones."""
 
@@ -93,7 +96,7 @@ class DrakeWorld:
             # a discrete plant changes at the beginning of a step: half of one later it has, once
             end = step.end_s if self._continuous else (self._count - 0.5) * self._dt
             self._simulator.AdvanceTo(end)
-        except RuntimeError as error:
+        except GIVEN_UP as error:
             self._problem = one_line(error)
 
     def advance(self, end_s: float) -> int:
@@ -106,7 +109,7 @@ class DrakeWorld:
         before = self._integrator.get_num_steps_taken()
         try:
             self._simulator.AdvanceTo(end_s)
-        except RuntimeError as error:
+        except GIVEN_UP as error:
             self._problem = one_line(error)
             return 1
         self._time = end_s
@@ -249,7 +252,7 @@ def library() -> SimpleNamespace:
     return SimpleNamespace(**names)
 
 
-def one_line(error: Exception) -> str:
+def one_line(error: BaseException) -> str:
     """Return what the library says as one line."""
     return " ".join(str(error).split())
 
