@@ -7,6 +7,12 @@ from typing import Any
 BEST, DEFAULT = "fixed", "naive"
 """The presets from which one factor at a time is varied."""
 
+AS_BEST, BY_DEFAULT = "as in the best", "default"
+"""Names of the values that these two take from each other."""
+
+LEFT_OUT = "left out"
+"""Name of the factor of what a preset is helped by: without one of them at a time."""
+
 BOTH = (BEST, DEFAULT)
 
 Settings = Mapping[str, Any]
@@ -70,6 +76,25 @@ class Factor:
 def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
     """Return a factor that is a matter of one setting, called as it unless a name is given."""
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a user of a library should do, and the variant of a preset that shows what it is worth.
+
+    Attributes
+    ----------
+    words : str
+        In the library's own words, as an order.
+    preset, factor, level : str
+        From the defaults, the variant that follows the rule; from another preset, which follows
+        it, the variant that does not.
+    """
+
+    words: str
+    preset: str
+    factor: str
+    level: str
 
 
 UNMOVED = "a base without a velocity: friction does not feel it"

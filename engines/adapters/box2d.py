@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
-from engines.factors import MOVING_BASE, factor, level
+from engines.factors import BEST, BY_DEFAULT, MOVING_BASE, Rule, factor, level
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
 from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
@@ -261,5 +261,16 @@ ENGINE = Engine(
         factor("continuous"),
         factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
         MOVING_BASE,
+    ),
+    rules=(
+        Rule(
+            "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
+            "units, and speed is cut to 2 units a step",
+            *(BEST, "units", BY_DEFAULT),
+        ),
+        Rule(
+            "Lower a floor by that skin, if bodies are to touch it where it is",
+            *(BEST, "skins below", BY_DEFAULT),
+        ),
     ),
 )

@@ -7,7 +7,7 @@ left where they are.
 
 from typing import Any
 
-from engines.adapters.dart_settings import FACTORS, LANDING, TUNED, DartSettings
+from engines.adapters.dart_settings import FACTORS, LANDING, RULES, TUNED, DartSettings
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -216,5 +216,6 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     factors=FACTORS,
+    rules=RULES,
     own_step="dartpy:simulation.World.step",
 )

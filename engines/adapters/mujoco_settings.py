@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.factors import BEST, BOTH, DEFAULT, MOVING_BASE, Factor, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
 
@@ -195,6 +195,18 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Give contacts a `solref` of their own, that follows the step: it is 0.02 s, and soft",
+        *(DEFAULT, "reference", "2 dt 1"),
+    ),
+    Rule(
+        "Tighten `solimp` with it, here to 0.9999: the contact else yields by a tenth of its load",
+        *(BEST, "impedance", "0.9 to 0.95, the default"),
+    ),
+)
+"""What its users should know first."""
 
 
 def kept(scene: Scene, s: MujocoSettings) -> MujocoSettings:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
-from engines.factors import MOVING_BASE, factor, level
+from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, MOVING_BASE, Factor, Rule, factor, level
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
@@ -258,11 +258,30 @@ ENGINE = Engine(
     factors=(
         factor("geometry"),
         factor("positions", level("moved by the adapter", positions=True), by_default=False),
-        factor("iterations", level("10", iterations=10), level("100", iterations=100)),
+        Factor(
+            "iterations",
+            ("iterations", "sweeps"),
+            (level("100", iterations=100, sweeps=None),),
+        ),
         factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
         factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
         factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
         factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
         MOVING_BASE,
+    ),
+    rules=(
+        Rule(
+            "Keep the step of `space.step` the same: the impulses it starts from are scaled by the "
+            "ratio of two steps",
+            *("landing", LEFT_OUT, "positions"),
+        ),
+        Rule(
+            "Give a slender body more `iterations`, some 20/sin²α: they are 10",
+            *(BEST, "iterations", BY_DEFAULT),
+        ),
+        Rule(
+            "Scale `collision_slop` to what you build: bodies sink by 0.1 units of length",
+            *(DEFAULT, "slop", "1e-4 m"),
+        ),
     ),
 )

@@ -7,7 +7,7 @@ a step of less than some 1e-6/p has the noise of its contact for a velocity.
 import math
 from typing import Any
 
-from engines.adapters.rapier_settings import FACTORS, LANDING, TUNED, RapierSettings
+from engines.adapters.rapier_settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -201,6 +201,7 @@ ENGINE = Engine(
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     factors=FACTORS,
+    rules=RULES,
     remedy={"iterations": 1000},
     own_step="rapier3d:PhysicsWorld.step",
 )

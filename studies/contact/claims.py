@@ -9,8 +9,8 @@ from typing import Any
 
 import pandas as pd
 
-from engines.factors import BEST, DEFAULT
-from studies.cases.variants import BY_DEFAULT
+from engines import ENGINES
+from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, Rule
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
@@ -127,12 +127,67 @@ def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
         if len(varied):
             sentences += _of_preset(lines, engine, preset, varied)
     mine = lines[lines["engine"] == engine]
+    sentences += _prices(engine, mine)
+    sentences += [
+        f"Rule, {engine}. {rule.words}. Largest error without it {without}, with it {with_it}."
+        for rule, without, with_it in rules(lines, engine)
+    ]
     for _, line in mine[mine["trap"] != ""].iterrows():
         sentences.append(
             f"Trap: {name_of(line)} ({FROM[line['preset']]}): {line['trap']}; largest error "
             f"{errors_of(line)}{line['message'] and ', ' + line['message']}."
         )
     return sentences
+
+
+def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
+    """Return the largest error of an engine's best preset without each of what it is helped by.
+
+    Returns
+    -------
+    dict
+        Name of a `Help` -> the error and what fails; "" -> the preset as it is; "STEPS" -> that
+        with equal steps.
+    """
+    best = ENGINES[engine].best.name
+    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
+    asked = mine[mine["factor"].isin(["", LEFT_OUT])]
+    found = {line["level"] if line["factor"] else "": line for _, line in asked.iterrows()}
+    words = {name.upper(): errors_of(line) for name, line in found.items()}
+    equal = variant_of(lines, engine, BEST)
+    return words | ({} if equal is None else {"STEPS": errors_of(equal)})
+
+
+def _prices(engine: str, lines: pd.DataFrame) -> list[str]:
+    words = prices(lines, engine)
+    whole = words.pop("", None)
+    if whole is None:
+        return []
+    left = listed([f"{error} without {name.lower()}" for name, error in words.items()])
+    return [f"{engine}, {ENGINES[engine].best.name} as it is, {whole} at most; {left}."]
+
+
+def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
+    """Return an engine's rules, each with the largest error without it and with it."""
+    found = []
+    for rule in ENGINES[engine].rules:
+        plain = variant_of(lines, engine, rule.preset)
+        other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
+        if plain is not None and other is not None:
+            pair = (plain, other) if rule.preset == DEFAULT else (other, plain)
+            found.append((rule, *map(errors_of, pair)))
+    return found
+
+
+def variant_of(
+    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
+) -> "pd.Series[Any] | None":
+    """Return the line of a preset, or of a variant of it; None where there is none."""
+    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
+    wanted &= lines["factor"] == factor
+    if level:
+        wanted &= lines["level"] == level
+    return lines[wanted].iloc[0] if wanted.any() else None
 
 
 def _of_preset(lines: pd.DataFrame, engine: str, preset: str, varied: pd.DataFrame) -> list[str]:

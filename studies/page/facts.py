@@ -10,6 +10,8 @@ from engines import ENGINES
 from engines.declaration import Help
 from engines.registry import OWN
 from studies.catalogue import CHAPTERS
+from studies.contact.claims import prices, rules
+from studies.contact.report import read as read_variants
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
@@ -23,6 +25,9 @@ from studies.sweep.claims import preset_table, whole
 
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
+
+NINTH = Path("tests", "plugin", "my_engine.py")
+"""An engine of another package, in few lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,19 +191,42 @@ def glossary() -> list[tuple[str, str]]:
     ]
 
 
-def helps() -> str:
-    """Return what each engine's adapter does for landing, as the engines declare it."""
-    landing = {
-        ENGINES[name].title: preset.helped_by
-        for name in OWN
-        for preset in ENGINES[name].presets
-        if preset.name == "landing"
-    }
+def helps(published: Path) -> str:
+    """Return what each engine's adapter does for landing, and the largest error without it."""
+    lines = _variants(published)
+    helped = {name: ENGINES[name].best.helped_by for name in OWN}
+    price = {name: prices(lines, name) for name in OWN}
     rows = [
-        (capital(each.value), *("yes" if each in helped else "–" for helped in landing.values()))
+        (
+            capital(each.value),
+            *(price[name].get(each.name, "yes") if each in helped[name] else "–" for name in OWN),
+        )
         for each in Help
     ]
-    return table(("landing", *landing), [row for row in rows if "yes" in row])
+    whole = ("**All of it**", *(f"**{price[name].get('', '-')}**" for name in OWN))
+    heads = ("landing without", *(ENGINES[name].title for name in OWN))
+    return table(heads, [whole, *(row for row in rows if set(row[1:]) != {"–"})])
+
+
+def rules_of_engines(published: Path) -> str:
+    """Return what users of each engine should know first, and what it is worth."""
+    lines = _variants(published)
+    rows = [
+        (ENGINES[name].title if not place else "", rule.words, *errors)
+        for name in OWN
+        for place, (rule, *errors) in enumerate(rules(lines, name))
+    ]
+    return table(("engine", "rule", "largest error without", "with it"), rows)
+
+
+def _variants(published: Path) -> pd.DataFrame:
+    return read_variants(published / "contact" / "variants.csv")
+
+
+def ninth(root: Path) -> str:
+    """Return an engine as a user adds it: the example that a test scores."""
+    text = (root / NINTH).read_text(encoding="utf-8")
+    return text[text.index("import ") :].rstrip()
 
 
 def random_fixed(published: Path) -> str:

@@ -19,7 +19,7 @@ from engines.adapters.mujoco_settings import TUNED, MujocoSettings
 from engines.drive import build
 from engines.factors import BEST, DEFAULT
 from engines.stepping.steps import FixedSteps, Stepper
-from studies.cases.variants import OWN_STEP
+from studies.cases.variants import OWN_STEPS
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
 from studies.kit.jobs import ask
@@ -82,7 +82,7 @@ def test_a_variant_differs_from_its_preset():
     """What a variant sets is not what its preset sets already, or it would compare nothing."""
     for variant in VARIANTS:
         plain = ENGINES[variant.engine].preset(variant.preset).settings
-        if variant.factor and not variant.scene and variant.name != OWN_STEP:
+        if variant.factor and not variant.scene and variant.factor != OWN_STEPS:
             assert scene(settings=variant.settings).choose(plain) != plain, variant
 
 
