@@ -2,7 +2,17 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import BEST, BOTH, BY_DEFAULT, DEFAULT, MOVING_BASE, Factor, Rule, factor, level
+from engines.factors import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
 
 DETECTORS = ("DART", "FCL", "BULLET", "ODE")

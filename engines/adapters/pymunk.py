@@ -11,7 +11,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
-from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, MOVING_BASE, Factor, Rule, factor, level
+from engines.factors import (
+    BEST,
+    BY_DEFAULT,
+    DEFAULT,
+    LEFT_OUT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting

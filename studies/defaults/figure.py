@@ -47,9 +47,7 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
     across = min(ACROSS, len(sources))
     down = math.ceil(len(sources) / across)
     drawing = Figure(figsize=(2.9 * across + 0.3, 2.7 * down + 1.2), layout="constrained")
-    panels = list(
-        drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat
-    )
+    panels = list(drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat)
     for place, (axes, source) in enumerate(zip(panels, sources, strict=False)):
         _map(axes, rows[rows["source"] == source])
         if place % across == 0:

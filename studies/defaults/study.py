@@ -82,8 +82,8 @@ def grid_jobs(sources: Sequence[str], frame: str, quick: bool) -> list[Job]:
         for pulse in (QUICK_PULSES if quick else PULSES)
         for aspect in (QUICK_ASPECTS if quick else ASPECTS)
         for width_m in WIDTHS_M
-        for onsets in ONSETS[:: every]
-        for ratio in RATIOS[:: every]
+        for onsets in ONSETS[::every]
+        for ratio in RATIOS[::every]
         for source in sources
     ]
 
