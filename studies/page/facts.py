@@ -81,9 +81,10 @@ def missing(published: Path) -> list[str]:
 
 
 def presets(published: Path) -> pd.DataFrame:
-    """Return a line for each preset and engine over the paper's cases."""
-    lines = [preset_table(whole(published / name)) for name in PRESETS_FROM]
-    return pd.concat(lines).drop_duplicates("source", ignore_index=True)
+    """Return a line for each preset and engine over the paper's cases, of what a folder holds."""
+    held = [name for name in PRESETS_FROM if (published / name / "summary.csv").is_file()]
+    lines = pd.concat([preset_table(whole(published / name)) for name in held])
+    return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
 def presets_text(lines: pd.DataFrame) -> str:

@@ -39,10 +39,10 @@ def draw_restitution(rows: pd.DataFrame) -> Figure:
             axes.set_axis_on()
             group = rows[(rows["engine"] == engine) & (rows["way"] == way)]
             names = _panel(axes, group, engine_style(engine, "").colour)
-            axes.set_title(f"{engine}: {way}", fontsize=9)
+            axes.set_title(way, fontsize=9)
             axes.tick_params(labelbottom=True)
         for axes in panels[::ACROSS]:
-            axes.set_ylabel("speed after over before")
+            axes.set_ylabel(f"{engine}\nspeed after over before")
         for axes in panels[-ACROSS:]:
             axes.set_xlabel("coefficient that is wanted")
         beside(panels[-1], names, 8.5)

@@ -123,7 +123,7 @@ def _of_preset(name: str, lines: pd.DataFrame) -> str:
     lost = out_of((lines["cases"] - lines["right"]).sum(), lines["cases"].sum())
     medians = dict.fromkeys([part(lines["median"].min()), part(lines["median"].max())])
     return capital(
-        f"{in_words(name)} {len(lines)} engines get wrong in {lost} cases whether the block falls, "
+        f"{in_words(name)} {len(lines)} engines miss in {lost} cases whether the block falls, "
         f"and its largest rotation by {' to '.join(medians)} in the median, "
         f"{part(lines['max'].max())} at worst."
     )

@@ -46,6 +46,8 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
         _map(axes, table[table["aspect"] == aspect])
         _verdicts(axes, own[own["aspect"] == aspect], sources)
         axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+    for axes in panels[-ACROSS:]:
+        axes.set_xlabel("frequency  ω/p  [–]")
     for axes in panels[::ACROSS]:
         axes.set_ylabel("amplitude  $a_p$ / (g tan α)  [–]")
     drawing.suptitle(
@@ -98,6 +100,8 @@ def draw_friction(beside: pd.DataFrame) -> Figure:
     for axes, aspect in zip(panels, aspects, strict=True):
         _slips(axes, rows[rows["aspect"] == aspect], sources)
         axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+    for axes in panels[-ACROSS:]:
+        axes.set_xlabel("friction / friction needed  [–]")
     for axes in panels[::ACROSS]:
         axes.set_ylabel("slide of the pivot over B  [–]")
     drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
@@ -119,7 +123,7 @@ def _map(axes: Axes, table: pd.DataFrame) -> None:
     axes.contour(
         x, y, overturned.to_numpy(), levels=[0.5], colors="#444444", linewidths=1, linestyles="--"
     )
-    axes.set(xscale="log", yscale="log", xlabel="frequency  ω/p  [–]")
+    axes.set(xscale="log", yscale="log")
     axes.xaxis.set_ticks([0.5, 1, 2, 4, 8], ["0.5", "1", "2", "4", "8"])
     axes.yaxis.set_ticks([1.2, 1.6, 2.4, 3.6, 5.4], ["1.2", "1.6", "2.4", "3.6", "5.4"])
     for scale in (axes.xaxis, axes.yaxis):
@@ -153,7 +157,7 @@ def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
             **style_of(source).points(4.5),
         )
     axes.axvline(1.0, color="#999999", linewidth=1.0)
-    axes.set(yscale="log", xlabel="friction / friction needed  [–]")
+    axes.set(yscale="log")
     axes.set_ylim(0.5 * SMALLEST_SLIP, 0.5)
     ticks = 10.0 ** np.arange(round(math.log10(SMALLEST_SLIP)), -2, 2)
     axes.yaxis.set_ticks([*ticks, 0.2], [f"$10^{{{math.log10(t):.0f}}}$" for t in ticks] + ["away"])
