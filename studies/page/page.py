@@ -23,7 +23,6 @@ from studies.page.engine_cases import engine_cases
 from studies.page.facts import presets
 from studies.sweep.claims import verdict
 
-
 GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""
 
