@@ -9,7 +9,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from studies.defaults.claims import CLOSE, FAILED, FALSE, MISSED, OFF, RIGHT
+from studies.defaults.claims import CLOSE, FAILED, FALSE, INVALID, MISSED, OFF, RIGHT
 from studies.measures.words import part
 
 # the palette of Okabe and Ito, lightened where most of an area is filled
@@ -20,6 +20,7 @@ COLOURS = {
     FALSE: "#D55E00",
     MISSED: "#0072B2",
     FAILED: "#000000",
+    INVALID: "#E6DCF0",
 }
 WORDS = {
     RIGHT[0]: f"survives, peak within {part(CLOSE)}",
@@ -27,7 +28,8 @@ WORDS = {
     OFF: f"survives, peak off by more than {part(CLOSE)}",
     FALSE: "overturns falsely",
     MISSED: "overturning missed",
-    FAILED: "no result",
+    FAILED: "slid or slept: no result",
+    INVALID: "not judged: it should slide or lift off",
 }
 ACROSS = 3
 SHOWN_PULSE, SHOWN_ASPECT = "full-sine", 3.0
@@ -91,7 +93,7 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
         cmap=ListedColormap(list(COLOURS.values())),
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
-    right_part = rows["verdict"].isin(RIGHT).mean()
+    right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
     name = str(rows["source"].iloc[0]).partition(":")[0]
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
 
