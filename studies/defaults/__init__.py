@@ -8,15 +8,15 @@ STUDY = Study(
     help="""Engines as they come, over the plane of pulses: where they are right, and where not.
 
 Half and full sines over frequency and amplitude, H/B of 2, 3 and 4, and two widths, which by
-similarity are one. Writes defaults.csv, shares.csv, small.png, large.png and findings.txt;
+similarity are one. Writes defaults.csv, parts.csv, small.png, large.png and findings.txt;
 resumable. The full study takes some three minutes on two cores, --quick seconds.""",
     table="defaults.csv",
-    products=("defaults.csv", "shares.csv", "small.png", "large.png", "findings.txt"),
+    products=("defaults.csv", "parts.csv", "small.png", "large.png", "findings.txt"),
     chapters=(
         Chapter(
             folder="defaults",
             question="Where on the map of pulses do engines go wrong as they come?",
-            tables=("shares.csv",),
+            tables=("parts.csv",),
             full=("--sources", "exact", "engines:naive"),
             minutes=(0.2, 3.5),
             weaker="One H/B, full sines and fewer pulses.",

@@ -115,7 +115,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     rows = read(folder)
-    write_table(folder / "shares.csv", shares(rows))
+    write_table(folder / "parts.csv", shares(rows))
     text = findings(shares(rows), rows)
     provenance.write_text(folder / "findings.txt", text + "\n")
     save_all(pictures(folder), folder)
@@ -130,12 +130,12 @@ def read(folder: Path) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say what part of the pulses each engine gets right."""
-    return first_claim(pd.read_csv(folder / "shares.csv"))
+    return first_claim(pd.read_csv(folder / "parts.csv"))
 
 
 def paragraph(folder: Path) -> str:
     """Say what each engine gets wrong, and what its defaults make of similarity."""
-    return claims(pd.read_csv(folder / "shares.csv"), read(folder))
+    return claims(pd.read_csv(folder / "parts.csv"), read(folder))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
