@@ -65,6 +65,7 @@ def draw_precision(table: pd.DataFrame) -> Figure:
         axes.set_title(f"{kind} cases")
         axes.set_ylabel("median relative error of the peak  [–]")
     panels[-1].set_xlabel("run time of a case, set-up apart  [s]")
+    drawing.draw_without_rendering()  # names stand where the panels come to lie
     _name_methods(panels, table)
     return drawing
 
