@@ -48,6 +48,14 @@ def errors_of(line: "pd.Series[Any]") -> str:
     return f"{error} ({words})" if words else error
 
 
+def error_words(line: "pd.Series[Any]") -> str:
+    """Return the same for a sentence or a table of few words."""
+    if line["failed"] == line["cases"]:
+        return "no result"
+    broken = int(line["failed"]) + int(line["wrong"])
+    return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
+
+
 def first_claim(lines: pd.DataFrame) -> str:
     """Say which setting, left at its default, leaves the largest error in each engine."""
     words = []
@@ -153,9 +161,9 @@ def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
     mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
     asked = mine[mine["factor"].isin(["", LEFT_OUT])]
     found = {line["level"] if line["factor"] else "": line for _, line in asked.iterrows()}
-    words = {name.upper(): errors_of(line) for name, line in found.items()}
+    words = {name.upper(): error_words(line) for name, line in found.items()}
     equal = variant_of(lines, engine, BEST)
-    return words | ({} if equal is None else {"STEPS": errors_of(equal)})
+    return words | ({} if equal is None else {"STEPS": error_words(equal)})
 
 
 def _prices(engine: str, lines: pd.DataFrame) -> list[str]:
@@ -175,7 +183,7 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
         other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
         if plain is not None and other is not None:
             pair = (plain, other) if rule.preset == DEFAULT else (other, plain)
-            found.append((rule, *map(errors_of, pair)))
+            found.append((rule, *map(error_words, pair)))
     return found
 
 
