@@ -183,7 +183,7 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
         other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
         if plain is not None and other is not None:
             pair = (plain, other) if rule.preset == DEFAULT else (other, plain)
-            found.append((rule, *map(error_words, pair)))
+            found.append((rule, error_words(pair[0]), error_words(pair[1])))
     return found
 
 

@@ -92,16 +92,17 @@ def _job(
     pulse: str, aspect: float, width_m: float, onsets: float, ratio: float, source: str, frame: str
 ) -> Job:
     block = RigidBlock(width=width_m, height=aspect * width_m)
+    amplitude_g = float(onsets) * math.tan(block.alpha)
     labels = {
         "pulse": pulse,
         "aspect": aspect,
         "width_m": width_m,
-        "amplitude_g": float(onsets) * math.tan(block.alpha),
+        "amplitude_g": amplitude_g,
         "onsets": float(onsets),
         "omega_over_p": float(ratio),
     }
     motion = SinePulse(
-        amplitude=labels["amplitude_g"] * block.gravity,
+        amplitude=amplitude_g * block.gravity,
         omega=float(ratio) * block.p,
         half_cycles=PULSES[pulse],
     )

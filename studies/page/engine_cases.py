@@ -33,7 +33,7 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
     )
     axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
-    order = pd.MultiIndex.from_product(axes.values(), names=AXES)
+    order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
     found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
     return {**axes, "peaks": found}

@@ -59,7 +59,7 @@ def draw_precision(table: pd.DataFrame) -> Figure:
     """
     drawing = Figure(figsize=(8.8, 12.0), layout="constrained")
     sets = list(table["set"].unique())
-    panels = drawing.subplots(len(sets), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    panels = list(drawing.subplots(len(sets), 1, sharex=True, sharey=True, squeeze=False).flat)
     for axes, kind in zip(panels, sets, strict=True):
         _one_set(axes, table[table["set"] == kind])
         axes.set_title(f"{kind} cases")
