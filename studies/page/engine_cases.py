@@ -7,6 +7,8 @@ from typing import Any
 import pandas as pd
 
 from studies.cases.paper import PULSES
+from studies.defaults.claims import INVALID
+from studies.defaults.study import read
 
 DIGITS = 5
 OVERTURNED = -1.0
@@ -21,13 +23,14 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order; without
-        the study's table no source.
+        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order, without
+        the study's table of no source; judged: of each case 1, or 0 where the block would slide or
+        lift off.
     """
     path = folder / "defaults" / "defaults.csv"
     if not path.is_file():
         return {"peaks": {}}
-    rows = pd.read_csv(path)
+    rows = read(path.parent)
     rows = rows.assign(
         half_cycles=rows["pulse"].map(PULSES),
         peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
@@ -36,7 +39,9 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
     found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
-    return {**axes, "peaks": found}
+    slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
+    judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
+    return {**axes, "peaks": found, "judged": judged.tolist()}
 
 
 def _short(value: float) -> float | None:

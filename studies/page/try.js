@@ -200,7 +200,7 @@ function sayEngines(now) {
   const amplitude = held.onsets[j] / aspect, omega = held.omega_over_p[i] * Math.sqrt((0.75 * G) / R);
   part("case").textContent = `H/B ${aspect}, B ${width} m, ${digits(amplitude)} g, ${digits(omega)} rad/s`;
   const words = peak => (peak === null ? "no result" : peak < 0 ? "overturns" : `${peak.toFixed(4)} θcr`);
-  const off = peak => (peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
+  const off = peak => (!held.judged[place] ? "should slide or lift off" : peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
     : exact < 0 ? "wrong" : `${peak < exact ? "−" : "+"}${digits(100 * Math.abs(peak / exact - 1), 2)} %`);
   part("answers").replaceChildren(...sources.map(source => {
     const line = document.createElement("tr"), peak = held.peaks[source][place];
@@ -221,7 +221,7 @@ function drawCells(pen, now, source, xOf, yOf) {
   for (let n = 0; n < ratios.length * onsets.length; n++) {
     const [peak, exact] = [held.peaks[source][first + n], held.peaks.exact[first + n]];
     const [i, j] = [n % ratios.length, Math.floor(n / ratios.length)];
-    pen.fillStyle = peak === null ? colour("ink") : peak < 0 ? (exact < 0 ? "#B9B9B9" : "#D55E00")
+    pen.fillStyle = !held.judged[first + n] ? colour("line") : peak === null ? colour("ink") : peak < 0 ? (exact < 0 ? "#B9B9B9" : "#D55E00")
       : exact < 0 ? "#0072B2" : Math.abs(peak / exact - 1) > 0.1 ? "#F0E05A" : colour("paper");
     pen.fillRect(xOf(ratios[i]) - w / 2, yOf(onsets[j]) - h / 2, w + 0.6, h + 0.6);
   }
