@@ -10,6 +10,8 @@ from engines.factors import AS_BEST, BEST, BOTH, BY_DEFAULT, DEFAULT, LEFT_OUT, 
 OWN_STEPS = "step"
 """The factor of the defaults' step, which elsewhere is the same for all."""
 OWN_STEP = "the library's own"
+MOVED = f"{OWN_STEP}, the base moving in the world"
+"""The two ways to ask the defaults at it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,8 +44,7 @@ def variants(engine: str) -> Iterator[Variant]:
         if name == DEFAULT:
             own = Variant(engine=engine, preset=name, factor=OWN_STEPS, level=OWN_STEP)
             yield own
-            moving = f"{OWN_STEP}, the base moving in the world"
-            yield replace(own, level=moving, scene={"frame": "world"})
+            yield replace(own, level=MOVED, scene={"frame": "world"})
         for factor_ in declared.factors:
             if set(BOTH) <= presets.keys():
                 yield from _exchanged(engine, name, factor_)

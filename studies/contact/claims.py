@@ -11,6 +11,7 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, Rule
+from studies.cases.variants import MOVED, OWN_STEP, OWN_STEPS
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
@@ -21,6 +22,8 @@ than the second, both relative, makes no difference worth a sentence."""
 
 SHOWN = 4
 """How many settings a sentence names."""
+
+FRAMES = "Defaults at their own step, largest error with a body force and on a base that moves"
 
 FROM = {BEST: "from the tuned preset", DEFAULT: "from the defaults"}
 """Preset -> where one setting at a time is changed."""
@@ -122,9 +125,11 @@ def unnoticed(varied: pd.DataFrame) -> pd.DataFrame:
 
 def findings(lines: pd.DataFrame) -> str:
     """Return the findings in sentences, a line each."""
-    return "\n".join(
+    sentences = [
         sentence for engine in lines["engine"].unique() for sentence in of_engine(lines, engine)
-    )
+    ]
+    sentences += [f"{FRAMES}: {frames(lines)}."] if frames(lines) else []
+    return "\n".join(sentences)
 
 
 def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
@@ -185,6 +190,18 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
             pair = (plain, other) if rule.preset == DEFAULT else (other, plain)
             found.append((rule, error_words(pair[0]), error_words(pair[1])))
     return found
+
+
+def frames(lines: pd.DataFrame) -> str:
+    """Say of each engine what its defaults err by in either frame, at the library's own step."""
+    words = []
+    for engine in lines["engine"].unique():
+        still, moved = (
+            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (OWN_STEP, MOVED)
+        )
+        if still is not None and moved is not None:
+            words.append(f"{engine} {error_words(still)} and {error_words(moved)}")
+    return "; ".join(words)
 
 
 def variant_of(

@@ -10,7 +10,7 @@ from engines import ENGINES
 from engines.declaration import Help
 from engines.registry import OWN
 from studies.catalogue import CHAPTERS
-from studies.contact.claims import prices, rules
+from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
@@ -218,6 +218,11 @@ def rules_of_engines(published: Path) -> str:
         for place, (rule, *errors) in enumerate(rules(lines, name))
     ]
     return table(("engine", "rule", "largest error without", "with it"), rows)
+
+
+def frames_of_engines(published: Path) -> str:
+    """Return what the defaults err by where a body force moves the block, and where the base."""
+    return frames(_variants(published))
 
 
 def _variants(published: Path) -> pd.DataFrame:

@@ -61,6 +61,7 @@ def pages(root: Path) -> dict[Path, str]:
         "hero": facts.hero_lines(published),
         "made": facts.made(published),
         "helps": facts.helps(published),
+        "frames": facts.frames_of_engines(published),
         "rules": facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
         "random_fixed": facts.random_fixed(published),
