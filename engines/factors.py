@@ -13,6 +13,9 @@ AS_BEST, BY_DEFAULT = "as in the best", "default"
 LEFT_OUT = "left out"
 """Name of the factor of what a preset is helped by: without one of them at a time."""
 
+OWN_STEPS, OWN_STEP = "step", "the library's own"
+"""Factor and level of the defaults at their own step, which elsewhere is the same for all."""
+
 BOTH = (BEST, DEFAULT)
 
 Settings = Mapping[str, Any]
@@ -87,14 +90,16 @@ class Rule:
     words : str
         In the library's own words, as an order.
     preset, factor, level : str
-        From the defaults, the variant that follows the rule; from another preset, which follows
-        it, the variant that does not.
+        The variant, as a study of contacts calls it.
+    kept : bool
+        Whether it is the variant that keeps the rule, and the preset that does not.
     """
 
     words: str
     preset: str
     factor: str
     level: str
+    kept: bool = False
 
 
 UNMOVED = "a base without a velocity: friction does not feel it"
@@ -113,3 +118,6 @@ MOVING_BASE = Factor(
     ),
 )
 """The base that moves in the world, or is moved by position alone (setting `base_velocity`)."""
+
+UNMOVED_BASE = (BEST, MOVING_BASE.name, MOVING_BASE.levels[1].name)
+"""What a rule about such a base is shown by."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
-from engines.factors import BEST, BY_DEFAULT, MOVING_BASE, Rule, factor, level
+from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, MOVING_BASE, Rule, factor, level
 from engines.parts.readback import disagreement
 from engines.parts.settings import check, setting
 from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
@@ -266,7 +266,8 @@ ENGINE = Engine(
         Rule(
             "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
             "units, and speed is cut to 2 units a step",
-            *(BEST, "units", BY_DEFAULT),
+            *(DEFAULT, "units", AS_BEST),
+            kept=True,
         ),
         Rule(
             "Lower a floor by that skin, if bodies are to touch it where it is",

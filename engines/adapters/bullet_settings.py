@@ -211,10 +211,15 @@ RULES = (
     Rule(
         "Turn drag off, `changeDynamics(linearDamping=0, angularDamping=0)`: it is 0.04",
         *(DEFAULT, "damping", AS_BEST),
+        kept=True,
     ),
     Rule(
         "Give a body made of small shapes its own `localInertiaDiagonal`: it is that of the shapes",
         *(BEST, "inertia", BY_DEFAULT),
+    ),
+    Rule(
+        "Build a box as a box: a convex mesh is held by another algorithm",
+        *(DEFAULT, "geometry", "hull on plane"),
     ),
 )
 """What its users should know first."""

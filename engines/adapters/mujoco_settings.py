@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BEST, BOTH, DEFAULT, MOVING_BASE, Factor, Rule, factor, level
+from engines.factors import BOTH, DEFAULT, MOVING_BASE, UNMOVED_BASE, Factor, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
 
@@ -198,12 +198,13 @@ FACTORS = (
 
 RULES = (
     Rule(
-        "Give contacts a `solref` of their own, that follows the step: it is 0.02 s, and soft",
+        "Give contacts a `solref` that follows the step: it is 0.02 s, and soft",
         *(DEFAULT, "reference", "2 dt 1"),
+        kept=True,
     ),
     Rule(
-        "Tighten `solimp` with it, here to 0.9999: the contact else yields by a tenth of its load",
-        *(BEST, "impedance", "0.9 to 0.95, the default"),
+        "Give a base that is moved its velocity, `surfacevel`: friction does not feel a mocap move",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""

@@ -5,13 +5,20 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
-from engines.factors import AS_BEST, BEST, BOTH, BY_DEFAULT, DEFAULT, LEFT_OUT, Factor
+from engines.factors import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    LEFT_OUT,
+    OWN_STEP,
+    OWN_STEPS,
+    Factor,
+)
 
-OWN_STEPS = "step"
-"""The factor of the defaults' step, which elsewhere is the same for all."""
-OWN_STEP = "the library's own"
 MOVED = f"{OWN_STEP}, the base moving in the world"
-"""The two ways to ask the defaults at it."""
+"""The defaults at their own step once more, in the other frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,8 +10,8 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, Rule
-from studies.cases.variants import MOVED, OWN_STEP, OWN_STEPS
+from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS, Rule
+from studies.cases.variants import MOVED
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
@@ -57,6 +57,12 @@ def error_words(line: "pd.Series[Any]") -> str:
         return "no result"
     broken = int(line["failed"]) + int(line["wrong"])
     return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
+
+
+def both_errors(line: "pd.Series[Any]") -> str:
+    """Return the median and the largest error in few words, and how many cases are wrong."""
+    words = error_words(line)
+    return words if line["failed"] == line["cases"] else f"{part(line['median_error'])}, {words}"
 
 
 def first_claim(lines: pd.DataFrame) -> str:
@@ -142,7 +148,8 @@ def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
     mine = lines[lines["engine"] == engine]
     sentences += _prices(engine, mine)
     sentences += [
-        f"Rule, {engine}. {rule.words}. Largest error without it {without}, with it {with_it}."
+        f"Rule, {engine}. {rule.words}. Error, median and largest, without it {without}; with it "
+        f"{with_it}."
         for rule, without, with_it in rules(lines, engine)
     ]
     for _, line in mine[mine["trap"] != ""].iterrows():
@@ -181,14 +188,14 @@ def _prices(engine: str, lines: pd.DataFrame) -> list[str]:
 
 
 def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
-    """Return an engine's rules, each with the largest error without it and with it."""
+    """Return an engine's rules, each with the errors without it and with it."""
     found = []
     for rule in ENGINES[engine].rules:
         plain = variant_of(lines, engine, rule.preset)
         other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
         if plain is not None and other is not None:
-            pair = (plain, other) if rule.preset == DEFAULT else (other, plain)
-            found.append((rule, error_words(pair[0]), error_words(pair[1])))
+            pair = (plain, other) if rule.kept else (other, plain)
+            found.append((rule, both_errors(pair[0]), both_errors(pair[1])))
     return found
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from analytic.response import Outcome, Response
 from engines import ENGINES, core_engines
 from engines.declaration import Stepping
+from engines.factors import OWN_STEPS
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.cases.variants import OWN_STEPS, Variant, variants
+from studies.cases.variants import Variant, variants
 from studies.contact import STUDY
 from studies.contact.report import headline, paragraph, pictures, report
 from studies.kit.arguments import Place, check_engines, several

@@ -217,7 +217,7 @@ def rules_of_engines(published: Path) -> str:
         for name in OWN
         for place, (rule, *errors) in enumerate(rules(lines, name))
     ]
-    return table(("engine", "rule", "largest error without", "with it"), rows)
+    return table(("engine", "rule", "error without it", "with it"), rows)
 
 
 def frames_of_engines(published: Path) -> str:
