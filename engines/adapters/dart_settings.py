@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from engines.factors import (
     BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
     MOVING_BASE,
     Factor,
@@ -127,16 +126,12 @@ FACTORS = (
 
 RULES = (
     Rule(
-        "Let nothing that touches be locked out of the plane: free the base to slide there",
-        *(BEST, "base in the plane", "no"),
-    ),
-    Rule(
         "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
         *(BEST, "inertia", "of 1 kg m²"),
     ),
     Rule(
-        "Count in a small unit of length: depth is corrected by at most 1e-3 units/s",
-        *(BEST, "unit of length", BY_DEFAULT),
+        "Prefer the library's own collision detector and FCL for boxes: Bullet's sees other contacts",
+        *(DEFAULT, "collision detector", "Bullet"),
     ),
 )
 """What its users should know first."""
