@@ -130,7 +130,7 @@ RULES = (
         *(BEST, "inertia", "of 1 kg m²"),
     ),
     Rule(
-        "Prefer the library's own collision detector and FCL for boxes: Bullet's sees other contacts",
+        "Keep to its own collision detector or FCL: Bullet's sees other contacts",
         *(DEFAULT, "collision detector", "Bullet"),
     ),
 )
