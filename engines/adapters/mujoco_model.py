@@ -105,7 +105,7 @@ def direct_reference(
     The library divides both by the impedance, the first one twice.
     """
     unit = impedance / dt_s
-    return -stiffness * unit**2, -unit * damping
+    return -stiffness * (unit * unit), -unit * damping
 
 
 def stepped_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:

@@ -208,7 +208,7 @@ class LandingSteps:
         # the higher corner's height tells a swing from a block that leans in a soft contact
         reach = 0.5 * self._width * abs(math.sin(pose.theta))
         raised = max(pose.z - self._half_height * math.cos(pose.theta) + reach, 0.0)
-        launched = math.sqrt(pose.rate**2 + 2.0 * self._fall * raised / self._width)
+        launched = math.sqrt(pose.rate * pose.rate + 2.0 * self._fall * raised / self._width)
         return 2.0 * launched / self._fall
 
     def _longest(self, pose: Pose | None = None) -> float:
