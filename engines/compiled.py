@@ -4,8 +4,9 @@ There is one source for both uses: where numba is switched off, as by NUMBA_DISA
 functions run as Python.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Self, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +34,9 @@ class State:
         return np.dtype([(name, *_kind(hint)) for name, hint in hints.items()], align=True)
 
     @classmethod
-    def blank(cls) -> NDArray[Any]:
-        """Return an array of one such state, all zeros; numba takes arrays in a moment."""
-        return np.zeros(1, np.dtype((np.record, cls.kind())))
+    def blank(cls) -> Sequence[Self]:
+        """Return an array of one such state, all zeros; a state alone is slow to hand over."""
+        return cast(Sequence[Self], np.zeros(1, np.dtype((np.record, cls.kind()))))
 
 
 def _kind(hint: Any) -> tuple[Any, ...]:

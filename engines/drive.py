@@ -11,7 +11,15 @@ from engines.declaration import Engine, Stepping
 from engines.look import Look
 from engines.registry import find
 from engines.scene import Scene
-from engines.world import UNLIMITED, Driver, Resolution, SelfSteppingWorld, Step, SteppedWorld, World
+from engines.world import (
+    UNLIMITED,
+    Driver,
+    Resolution,
+    SelfSteppingWorld,
+    Step,
+    SteppedWorld,
+    World,
+)
 
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""

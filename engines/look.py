@@ -5,6 +5,7 @@ write: `look` is called once a step for any world, or from within a world's own 
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from analytic.response import Problem, Response
 from engines.compiled import FloatArray, State, kernel
 from engines.declaration import Stepping
 from engines.scene import Scene
-from engines.stepping.ground import Ground, rows_of
+from engines.stepping.ground import rows_of
 from engines.stepping.steps import Pace, begin_pace, next_step
 from engines.stepping.timetable import timetable
 from engines.watching.history import sample
@@ -27,10 +28,10 @@ from engines.watching.observe import (
 from engines.watching.swing import Row
 from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution, Step
 
-Lists = tuple[Ground, FloatArray, FloatArray, FloatArray, FloatArray]
+Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]
 """The ground, the stops, the loads, the rows of a history, and the events."""
 
-GRIPS = tuple(Grip)
+GRIP, GRIPS = Step._fields.index("grip"), tuple(Grip)
 
 
 class Run(State):
@@ -121,8 +122,7 @@ class Look:
         resolution: Resolution = UNLIMITED,
     ) -> None:
         self.runs = Run.blank()
-        self.run: Run = self.runs[0]
-        run = self.run
+        self.run = run = self.runs[0]
         begin_pace(run.pace, scene, dt_s, stepping, moment, resolution)
         begin_watch(run.watch, scene, dt_s, moment, resolution)
         ground = np.array(rows_of(scene.motion.segments().tolist()))
@@ -143,13 +143,13 @@ class Look:
 
     def make_room(self, looks: int) -> None:
         """Make room for what so many looks may write down."""
-        *known, rows, events = self.lists
+        *_, rows, events = self.lists
         watch = self.run.watch
         if self._times is not None:
             rows = roomy(rows, watch.rows, looks)
         # the response completes one more
         events = roomy(events, watch.events, EVENTS_A_LOOK * looks + 1)
-        self.lists = (*known, rows, events)
+        self.lists = (*self.lists[:3], rows, events)
 
     def next(self, pose: Pose) -> Step | None:
         """See the pose after a step; return the next step, or None where the run is over."""
@@ -157,8 +157,9 @@ class Look:
         where = float(x), float(z), float(theta), float(rate)
         if not look(self.runs, self.lists, self._numbers, *where):
             return None
-        *numbers, grip, side = self._numbers.tolist()
-        return Step(*numbers, GRIPS[int(grip)], side)
+        numbers: list[Any] = self._numbers.tolist()
+        numbers[GRIP] = GRIPS[int(numbers[GRIP])]
+        return Step(*numbers)
 
     @property
     def problem(self) -> Problem | None:

@@ -55,7 +55,7 @@ class MujocoWorld:
         if not scene.beginning.at_rest:
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
         self._holds = Hold.blank()
-        self._held: Hold = self._holds[0]
+        self._held = self._holds[0]
         begin_hold(self._held, scene, s, dt_s, self._model.npair)
         self._arrays = tuple(arrays_of(self._model, self._data, self._held))
         self._memory = memory_of(self._model, self._data)

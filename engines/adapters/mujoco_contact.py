@@ -186,7 +186,7 @@ def pose_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> tuple[flo
 
 @kernel
 def prepare_step(
-    holds: Sequence[Hold], arrays: tuple[FloatArray, ...], step: tuple[float, ...]
+    holds: Sequence[Hold], arrays: tuple[FloatArray, ...], step: tuple[Any, ...]
 ) -> None:
     """Set what a step needs, but for its length; for Python."""
     prepare(holds[0], Arrays(*arrays), Step(*step))
@@ -197,7 +197,7 @@ def notice_step(
     holds: Sequence[Hold],
     arrays: tuple[FloatArray, ...],
     forces: tuple[int, int, FloatArray, FloatArray],
-    step: tuple[float, ...],
+    step: tuple[Any, ...],
 ) -> None:
     """Note what a step has done, for the next one; for Python."""
     notice(holds[0], Arrays(*arrays), Forces(*forces), Step(*step))

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import llvmlite.binding
+import numba
 import numpy as np
 from numba import types
 from numpy.typing import NDArray
@@ -22,7 +23,10 @@ from engines.adapters.mujoco_contact import Arrays, Forces, Hold, notice, pose_o
 from engines.compiled import FloatArray, kernel
 from engines.look import Lists, Run, onward, undecided
 
-mj_step = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
+mj_step: Any = types.ExternalFunction(
+    "mj_step",
+    types.void(types.intp, types.intp),  # type: ignore[call-overload]
+)
 
 C_TYPES: Mapping[str, Any] = {
     "int": ctypes.c_int,
@@ -113,14 +117,12 @@ def memory_of(model: Any, data: Any) -> Memory | None:
 @cache
 def reachable() -> bool:
     """Return whether the library's function and memory are where they should be."""
+    compiled: Any = numba.config
     with suppress(Exception):  # whatever is different about another build
-        mj = import_module("mujoco")
-        (library,) = (
-            path for path in Path(mj.__file__).parent.iterdir() if "mujoco." in path.name
-            and path.suffix != ".py"
-        )
+        mj: Any = import_module("mujoco")
+        (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
         llvmlite.binding.load_library_permanently(str(library))
-        if llvmlite.binding.address_of_symbol("mj_step") is None:
+        if compiled.DISABLE_JIT or llvmlite.binding.address_of_symbol("mj_step") is None:
             return False
         model = mj.MjModel.from_xml_string(PROBE)
         data = mj.MjData(model)
@@ -134,7 +136,7 @@ def _agrees(mj: Any, model: Any, data: Any, memory: Memory, dt: float) -> bool:
     memory.timestep[0] = dt
     before = data.time
     mj.mj_step(model, data)
-    forces = forces_in.py_func(memory)
+    forces = forces_in(memory)
     pairs = (
         (model.opt.timestep, dt),
         (data.time, before + dt),
@@ -174,7 +176,8 @@ def _memory(model: Any, data: Any) -> Memory:
 
 def _shared(address: int, count: int, kind: type[np.generic]) -> NDArray[Any]:
     size = count * np.dtype(kind).itemsize
-    return np.frombuffer((ctypes.c_char * size).from_address(address), dtype=kind)
+    memory: Any = (ctypes.c_char * size).from_address(address)
+    return np.frombuffer(memory, dtype=kind)
 
 
 @cache

@@ -1,5 +1,7 @@
 """Steps: how long they are, and what the base does meanwhile."""
 
+from typing import Any
+
 from numba.extending import register_jitable
 
 from engines.compiled import FloatArray, State, fill, kernel
@@ -9,7 +11,7 @@ from engines.stepping import ground as plain
 from engines.stepping.ground import Ground, mean_velocity
 from engines.stepping.landing import Landing, begin_landing, choose
 from engines.stepping.timetable import Times, begin_times, even, pass_to
-from engines.world import Choice, Grip, Moment, Pose, Resolution, Step
+from engines.world import UNLIMITED, Choice, Grip, Moment, Pose, Resolution, Step
 
 for function in (
     plain.one_minus_sinc,
@@ -68,7 +70,7 @@ def begin_pace(
     dt_s: float,
     stepping: Stepping,
     moment: Moment = Moment.MIDDLE,
-    resolution: Resolution = Resolution(),
+    resolution: Resolution = UNLIMITED,
 ) -> None:
     """Prepare for the steps of a scene.
 
@@ -115,7 +117,8 @@ def next_step(
     pace.time, pace.last_dt = end, dt
     pull_x = -base_kick / dt if pace.felt else 0.0
     pull_z = -pace.gravity * kick_s / dt
-    return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, grip.value, side)
+    purpose: Any = grip.value  # in compiled code a name has no number of its own
+    return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
 
 
 @kernel
@@ -125,9 +128,7 @@ def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
 
 
 @kernel
-def chosen(
-    pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool
-) -> Choice:
+def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool) -> Choice:
     """Choose the next step; one that is all equal says neither what it is for nor the corner."""
     if pace.policy == FIXED:
         return Choice(pace.dt, Grip.SWING, 0.0)
