@@ -4,11 +4,12 @@ There is one source for both uses: where numba is switched off, as by NUMBA_DISA
 functions run as Python.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Self, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Self, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from analytic.kernels.compiled import keeper
@@ -17,6 +18,13 @@ FloatArray = NDArray[np.float64]
 
 kernel = keeper(Path(__file__).parent)
 """Compile a function at its first call; see `analytic.kernels.compiled.keeper`."""
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def shared(function: Function) -> Function:
+    """Let kernels call a function, compiled into them; called from Python it remains Python."""
+    return register_jitable(error_model="numpy")(function)
 
 
 class State:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from analytic.response import Problem, Response
-from engines.compiled import FloatArray, State, kernel
+from engines.compiled import FloatArray, State, kernel, shared
 from engines.declaration import Stepping
 from engines.scene import Scene
 from engines.stepping.ground import rows_of
@@ -47,14 +47,14 @@ class Run(State):
     watch: Watch
 
 
-@kernel
+@shared
 def onward(run: Run, lists: Lists, pose: Pose) -> Step:
     """Return the step from where the block has the pose `pose`."""
     ground, stops, loads, _, _ = lists
     return next_step(run.pace, ground, stops, loads, pose, run.watch.lifted)
 
 
-@kernel
+@shared
 def undecided(run: Run, lists: Lists, pose: Pose) -> bool:
     """See the pose at the end of the step; return whether the run goes on."""
     _, _, _, rows, events = lists
@@ -80,7 +80,7 @@ def look(
     return True
 
 
-@kernel
+@shared
 def put_step(numbers: FloatArray, step: Step) -> None:
     """Write a step down, for Python to read."""
     numbers[0], numbers[1], numbers[2] = step.dt_s, step.end_s, step.kick_s

@@ -12,7 +12,7 @@ import numpy as np
 
 from engines.adapters.mujoco_model import direct_reference
 from engines.adapters.mujoco_settings import MujocoSettings
-from engines.compiled import FloatArray, State, fill, kernel
+from engines.compiled import FloatArray, State, fill, kernel, shared
 from engines.parts.reflection import Reflection, begin_reflection, part_of, take_in
 from engines.scene import Scene
 from engines.world import Grip, Pose, Step
@@ -203,7 +203,7 @@ def notice_step(
     notice(holds[0], Arrays(*arrays), Forces(*forces), Step(*step))
 
 
-@kernel
+@shared
 def pose_of(held: Hold, arrays: Arrays) -> Pose:
     """Return the block's pose."""
     q, v = arrays.position, arrays.velocity
@@ -212,7 +212,7 @@ def pose_of(held: Hold, arrays: Arrays) -> Pose:
     return Pose(q[0] - held.moved, q[2], 2.0 * math.atan2(q[5], q[3]), v[4])
 
 
-@kernel
+@shared
 def prepare(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set what a step needs, but for its length."""
     if step.dt_s != held.dt or held.by_step:
@@ -223,7 +223,7 @@ def prepare(held: Hold, arrays: Arrays, step: Step) -> None:
         move_base(held, arrays, step)
 
 
-@kernel
+@shared
 def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set the contact in units of the step."""
     dt = step.dt_s
@@ -245,14 +245,14 @@ def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
         set_reach(held, arrays, step)
 
 
-@kernel
+@shared
 def put_pair(table: FloatArray, first: float, second: float) -> None:
     """Write two numbers into every row."""
     for row in range(len(table)):
         table[row, 0], table[row, 1] = first, second
 
 
-@kernel
+@shared
 def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set from which gap on each contact acts, and preload the one that carries the block."""
     margin, sag = arrays.pair_margin, held.yields * held.ordinary_squared
@@ -279,7 +279,7 @@ def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
             arrays.pair_reference[pivot, 0] = -preload * held.impedance_squared / held.carry
 
 
-@kernel
+@shared
 def hold_at_rest(held: Hold, arrays: Arrays, step: Step) -> None:
     """Hold each corner from the gap [m] on to which what it carries presses it to the base.
 
@@ -297,7 +297,7 @@ def hold_at_rest(held: Hold, arrays: Arrays, step: Step) -> None:
         arrays.pair_margin[corner] = pressed + LEAST_HELD * all_of_it
 
 
-@kernel
+@shared
 def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set the place from which the base sets out, and its surface velocity."""
     before, held.velocity = held.velocity, step.base_velocity
@@ -308,7 +308,7 @@ def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
     arrays.base_place[0, 0] = held.moved
 
 
-@kernel
+@shared
 def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one."""
     held.moved = step.base_x if held.moving else 0.0
@@ -319,7 +319,7 @@ def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
         take_in(held.reflection, step, pose_of(held, arrays).rate)
 
 
-@kernel
+@shared
 def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note by how much [m/s2] the corners yield to their forces."""
     if step.grip == Grip.REST and forces.rows > 0:

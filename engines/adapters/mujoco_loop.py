@@ -20,12 +20,12 @@ from numba import types
 from numpy.typing import NDArray
 
 from engines.adapters.mujoco_contact import Arrays, Forces, Hold, notice, pose_of, prepare
-from engines.compiled import FloatArray, kernel
+from engines.compiled import FloatArray, kernel, shared
 from engines.look import Lists, Run, onward, undecided
 
 mj_step: Any = types.ExternalFunction(
     "mj_step",
-    types.void(types.intp, types.intp),  # type: ignore[call-overload]
+    types.void(types.intp, types.intp),
 )
 
 C_TYPES: Mapping[str, Any] = {
@@ -95,7 +95,7 @@ def drive(
     return most
 
 
-@kernel
+@shared
 def forces_in(memory: Memory) -> Forces:
     """Return what the solver says of the last step."""
     rows = memory.rows[0]

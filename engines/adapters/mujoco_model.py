@@ -3,9 +3,8 @@
 import math
 from xml.etree import ElementTree
 
-from numba.extending import register_jitable
-
 from engines.adapters.mujoco_settings import MujocoSettings
+from engines.compiled import shared
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
 
@@ -99,7 +98,7 @@ def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tup
     return (at.x, 0.0, at.z, *turned), velocity
 
 
-@register_jitable
+@shared
 def direct_reference(
     impedance: float, dt_s: float, stiffness: float, damping: float
 ) -> tuple[float, float]:

@@ -6,7 +6,7 @@ next step with c h/2, or with c h if it was held and not returned before. Throug
 the first step after it, nothing is given back.
 """
 
-from engines.compiled import State, fill, kernel
+from engines.compiled import State, fill, shared
 from engines.scene import Scene
 from engines.world import Grip, Step
 
@@ -75,7 +75,7 @@ def begin_reflection(state: Reflection, scene: Scene, dt_s: float) -> None:
     )
 
 
-@kernel
+@shared
 def part_of(state: Reflection, step: Step) -> float:
     """Return the part of the velocity with which the pivot comes into a step."""
     before, state.last_dt = state.last_dt, step.dt_s
@@ -86,7 +86,7 @@ def part_of(state: Reflection, step: Step) -> float:
     return state.part
 
 
-@kernel
+@shared
 def part_returned(state: Reflection, step: Step, before: float) -> float:
     """Return that part in a swing, after a step of `before` [s]."""
     if state.rate == 0.0:
@@ -101,7 +101,7 @@ def part_returned(state: Reflection, step: Step, before: float) -> float:
     return min(part if state.part != 0.0 else 0.5 * part, MOST_REFLECTION)
 
 
-@kernel
+@shared
 def take_in(state: Reflection, step: Step, rate: float) -> None:
     """Take in the angular velocity [rad/s] after a step."""
     before, state.rate = state.rate, rate

@@ -8,7 +8,7 @@ impact the steps are too short for anything but the contact to act.
 
 import math
 
-from engines.compiled import State, fill, kernel
+from engines.compiled import State, fill, shared
 from engines.scene import Scene
 from engines.stepping.timetable import Times, even
 from engines.world import Choice, Grip, Moment, Pose, Resolution
@@ -154,7 +154,7 @@ def begin_landing(
     )
 
 
-@kernel
+@shared
 def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     """Choose the next step, where the block has the pose `pose`."""
     if to.strikes:
@@ -169,7 +169,7 @@ def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     return choice
 
 
-@kernel
+@shared
 def at_rest(to: Landing, times: Times) -> Choice:
     """Step on through the calm; come slowly where the block may lift.
 
@@ -187,7 +187,7 @@ def at_rest(to: Landing, times: Times) -> Choice:
     return Choice(part * times.calm, Grip.REST, times.load_side)
 
 
-@kernel
+@shared
 def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     """Step on until an impact is near."""
     if to.resting:
@@ -208,7 +208,7 @@ def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     return Choice(even(times.left, longest), Grip.SWING, to.side)
 
 
-@kernel
+@shared
 def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Choice:
     """Leave a part of the way for the next step, or all of it to the shortest steps."""
     if not to.approaching and ahead > longest:
@@ -222,7 +222,7 @@ def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Cho
     return Choice(least, Grip.STRIKE, to.side)
 
 
-@kernel
+@shared
 def stands(to: Landing, ahead: float, pose: Pose) -> bool:
     """Return whether the free corner touches the base as it is: what is left no longer halves.
 
@@ -232,7 +232,7 @@ def stands(to: Landing, ahead: float, pose: Pose) -> bool:
     return touches and (1.0 - REMAINDER) * ahead >= to.last_dt
 
 
-@kernel
+@shared
 def through(to: Landing, times: Times, pose: Pose) -> Choice:
     """Step on in the shortest steps until the impact is over."""
     to.strikes += 1
@@ -248,14 +248,14 @@ def through(to: Landing, times: Times, pose: Pose) -> Choice:
     return Choice(even(times.left, FIRST_PART * longest), Grip.SWING, to.side)
 
 
-@kernel
+@shared
 def settle(to: Landing, times: Times) -> Choice:
     """Leave the block to its contacts."""
     to.resting = True
     return at_rest(to, times)
 
 
-@kernel
+@shared
 def until_impact(to: Landing, pose: Pose) -> float:
     """Return the time [s] until the free corner meets the base, if the acceleration stays."""
     bend = -to.fall
@@ -269,14 +269,14 @@ def until_impact(to: Landing, pose: Pose) -> float:
     return max(2.0 * angle / (math.sqrt(inside) - rate), 0.0)
 
 
-@kernel
+@shared
 def gap(to: Landing, pose: Pose) -> float:
     """Return the height [m] of the free corner above the base."""
     raised = 0.5 * to.side * to.width * math.sin(pose.theta)
     return pose.z - to.half_height * math.cos(pose.theta) + raised
 
 
-@kernel
+@shared
 def swing_s(to: Landing, pose: Pose) -> float:
     """Return the duration [s] of the swing from one impact to the next, were there no load."""
     # the higher corner's height tells a swing from a block that leans in a soft contact
@@ -286,7 +286,7 @@ def swing_s(to: Landing, pose: Pose) -> float:
     return 2.0 * launched / to.fall
 
 
-@kernel
+@shared
 def resolving(to: Landing, times: Times) -> float:
     """Return the longest step [s] that resolves the load."""
     if times.load_s == math.inf:
@@ -294,7 +294,7 @@ def resolving(to: Landing, times: Times) -> float:
     return min(to.dt, max(times.load_s * to.load_part, LEAST_LOAD * to.dt))
 
 
-@kernel
+@shared
 def resolving_swing(to: Landing, pose: Pose, longest: float) -> float:
     """Return the longest step [s], up to `longest`, that resolves a swing between impacts."""
     return min(longest, max(swing_s(to, pose), to.shortest) * to.swing_part)

@@ -2,9 +2,7 @@
 
 from typing import Any
 
-from numba.extending import register_jitable
-
-from engines.compiled import FloatArray, State, fill, kernel
+from engines.compiled import FloatArray, State, fill, shared
 from engines.declaration import Stepping
 from engines.scene import Scene
 from engines.stepping import ground as plain
@@ -20,7 +18,7 @@ for function in (
     plain.segment_at,
     plain.mean_velocity,
 ):
-    register_jitable(function)  # they stay Python, for scripts that have nothing else
+    shared(function)  # they stay Python, for scripts that have nothing else
 
 MIDDLE, END = Moment.MIDDLE.value, Moment.END.value
 
@@ -101,7 +99,7 @@ def begin_pace(
     begin_landing(pace.landing, scene, dt_s, moment, resolution)
 
 
-@kernel
+@shared
 def next_step(
     pace: Pace, ground: Ground, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool
 ) -> Step:
@@ -121,13 +119,13 @@ def next_step(
     return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
 
 
-@kernel
+@shared
 def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
     """Return the base velocity [m/s] to which the block's velocity after a step belongs."""
     return mean_velocity(ground, end, end if pace.part == END else end + dt)
 
 
-@kernel
+@shared
 def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool) -> Choice:
     """Choose the next step; one that is all equal says neither what it is for nor the corner."""
     if pace.policy == FIXED:

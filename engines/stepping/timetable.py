@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.motion import Motion
-from engines.compiled import FloatArray, State, fill, kernel
+from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 
 SAME_TIME = 1e-9
@@ -103,7 +103,7 @@ def begin_times(times: Times, scene: Scene, dt_s: float, resolved_s: float = 0.0
     fill(times, same=same_time(dt_s, resolved_s), motion_end=scene.motion.duration, end=end)
 
 
-@kernel
+@shared
 def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> None:
     """Move on to `time` [s]."""
     reached = time + times.same
@@ -124,7 +124,7 @@ def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> 
     times.lifts_next = begin == min(begin, over)
 
 
-@kernel
+@shared
 def even(left_s: float, longest: float) -> float:
     """Return the longest step [s], up to `longest`, of which a whole number makes up a time."""
     if left_s == math.inf:

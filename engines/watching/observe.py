@@ -8,7 +8,7 @@ import math
 from typing import Annotated
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
-from engines.compiled import FloatArray, State, fill, kernel
+from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.swing import (
     RATE,
@@ -205,7 +205,7 @@ def begin_watch(
     watch.two[1] = Row(0.0, 0.0, theta, rate)
 
 
-@kernel
+@shared
 def see(
     watch: Watch, rows: FloatArray, events: FloatArray, time: float, dt_s: float, pose: Pose
 ) -> None:
@@ -240,7 +240,7 @@ def see(
     decide(watch, row)
 
 
-@kernel
+@shared
 def check(watch: Watch, depth: float) -> None:
     """Look at the lowest corner's height [m] above the base, and at the slide."""
     width = 2.0 * watch.half_width
@@ -253,7 +253,7 @@ def check(watch: Watch, depth: float) -> None:
         watch.problem, watch.far = SLID, watch.slide
 
 
-@kernel
+@shared
 def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
     """Take in a row at which the block is aloft."""
     swing, side = watch.swing, math.copysign(1.0, row.theta)
@@ -273,7 +273,7 @@ def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
     watch.low_since = math.nan
 
 
-@kernel
+@shared
 def low(watch: Watch, events: FloatArray, row: Row) -> None:
     """Take in a row at which the block is not aloft."""
     land(watch, events)
@@ -287,7 +287,7 @@ def low(watch: Watch, events: FloatArray, row: Row) -> None:
         complete(watch, events)
 
 
-@kernel
+@shared
 def land(watch: Watch, events: FloatArray) -> None:
     """End the present swing, if there is one, with an impact."""
     swing = watch.swing
@@ -299,7 +299,7 @@ def land(watch: Watch, events: FloatArray) -> None:
         begin_swing(swing, 0.0, False)
 
 
-@kernel
+@shared
 def complete(watch: Watch, events: FloatArray) -> None:
     """Complete the last impact with the velocity after it, zero if no swing followed."""
     if watch.landed:
@@ -309,7 +309,7 @@ def complete(watch: Watch, events: FloatArray) -> None:
         watch.landed = False
 
 
-@kernel
+@shared
 def note(
     watch: Watch, events: FloatArray, kind: float, time: float, before: float, after: float
 ) -> None:
@@ -320,7 +320,7 @@ def note(
     watch.events += 1
 
 
-@kernel
+@shared
 def turning(watch: Watch) -> None:
     """Note the largest rotation near the last row but one."""
     b, c = watch.two[0], watch.two[1]
@@ -336,7 +336,7 @@ def turning(watch: Watch) -> None:
         watch.crossed = peak > watch.alpha
 
 
-@kernel
+@shared
 def decide(watch: Watch, row: Row) -> None:
     """Say whether the response is decided."""
     size, outward = abs(row.theta), row.theta * row.rate > 0.0

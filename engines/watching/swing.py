@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, NamedTuple
 
-from engines.compiled import FloatArray, State, kernel
+from engines.compiled import FloatArray, State, shared
 
 RESOLVED_ROWS = 3
 """An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""
@@ -65,7 +65,7 @@ class Swing(State):
     dt: float
 
 
-@kernel
+@shared
 def begin_swing(swing: Swing, side: float, from_rest: bool) -> None:
     """Forget the last swing for one on `side`, or for none where that is 0."""
     swing.side, swing.from_rest = side, from_rest
@@ -73,26 +73,26 @@ def begin_swing(swing: Swing, side: float, from_rest: bool) -> None:
     swing.dt = 0.0
 
 
-@kernel
+@shared
 def begun(swing: Swing) -> bool:
     """Return whether the last row is the one that completes what is known of the beginning."""
     return swing.rows == EDGE
 
 
-@kernel
+@shared
 def resolved(swing: Swing) -> bool:
     """Return whether enough rows were seen to speak of an impact at the end."""
     return swing.rows >= RESOLVED_ROWS
 
 
-@kernel
+@shared
 def put(rows: FloatArray, number: int, row: Row) -> None:
     """Write a row."""
     rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
     rows[number, THETA], rows[number, RATE] = row.theta, row.rate
 
 
-@kernel
+@shared
 def add(swing: Swing, row: Row, dt_s: float) -> None:
     """Take in the next row, at the end of a step of `dt_s` [s]."""
     if swing.rows < EDGE:
@@ -108,7 +108,7 @@ def add(swing: Swing, row: Row, dt_s: float) -> None:
     swing.end, swing.end_theta, swing.dt = row.time, row.theta, dt_s
 
 
-@kernel
+@shared
 def landing(swing: Swing) -> tuple[float, float]:
     """Return the time [s] at which the swing meets theta = 0, and the velocity [rad/s] then."""
     # in the shorter steps before an impact, and in the one that leads to them, the contact's
@@ -121,7 +121,7 @@ def landing(swing: Swing) -> tuple[float, float]:
     return time, extrapolated(rows, time)
 
 
-@kernel
+@shared
 def lift_off(swing: Swing, earliest: float) -> float:
     """Return the time [s], no earlier than `earliest`, at which the swing left the rest.
 
@@ -135,7 +135,7 @@ def lift_off(swing: Swing, earliest: float) -> float:
     return max((root * a[RATE_S] - b[RATE_S]) / (root - 1.0), earliest)
 
 
-@kernel
+@shared
 def launch(swing: Swing, time: float) -> float:
     """Return the velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
     rows = min(swing.rows, EDGE)
@@ -143,7 +143,7 @@ def launch(swing: Swing, time: float) -> float:
     return extrapolated(swing.first[min(1, rows - 1) : rows], time)
 
 
-@kernel
+@shared
 def extrapolated(rows: FloatArray, time: float) -> float:
     """Return the angular velocity [rad/s] at `time` [s] by the polynomial through those of rows."""
     total = 0.0
