@@ -24,7 +24,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def shared(function: Function) -> Function:
     """Let kernels call a function, compiled into them; called from Python it remains Python."""
-    return register_jitable(error_model="numpy")(function)
+    return register_jitable(error_model="numpy", no_cfunc_wrapper=True)(function)
 
 
 class State:

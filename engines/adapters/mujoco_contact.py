@@ -246,6 +246,13 @@ def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
+def put(numbers: FloatArray, value: float) -> None:
+    """Write a number into every place."""
+    for i in range(len(numbers)):
+        numbers[i] = value
+
+
+@shared
 def put_pair(table: FloatArray, first: float, second: float) -> None:
     """Write two numbers into every row."""
     for row in range(len(table)):
@@ -257,11 +264,11 @@ def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set from which gap on each contact acts, and preload the one that carries the block."""
     margin, sag = arrays.pair_margin, held.yields * held.ordinary_squared
     if step.grip != Grip.REST:
-        margin[:] = 0.0
-        arrays.resisted[:] = 0.5 * held.yields
+        put(margin, 0.0)
+        put(arrays.resisted, 0.5 * held.yields)
     elif step.side != 0.0:
         # the free corner, about to lift, is still in reach where no weight presses it
-        margin[:] = sag
+        put(margin, sag)
     else:
         hold_at_rest(held, arrays, step)
     if step.side == 0.0:
@@ -269,7 +276,7 @@ def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
     if held.pairs == 1:
         # all corners of a box share one pair, and the free one must not touch early
         lean = 0.5 * held.width * abs(pose_of(held, arrays).theta)
-        margin[:] = max(sag, min(held.carry, lean))
+        put(margin, max(sag, min(held.carry, lean)))
         return
     first = 0 if step.side < 0.0 else held.corners
     for pivot in range(first, first + held.corners):

@@ -12,6 +12,9 @@ from engines.scene import Scene
 SAME_TIME = 1e-9
 """Times closer than this part of the ordinary step are the same."""
 
+WHOLE = 2.0**53
+"""All numbers from here on are whole."""
+
 PULLS = np.array([1.0, -1.0])
 """Signs of the acceleration that lift a block, about its left corner and its right one."""
 
@@ -129,7 +132,8 @@ def even(left_s: float, longest: float) -> float:
     """Return the longest step [s], up to `longest`, of which a whole number makes up a time."""
     if left_s == math.inf:
         return longest
-    return left_s / np.ceil(left_s / longest * (1.0 - SAME_TIME))
+    parts = left_s / longest * (1.0 - SAME_TIME)
+    return left_s / (math.ceil(parts) if parts < WHOLE else parts)
 
 
 def loads_of(motion: Motion, onset: float) -> list[Load]:

@@ -11,21 +11,20 @@ from analytic.response import History, Impact, Outcome, Problem, Reason, Respons
 from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.swing import (
-    RATE,
-    RATE_S,
-    THETA,
     TIME,
     Row,
     Swing,
     add,
     begin_swing,
     begun,
+    copy,
     extrapolated,
     landing,
     launch,
     lift_off,
     put,
     resolved,
+    row_of,
 )
 from engines.world import Moment, Pose, Resolution
 
@@ -234,7 +233,7 @@ def see(
         aloft(watch, events, row, dt_s)
     else:
         low(watch, events, row)
-    watch.two[0, :] = watch.two[1, :]
+    copy(watch.two, 1, 0)
     put(watch.two, 1, row)
     turning(watch)
     decide(watch, row)
@@ -323,14 +322,14 @@ def note(
 @shared
 def turning(watch: Watch) -> None:
     """Note the largest rotation near the last row but one."""
-    b, c = watch.two[0], watch.two[1]
-    side = math.copysign(1.0, b[THETA])
-    peak = abs(c[THETA])
-    if b[RATE] * side > 0.0 >= c[RATE] * side:
-        bend = (b[RATE] - c[RATE]) / (c[RATE_S] - b[RATE_S]) * side
-        rate = extrapolated(watch.two, b[TIME])
-        peak = max(peak, abs(b[THETA]) + 0.5 * rate * rate / bend)
-        watch.turned = b[TIME] >= watch.motion_end and watch.lifted
+    b, c = row_of(watch.two, 0), row_of(watch.two, 1)
+    side = math.copysign(1.0, b.theta)
+    peak = abs(c.theta)
+    if b.rate * side > 0.0 >= c.rate * side:
+        bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
+        rate = extrapolated(watch.two, 0, 2, b.time)
+        peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
+        watch.turned = b.time >= watch.motion_end and watch.lifted
     if peak > watch.peak:
         watch.peak = peak
         watch.crossed = peak > watch.alpha

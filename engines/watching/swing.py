@@ -93,6 +93,19 @@ def put(rows: FloatArray, number: int, row: Row) -> None:
 
 
 @shared
+def row_of(rows: FloatArray, number: int) -> Row:
+    """Read a row."""
+    return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
+
+
+@shared
+def copy(rows: FloatArray, source: int, to: int) -> None:
+    """Write a row again in another place; a slice would compile for much longer."""
+    for column in range(rows.shape[1]):
+        rows[to, column] = rows[source, column]
+
+
+@shared
 def add(swing: Swing, row: Row, dt_s: float) -> None:
     """Take in the next row, at the end of a step of `dt_s` [s]."""
     if swing.rows < EDGE:
@@ -102,7 +115,7 @@ def add(swing: Swing, row: Row, dt_s: float) -> None:
         if swing.kept == EDGE:
             swing.kept -= 1
             for i in range(swing.kept):
-                swing.last[i, :] = swing.last[i + 1, :]
+                copy(swing.last, i + 1, i)
         put(swing.last, swing.kept, row)
         swing.kept += 1
     swing.end, swing.end_theta, swing.dt = row.time, row.theta, dt_s
@@ -113,12 +126,12 @@ def landing(swing: Swing) -> tuple[float, float]:
     """Return the time [s] at which the swing meets theta = 0, and the velocity [rad/s] then."""
     # in the shorter steps before an impact, and in the one that leads to them, the contact's
     # force may come later than the other forces
-    rows = swing.last[: max(swing.kept - 1, 1)]
-    rate = extrapolated(rows, swing.end)
+    count = max(swing.kept - 1, 1)
+    rate = extrapolated(swing.last, 0, count, swing.end)
     if rate * swing.side >= 0.0:
         return swing.end, rate
     time = swing.end - swing.end_theta / rate
-    return time, extrapolated(rows, time)
+    return time, extrapolated(swing.last, 0, count, time)
 
 
 @shared
@@ -128,11 +141,11 @@ def lift_off(swing: Swing, earliest: float) -> float:
     The base's acceleration passes the onset steadily, so that the square root of the angular
     velocity grows in proportion to time.
     """
-    a, b = swing.first[1], swing.first[2]
-    root = math.sqrt(max(b[RATE] / a[RATE], 0.0)) if a[RATE] != 0.0 else 0.0
+    a, b = row_of(swing.first, 1), row_of(swing.first, 2)
+    root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
     if root <= 1.0:
         return earliest
-    return max((root * a[RATE_S] - b[RATE_S]) / (root - 1.0), earliest)
+    return max((root * a.rate_s - b.rate_s) / (root - 1.0), earliest)
 
 
 @shared
@@ -140,16 +153,16 @@ def launch(swing: Swing, time: float) -> float:
     """Return the velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
     rows = min(swing.rows, EDGE)
     # the step to the first row may contain the impact
-    return extrapolated(swing.first[min(1, rows - 1) : rows], time)
+    return extrapolated(swing.first, min(1, rows - 1), rows, time)
 
 
 @shared
-def extrapolated(rows: FloatArray, time: float) -> float:
-    """Return the angular velocity [rad/s] at `time` [s] by the polynomial through those of rows."""
+def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
+    """Return the angular velocity [rad/s] at `time` [s] by the polynomial through some rows."""
     total = 0.0
-    for i in range(len(rows)):
+    for i in range(first, stop):
         weight = 1.0
-        for j in range(len(rows)):
+        for j in range(first, stop):
             if j != i:
                 weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
         total += weight * rows[i, RATE]
