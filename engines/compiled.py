@@ -5,6 +5,7 @@ functions run as Python.
 """
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar, cast, get_args, get_origin, get_type_hints
 
@@ -36,6 +37,7 @@ class State:
     """
 
     @classmethod
+    @cache
     def kind(cls) -> np.dtype[np.void]:
         """Return the names and kinds of the fields."""
         hints = get_type_hints(cls, include_extras=True)

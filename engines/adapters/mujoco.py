@@ -15,6 +15,7 @@ from engines.adapters.mujoco_contact import (
 from engines.adapters.mujoco_drop import BOUNCING
 from engines.adapters.mujoco_loop import drive, memory_of
 from engines.adapters.mujoco_model import OPTIONS, coordinates, model_xml
+from engines.adapters.mujoco_models import given_back, taken
 from engines.adapters.mujoco_script import script
 from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
@@ -48,8 +49,8 @@ class MujocoWorld:
         self._s = s = settings
         self._mj = import_module("mujoco")
         self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
-        self._model = self._mj.MjModel.from_xml_string(model_xml(scene, s))
-        self._data = self._mj.MjData(self._model)
+        self._built = taken(self._mj, model_xml(scene, s))
+        self._model, self._data = self._built.model, self._built.data
         self._option = self._model.opt
         self._fault = self._read_back(scene)
         if not scene.beginning.at_rest:
@@ -92,8 +93,9 @@ class MujocoWorld:
         return disagreement({"time": (self._held.time, self._data.time)})
 
     def close(self) -> None:
-        """Give warnings back to the library."""
+        """Give warnings back to the library, and leave the model to the next run."""
         self._mj.set_mju_user_warning(None)
+        given_back(self._mj, self._built)
 
     def _read_back(self, scene: Scene) -> str:
         s, model = self._s, self._model

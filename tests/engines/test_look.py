@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from collections import OrderedDict
 from dataclasses import asdict
 from types import SimpleNamespace
 
@@ -12,7 +13,7 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, run
-from engines.adapters import mujoco_loop
+from engines.adapters import mujoco_loop, mujoco_models
 from engines.drive import LOOK_AROUND, build
 from engines.look import roomy
 
@@ -115,3 +116,16 @@ def test_a_table_with_room_keeps_its_rows() -> None:
     table = roomy(rows, 2, 5)
     assert len(table) >= 7
     assert (table[:2] == rows).all()
+
+
+def test_a_model_that_was_used_is_as_good_as_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever it was used for before, in whichever order, after a failure, too."""
+    monkeypatch.setattr(mujoco_models, "idle", OrderedDict())
+    fresh = {}
+    for name, options in SCENES.items():
+        mujoco_models.idle.clear()
+        fresh[name] = all_but_times(run("mujoco", scene(pulse(1.3, 3.0, 2), **options)))
+    for name in np.random.default_rng(1).choice(list(SCENES), 40).tolist():
+        again = run("mujoco", scene(pulse(1.3, 3.0, 2), **SCENES[name]))
+        assert all_but_times(again) == fresh[name], name
+    assert 0 < len(mujoco_models.idle) <= mujoco_models.MOST_IDLE
