@@ -57,8 +57,7 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
     if plain.outcome is Outcome.FAILED:
         yield {"engine": engine, "driver": DRIVERS[0], **dict.fromkeys(SHARES, math.nan)}
         return
-    with clocks(engine) as spent:
-        response = run(engine, scene)
+    response, spent = least_clocked(engine, scene, budget_s)
     clock_s = tick()
     per_step = {part: max(total / response.steps - clock_s, 0.0) for part, total in spent.items()}
     own = per_step.get("engine", math.nan)
@@ -73,6 +72,15 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
         unknown = dict.fromkeys(SHARES, math.nan)
         known = {"step_s": at_once.wall_s / at_once.steps, "engine_s": own}
         yield {"engine": engine, "driver": DRIVERS[1], **unknown, **known}
+
+
+def least_clocked(engine: str, scene: Scene, budget_s: float) -> tuple[Response, dict[str, float]]:
+    """Run with clocks around the parts; return the run that was disturbed least, and its sums."""
+    began, found = time.perf_counter(), []
+    while not found or time.perf_counter() - began < budget_s:
+        with clocks(engine) as spent:
+            found.append((run(engine, scene), spent))
+    return min(found, key=lambda pair: pair[0].wall_s)
 
 
 DRIVERS = ("Python", "compiled")
