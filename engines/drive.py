@@ -8,14 +8,12 @@ from typing import cast
 
 from analytic.response import Problem, Reason, Response
 from engines.declaration import Engine, Stepping
+from engines.look import Look
 from engines.registry import find
 from engines.scene import Scene
-from engines.stepping.landing import LandingSteps
-from engines.stepping.steps import FixedSteps, Looks, Policy, Stepper
-from engines.watching.observe import Observer
 from engines.world import (
     UNLIMITED,
-    Moment,
+    Driver,
     Resolution,
     SelfSteppingWorld,
     Step,
@@ -103,31 +101,66 @@ def simulate_world(
     resolution: Resolution = UNLIMITED,
 ) -> Response:
     """Step a built world until its response is decided; dt_s [s] is the ordinary step."""
-    observer = Observer(scene, dt_s, world.moment, resolution)
-    stepper = Stepper(_policy(scene, dt_s, stepping, world.moment, resolution), scene, world.moment)
-    take = _taker(world, stepping)
+    look = Look(scene, dt_s, stepping, world.moment, resolution)
+    go = driven(look, world) if scene.compiled else None
+    go = go or Walk(look, world, stepping).go
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
-    steps, looks, problem = 0, 0, None
-    pose = world.pose()
+    steps, problem = 0, None
     started = time.perf_counter()
-    while not observer.done and not problem:
-        step = stepper.next(pose, observer.lifted)
-        steps += take(step)
-        looks += 1
-        pose = world.pose()
-        observer.see(step.end_s, step.dt_s, pose)
-        problem = observer.broken
-        if looks % LOOK_AROUND == 0 and not problem:
+    while look.goes_on and not problem:
+        look.make_room(LOOK_AROUND)
+        steps += go(min(LOOK_AROUND, scene.max_steps - steps))
+        if look.goes_on:
             late = time.perf_counter() - started > limit
             problem = _fault(world) or (_undecided(f"{limit:g} s") if late else None)
-        if steps >= scene.max_steps and not observer.done:
-            problem = problem or _undecided(f"{steps} steps")
+            if steps >= scene.max_steps:
+                problem = problem or _undecided(f"{steps} steps")
     wall_s = time.perf_counter() - started
-    problem = _fault(world) or problem
+    problem = _fault(world) or look.problem or problem
     if problem:
         reason, message = problem
         return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
-    return observer.response(steps=steps, wall_s=wall_s)
+    return look.response(steps=steps, wall_s=wall_s)
+
+
+def driven(look: Look, world: World) -> Callable[[int], int] | None:
+    """Return how a world takes up to so many steps at once; None where it cannot."""
+    drive: Driver | None = getattr(world, "drive", None)
+    if drive is None:
+        return None
+    look.make_room(0)
+    drive(look.runs, look.lists, 0)  # what is not compiled yet is so before the clock runs
+    return lambda most: drive(look.runs, look.lists, most)
+
+
+class Walk:
+    """Takes the steps of a run one by one, looking after each.
+
+    Parameters
+    ----------
+    look : Look
+        Looks on, and chooses the steps.
+    world : World
+        Takes them, or goes to their ends by itself.
+    stepping : Stepping
+        Which of both.
+    """
+
+    def __init__(self, look: Look, world: World, stepping: Stepping) -> None:
+        self._look, self._world = look, world
+        self._take = _taker(world, stepping)
+        look.make_room(LOOK_AROUND)
+        self._step = look.next(world.pose())
+
+    def go(self, most: int) -> int:
+        """Take up to so many steps while the run goes on; return how many were taken."""
+        taken = 0
+        for _ in range(most):
+            if self._step is None or taken >= most:
+                break
+            taken += self._take(self._step)
+            self._step = self._look.next(self._world.pose())
+        return taken
 
 
 def _fault(world: World) -> Problem | None:
@@ -138,14 +171,6 @@ def _fault(world: World) -> Problem | None:
 
 def _undecided(limit: str) -> Problem:
     return Problem(Reason.UNDECIDED, f"not decided within {limit}")
-
-
-def _policy(
-    scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
-) -> Policy:
-    if stepping is Stepping.LANDING:
-        return LandingSteps(scene, dt_s, moment, resolution)
-    return Looks(scene, dt_s) if stepping is Stepping.OWN else FixedSteps(dt_s)
 
 
 def _taker(world: World, stepping: Stepping) -> Callable[[Step], int]:

@@ -88,6 +88,9 @@ class Scene:
     hints : Hints, optional
         What the steps of the preset "landing" expect; the truth by default. False ones are for
         measuring what the steps lean on.
+    compiled : bool, optional
+        Step from a compiled loop where the engine has one; else each step from Python. Both give
+        the same response to the bit.
 
     Raises
     ------
@@ -111,6 +114,7 @@ class Scene:
     max_steps: int = 5_000_000
     settings: Mapping[str, Any] = field(default_factory=dict)
     hints: Hints = TRUE
+    compiled: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", self._checked_start(self.start))

@@ -1,7 +1,8 @@
 """What a built scene is told and must answer: steps, poses, and the moment of a velocity."""
 
 import enum
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol
 
 
 class Moment(enum.Enum):
@@ -33,13 +34,29 @@ class Resolution(NamedTuple):
 UNLIMITED = Resolution()
 
 
-class Grip(enum.Enum):
+class Grip(enum.IntEnum):
     """What a step is for, by which an adapter may choose how firmly a contact holds."""
 
-    REST = "the block is at rest"
-    SWING = "the block turns about a corner"
-    APPROACH = "one of the shorter steps before an impact"
-    STRIKE = "one of the shortest steps through an impact"
+    REST = 0
+    """The block is at rest."""
+    SWING = 1
+    """The block turns about a corner."""
+    APPROACH = 2
+    """One of the shorter steps before an impact."""
+    STRIKE = 3
+    """One of the shortest steps through an impact."""
+
+
+class Choice(NamedTuple):
+    """How long a step is [s], what it is for, and the corner turned about (0: both hold).
+
+    It never says what the state becomes: the block lifts, strikes its base and comes to rest by the
+    engine's own contact, whatever who chooses expects.
+    """
+
+    dt_s: float
+    grip: Grip
+    side: float
 
 
 class Step(NamedTuple):
@@ -115,6 +132,19 @@ class SteppedWorld(World, Protocol):
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
+
+
+Driver = Callable[[Any, Any, int], int]
+"""``(runs, lists, most) -> taken``: takes up to so many steps of a run, in a compiled loop that
+chooses each and looks on by the functions of `engines.look`, as long as the run goes on."""
+
+
+class DrivenWorld(SteppedWorld, Protocol):
+    """A world that can also take many steps at once."""
+
+    @property
+    def drive(self) -> Driver | None:
+        """What takes them; None where the library is not as it should be for it."""
 
 
 class SelfSteppingWorld(World, Protocol):

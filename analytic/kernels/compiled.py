@@ -1,4 +1,4 @@
-"""One decorator for every compiled kernel of the reference, and where the compiled code is kept."""
+"""One decorator for every compiled kernel of a package, and where the compiled code is kept."""
 
 import hashlib
 import os
@@ -18,34 +18,44 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _numba: Any = numba.config
 
 SOURCES = Path(__file__).parents[__name__.count(".") - 1]
-"""The folder of the package that holds the kernels and all that they call."""
+"""The folder of the package that holds the reference's kernels and all that they call."""
 
 
-def kernel(function: Function) -> Function:
-    """Compile `function` at its first call, keep the result on disk, release the GIL.
+def keeper(sources: Path) -> Callable[[Function], Function]:
+    """Return the decorator of the kernels in a folder, which call no kernel of another one.
+
+    It compiles a function at its first call, keeps the result on disk, and releases the GIL.
 
     No operation is merged with another: whether it is would depend on what the compiler inlines,
     and the last digit on which process compiled.
     """
-    folder = kept_in()
-    compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
-    with _cache_folder(folder):
-        return cast(Function, compile_(function))
+
+    def kernel(function: Function) -> Function:
+        folder = kept_in(sources)
+        compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+        with _cache_folder(folder):
+            return cast(Function, compile_(function))
+
+    return kernel
+
+
+kernel = keeper(SOURCES)
+"""Compile a kernel of the reference at its first call."""
 
 
 @cache
-def kept_in() -> Path | None:
+def kept_in(sources: Path = SOURCES) -> Path | None:
     """Return the folder of the compiled kernels; None where no place can be written."""
-    return folder_for(SOURCES, places())
+    return folder_for(sources, places(sources))
 
 
 def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
     """Return a folder in the first of these places that can be written, for these sources alone.
 
-    It is named by what all modules of the package say: numba sees a change of a kernel's own
-    module, not of a kernel that it calls in another one.
+    It is named by what all modules of the package say, and by how they are compiled: numba sees a
+    change of a kernel's own module, not of a kernel that it calls in another one.
     """
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(Path(__file__).read_bytes())
     for path in sorted(sources.rglob("*.py")):
         digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")
     name = f"kernels-{digest.hexdigest()[:16]}"
@@ -59,11 +69,11 @@ def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
     return None
 
 
-def places() -> Iterator[Path]:
+def places(sources: Path) -> Iterator[Path]:
     """Yield where compiled kernels may be kept: as numba would, then where temporary files are."""
     if _numba.CACHE_DIR:
         yield Path(_numba.CACHE_DIR)
-    yield SOURCES / "__pycache__"
+    yield sources / "__pycache__"
     with suppress(RuntimeError):
         yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking"
     with suppress(OSError):

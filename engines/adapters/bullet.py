@@ -68,9 +68,8 @@ class BulletWorld:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         p, client = self._p, self._client
         if step.dt_s != self._dt or step.grip is not self._grip:
-            p.setTimeStep(step.dt_s, physicsClientId=client)
-            if self._s.by_phase:
-                self._hold(step.grip, step.dt_s)
+            held = self._held(step.grip, step.dt_s) if self._s.by_phase else {}
+            p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **held, physicsClientId=client)
             self._dt, self._grip = step.dt_s, step.grip
         if self._moving:
             self._move_base(step)
@@ -122,16 +121,15 @@ class BulletWorld:
         place, upright = (step.base_x, *self._ground[1:]), (0.0, 0.0, 0.0, 1.0)
         p.resetBasePositionAndOrientation(self._base, place, upright, physicsClientId=client)
 
-    def _hold(self, grip: Grip, dt_s: float) -> None:
+    def _held(self, grip: Grip, dt_s: float) -> dict[str, float]:
         """Correct positions in ordinary steps alone: a short one would make a velocity of them."""
         part = 0.0
         if grip not in (Grip.APPROACH, Grip.STRIKE):
             part = min(1.0, dt_s / self._ordinary) ** 2
-        self._p.setPhysicsEngineParameter(
-            contactERP=part * (self._s.contact_erp or 0.0),
-            frictionERP=part * (self._s.friction_erp or 0.0),
-            physicsClientId=self._client,
-        )
+        return {
+            "contactERP": part * (self._s.contact_erp or 0.0),
+            "frictionERP": part * (self._s.friction_erp or 0.0),
+        }
 
     def _set_engine(self, scene: Scene) -> None:
         # the library announces a solver past Python

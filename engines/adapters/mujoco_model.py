@@ -4,6 +4,7 @@ import math
 from xml.etree import ElementTree
 
 from engines.adapters.mujoco_settings import MujocoSettings
+from engines.compiled import shared
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
 
@@ -97,6 +98,7 @@ def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tup
     return (at.x, 0.0, at.z, *turned), velocity
 
 
+@shared
 def direct_reference(
     impedance: float, dt_s: float, stiffness: float, damping: float
 ) -> tuple[float, float]:
@@ -105,7 +107,7 @@ def direct_reference(
     The library divides both by the impedance, the first one twice.
     """
     unit = impedance / dt_s
-    return -stiffness * unit**2, -unit * damping
+    return -stiffness * (unit * unit), -unit * damping
 
 
 def stepped_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:

@@ -6,6 +6,7 @@ next step with c h/2, or with c h if it was held and not returned before. Throug
 the first step after it, nothing is given back.
 """
 
+from engines.compiled import State, fill, shared
 from engines.scene import Scene
 from engines.world import Grip, Step
 
@@ -38,44 +39,70 @@ def returned(step: Step, before: float) -> float:
     return min(step.dt_s / before, MOST_RETURNED)
 
 
-class Reflection:
+class Reflection(State):
     """Part of a pivot's velocity that is returned with a change of sign, step by step.
 
-    Parameters
+    Attributes
     ----------
-    scene : Scene
-        What is being simulated.
-    dt_s : float
-        Ordinary step [s].
+    growth, steady : float
+        By how much the velocity may grow in a step, and where the block was released.
+    aloft, released : bool
+        Whether the last step was of a swing, and whether every step since a release was.
+    rate, gained : float
+        The last angular velocity [rad/s], and what it gained [rad/s2].
+    last_dt, part : float
+        Of the last step: its length [s], and the part that it returned.
     """
 
-    def __init__(self, scene: Scene, dt_s: float) -> None:
-        self._rate, self._gained = scene.beginning.rate, 0.0
-        self._aloft, self._released = False, bool(scene.side)
-        self._part = self._last_dt = 0.0
-        self._growth = 1.0 + MOST_GROWTH * scene.block.p * dt_s
-        self._steady = 1.0 + RELEASED_GROWTH * scene.block.p * dt_s
+    growth: float
+    steady: float
+    aloft: bool
+    released: bool
+    rate: float
+    gained: float
+    last_dt: float
+    part: float
 
-    def part(self, step: Step) -> float:
-        """Return the part of the velocity with which the pivot comes into a step."""
-        before, self._last_dt = self._last_dt, step.dt_s
-        was_aloft, self._aloft = self._aloft, step.grip in (Grip.SWING, Grip.APPROACH)
-        self._released = self._released and self._aloft
-        self._part = self._returned(step, before) if was_aloft and self._aloft else 0.0
-        return self._part
 
-    def see(self, step: Step, rate: float) -> None:
-        """Take in the angular velocity [rad/s] of a step."""
-        before, self._rate = self._rate, rate
-        self._gained = (rate - before) / step.kick_s
+def begin_reflection(state: Reflection, scene: Scene, dt_s: float) -> None:
+    """Prepare for a scene in ordinary steps of `dt_s` [s]."""
+    fill(
+        state,
+        growth=1.0 + MOST_GROWTH * scene.block.p * dt_s,
+        steady=1.0 + RELEASED_GROWTH * scene.block.p * dt_s,
+        released=bool(scene.side),
+        rate=scene.beginning.rate,
+    )
 
-    def _returned(self, step: Step, before: float) -> float:
-        if not self._rate:
-            return 0.0
-        faster = 1.0 + self._gained * step.kick_s / self._rate
-        growth = faster * faster
-        if self._released and growth > self._steady:
-            # what is returned too soon would stay in it
-            return 0.0
-        part = min(growth, self._steady if self._released else self._growth) * step.dt_s / before
-        return min(part if self._part else 0.5 * part, MOST_REFLECTION)
+
+@shared
+def part_of(state: Reflection, step: Step) -> float:
+    """Return the part of the velocity with which the pivot comes into a step."""
+    before, state.last_dt = state.last_dt, step.dt_s
+    was_aloft = state.aloft
+    state.aloft = step.grip == Grip.SWING or step.grip == Grip.APPROACH
+    state.released = state.released and state.aloft
+    state.part = part_returned(state, step, before) if was_aloft and state.aloft else 0.0
+    return state.part
+
+
+@shared
+def part_returned(state: Reflection, step: Step, before: float) -> float:
+    """Return that part in a swing, after a step of `before` [s]."""
+    if state.rate == 0.0:
+        return 0.0
+    faster = 1.0 + state.gained * step.kick_s / state.rate
+    growth = faster * faster
+    if state.released and growth > state.steady:
+        # what is returned too soon would stay in it
+        return 0.0
+    most = state.steady if state.released else state.growth
+    part = min(growth, most) * step.dt_s / before
+    return min(part if state.part != 0.0 else 0.5 * part, MOST_REFLECTION)
+
+
+@shared
+def take_in(state: Reflection, step: Step, rate: float) -> None:
+    """Take in the angular velocity [rad/s] after a step."""
+    before, state.rate = state.rate, rate
+    state.gained = (rate - before) / step.kick_s

@@ -8,10 +8,10 @@ impact the steps are too short for anything but the contact to act.
 
 import math
 
+from engines.compiled import State, fill, shared
 from engines.scene import Scene
-from engines.stepping.steps import Choice
-from engines.stepping.timetable import NEVER, Timetable
-from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution
+from engines.stepping.timetable import Times, even
+from engines.world import Choice, Grip, Moment, Pose, Resolution
 
 SWING_PART = 8.0
 """A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps, ..."""
@@ -60,164 +60,241 @@ TOUCHING = 1e-9
 """A corner lower above the base than this part of the width touches it."""
 
 
-class LandingSteps:
-    """Steps that end on impacts, on uplifts and on the corners of the base's motion.
+class Landing(State):
+    """What steps that land know of the block, and of what went before.
+
+    Attributes
+    ----------
+    dt, least, shortest : float
+        The ordinary step, the shortest one, and the shortest swing that is followed [s].
+    width, half_height, touching : float
+        Of the block, and the height below which a corner touches the base [m].
+    fall : float
+        What a block that stands on one corner is accelerated by towards the other [rad/s2].
+    swing_part, load_part : float
+        Parts of a swing and of a load that a step may cover.
+    settled : float
+        Change of the angular velocity, by its part, with which an impact is over.
+    part : float
+        Part of a step that has passed at the moment of its velocity.
+    side : float
+        Corner that the block turns about.
+    resting, bouncing, approaching : bool
+        Whether the block is at rest, whether an impact began its swing, and whether the next one
+        is being approached.
+    strikes : int
+        Steps through the present impact, each of strike_s [s].
+    last_dt, last_approach, last_rate : float, bool, float
+        Of the last step: its length [s], whether it was one of an approach, and the angular
+        velocity [rad/s] before it.
+    between : float
+        Time [s] between the moments of the last two velocities.
+    """
+
+    dt: float
+    least: float
+    shortest: float
+    width: float
+    half_height: float
+    touching: float
+    fall: float
+    swing_part: float
+    load_part: float
+    settled: float
+    part: float
+    side: float
+    resting: bool
+    bouncing: bool
+    approaching: bool
+    strikes: int
+    strike_s: float
+    last_dt: float
+    last_approach: bool
+    last_rate: float
+    between: float
+
+
+def begin_landing(
+    to: Landing, scene: Scene, dt_s: float, moment: Moment, resolution: Resolution
+) -> None:
+    """Prepare for steps that end on impacts, on uplifts and on the corners of the base's motion.
 
     Parameters
     ----------
+    to : Landing
+        What is filled.
     scene : Scene
         What is being simulated.
     dt_s : float
         Ordinary step [s].
-    moment : Moment, optional
+    moment : Moment
         At which moment of a step the engine's velocity holds.
-    resolution : Resolution, optional
+    resolution : Resolution
         What the engine's numbers tell apart: nothing finer is asked of it.
     """
+    block = scene.block
+    fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
+    # a swing that rises by no more than the engine's numbers tell apart
+    unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * fall))
+    fill(
+        to,
+        dt=dt_s,
+        least=max(NEAR * dt_s, resolution.time_s),
+        shortest=max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen),
+        width=block.width,
+        half_height=0.5 * block.height,
+        touching=max(TOUCHING * block.width, resolution.length_m),
+        fall=fall,
+        swing_part=min(SWING_PART * block.p * dt_s, COARSEST),
+        load_part=min(LOAD_PART * block.p * dt_s, COARSEST),
+        settled=max(SETTLED, resolution.part),
+        part=moment.value,
+        side=scene.side,
+        resting=not scene.side,
+    )
 
-    def __init__(
-        self,
-        scene: Scene,
-        dt_s: float,
-        moment: Moment = Moment.MIDDLE,
-        resolution: Resolution = UNLIMITED,
-    ) -> None:
-        block = scene.block
-        self._dt = dt_s
-        self._width, self._half_height = block.width, 0.5 * block.height
-        # what a block that stands on one corner is accelerated by towards the other
-        self._fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
-        self._swing_part = min(SWING_PART * block.p * dt_s, COARSEST)
-        self._load_part = min(LOAD_PART * block.p * dt_s, COARSEST)
-        # a swing that rises by no more than the engine's numbers tell apart
-        unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * self._fall))
-        self._shortest = max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen)
-        self._least = max(NEAR * dt_s, resolution.time_s)
-        self._touching = max(TOUCHING * block.width, resolution.length_m)
-        self._settled = max(SETTLED, resolution.part)
-        self._part = moment.value
-        self._times = Timetable(scene, dt_s, resolution.time_s)
-        self._side = scene.side
-        self._resting, self._bouncing, self._approaching = not scene.side, False, False
-        self._strikes, self._strike_s = 0, 0.0
-        self._last = Choice(0.0, Grip.REST, 0.0)
-        # between the moments of the last two velocities
-        self._last_rate = self._between = 0.0
 
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Choose the step from `time` [s] on, where the block has the pose `pose`."""
-        self._times.pass_to(time)
-        if self._strikes:
-            choice = self._through(pose)
-        elif self._resting and not lifted:
-            choice = self._at_rest()
-        else:
-            choice = self._aloft(pose, lifted)
-        self._between = self._part * choice.dt_s + (1.0 - self._part) * self._last.dt_s
-        self._last, self._last_rate = choice, pose.rate
-        return choice
+@shared
+def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
+    """Choose the next step, where the block has the pose `pose`."""
+    if to.strikes:
+        choice = through(to, times, pose)
+    elif to.resting and not lifted:
+        choice = at_rest(to, times)
+    else:
+        choice = aloft(to, times, pose, lifted)
+    to.between = to.part * choice.dt_s + (1.0 - to.part) * to.last_dt
+    to.last_dt, to.last_approach = choice.dt_s, choice.grip == Grip.APPROACH
+    to.last_rate = pose.rate
+    return choice
 
-    def _at_rest(self) -> Choice:
-        """Step on through the calm; come slowly where the block may lift.
 
-        Equal steps, whatever corners the base's motion has meanwhile: a change of step would let
-        go of a corner that carries little, near the onset.
-        """
-        times = self._times
-        if times.loaded:
-            self._side = times.load.side
-            return Choice(times.even(self._longest()), Grip.REST, self._side)
-        self._side = 0.0
-        if not times.lifts_next or times.calm > self._dt:
-            return Choice(times.even_in_calm(self._dt), Grip.REST, 0.0)
-        # a short last step, or the first one aloft would feel forces of the time before
-        part = 1.0 if times.calm <= UPLIFT_NEAR * self._dt else 1.0 - REMAINDER
-        return Choice(part * times.calm, Grip.REST, times.load.side)
+@shared
+def at_rest(to: Landing, times: Times) -> Choice:
+    """Step on through the calm; come slowly where the block may lift.
 
-    def _aloft(self, pose: Pose, lifted: bool) -> Choice:
-        """Step on until an impact is near."""
-        if self._resting:
-            self._resting = self._bouncing = False
-        if lifted and not self._approaching:
-            self._side = math.copysign(1.0, pose.theta)
-        if self._bouncing and not lifted and self._swing_s(pose) < self._shortest:
-            return self._settle()
-        longest = self._longest(pose) if self._between else FIRST_PART * self._longest(pose)
-        ahead = self._until_impact(pose)
-        self._approaching = self._approaching and ahead < math.inf
-        if self._approaching or ahead < min(2.0 * longest, self._times.left):
-            return self._towards_impact(ahead, longest, pose)
-        return Choice(self._times.even(longest), Grip.SWING, self._side)
+    Equal steps, whatever corners the base's motion has meanwhile: a change of step would let
+    go of a corner that carries little, near the onset.
+    """
+    if times.loaded:
+        to.side = times.load_side
+        return Choice(even(times.left, resolving(to, times)), Grip.REST, to.side)
+    to.side = 0.0
+    if not times.lifts_next or times.calm > to.dt:
+        return Choice(even(times.calm, to.dt), Grip.REST, 0.0)
+    # a short last step, or the first one aloft would feel forces of the time before
+    part = 1.0 if times.calm <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER
+    return Choice(part * times.calm, Grip.REST, times.load_side)
 
-    def _towards_impact(self, ahead: float, longest: float, pose: Pose) -> Choice:
-        if not self._approaching and ahead > longest:
-            return Choice(0.5 * ahead, Grip.SWING, self._side)
-        self._approaching = True
-        least = max(self._least, abs(pose.rate) / MOST_ACCELERATION)
-        if ahead > least and not self._stands(ahead, pose):
-            return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, self._side)
-        self._approaching = False
-        self._strikes, self._strike_s = 1, least
-        return Choice(least, Grip.STRIKE, self._side)
 
-    def _stands(self, ahead: float, pose: Pose) -> bool:
-        """Whether the free corner touches the base as it is: the way that is left no longer halves.
+@shared
+def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
+    """Step on until an impact is near."""
+    if to.resting:
+        to.resting = to.bouncing = False
+    if lifted and not to.approaching:
+        to.side = math.copysign(1.0, pose.theta)
+    if to.bouncing and not lifted and swing_s(to, pose) < to.shortest:
+        return settle(to, times)
+    longest = resolving(to, times)
+    if to.bouncing:
+        longest = resolving_swing(to, pose, longest)
+    if to.between == 0.0:
+        longest = FIRST_PART * longest
+    ahead = until_impact(to, pose)
+    to.approaching = to.approaching and ahead < math.inf
+    if to.approaching or ahead < min(2.0 * longest, times.left):
+        return towards_impact(to, ahead, longest, pose)
+    return Choice(even(times.left, longest), Grip.SWING, to.side)
 
-        A rounding of its height would otherwise be approached for ever.
-        """
-        touches = self._last.grip is Grip.APPROACH and self._gap(pose) < self._touching
-        return touches and (1.0 - REMAINDER) * ahead >= self._last.dt_s
 
-    def _through(self, pose: Pose) -> Choice:
-        """Step on in the shortest steps until the impact is over."""
-        self._strikes += 1
-        settled = abs(pose.rate - self._last_rate) <= self._settled * abs(pose.rate)
-        over = self._strikes > STRIKES and settled and self._gap(pose) < self._touching
-        if not over and self._strikes <= MOST_STRIKES:
-            return Choice(self._strike_s, Grip.STRIKE, self._side)
-        self._strikes, self._bouncing = 0, True
-        if self._swing_s(pose) < self._shortest:
-            return self._settle()
-        self._side = math.copysign(1.0, pose.rate)
-        return Choice(self._times.even(FIRST_PART * self._longest(pose)), Grip.SWING, self._side)
+@shared
+def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Choice:
+    """Leave a part of the way for the next step, or all of it to the shortest steps."""
+    if not to.approaching and ahead > longest:
+        return Choice(0.5 * ahead, Grip.SWING, to.side)
+    to.approaching = True
+    least = max(to.least, abs(pose.rate) / MOST_ACCELERATION)
+    if ahead > least and not stands(to, ahead, pose):
+        return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, to.side)
+    to.approaching = False
+    to.strikes, to.strike_s = 1, least
+    return Choice(least, Grip.STRIKE, to.side)
 
-    def _settle(self) -> Choice:
-        """Leave the block to its contacts."""
-        self._resting = True
-        return self._at_rest()
 
-    def _until_impact(self, pose: Pose) -> float:
-        """Time [s] until the free corner meets the base, if the acceleration stays as it is."""
-        bend = -self._fall
-        if self._between:
-            bend = (pose.rate - self._last_rate) / self._between * self._side
-        rate = pose.rate * self._side + (1.0 - self._part) * bend * self._last.dt_s
-        angle = self._gap(pose) / self._width
-        inside = rate * rate - 2.0 * bend * angle
-        if rate >= 0.0 or inside < 0.0:
-            return math.inf
-        return max(2.0 * angle / (math.sqrt(inside) - rate), 0.0)
+@shared
+def stands(to: Landing, ahead: float, pose: Pose) -> bool:
+    """Return whether the free corner touches the base as it is: what is left no longer halves.
 
-    def _gap(self, pose: Pose) -> float:
-        """Height [m] of the free corner above the base."""
-        raised = 0.5 * self._side * self._width * math.sin(pose.theta)
-        return pose.z - self._half_height * math.cos(pose.theta) + raised
+    A rounding of its height would otherwise be approached for ever.
+    """
+    touches = to.last_approach and gap(to, pose) < to.touching
+    return touches and (1.0 - REMAINDER) * ahead >= to.last_dt
 
-    def _swing_s(self, pose: Pose) -> float:
-        """Duration [s] of the swing from one impact to the next, were there no load."""
-        # the higher corner's height tells a swing from a block that leans in a soft contact
-        reach = 0.5 * self._width * abs(math.sin(pose.theta))
-        raised = max(pose.z - self._half_height * math.cos(pose.theta) + reach, 0.0)
-        launched = math.sqrt(pose.rate**2 + 2.0 * self._fall * raised / self._width)
-        return 2.0 * launched / self._fall
 
-    def _longest(self, pose: Pose | None = None) -> float:
-        """Longest step [s] that resolves the load, and the swing if it is one between impacts."""
-        load = self._times.load
-        longest = self._dt
-        if load is not NEVER:
-            resolving = (load.end - load.begin) * self._load_part
-            longest = min(longest, max(resolving, LEAST_LOAD * self._dt))
-        if pose is not None and self._bouncing:
-            longest = min(longest, max(self._swing_s(pose), self._shortest) * self._swing_part)
-        return longest
+@shared
+def through(to: Landing, times: Times, pose: Pose) -> Choice:
+    """Step on in the shortest steps until the impact is over."""
+    to.strikes += 1
+    settled = abs(pose.rate - to.last_rate) <= to.settled * abs(pose.rate)
+    over = to.strikes > STRIKES and settled and gap(to, pose) < to.touching
+    if not over and to.strikes <= MOST_STRIKES:
+        return Choice(to.strike_s, Grip.STRIKE, to.side)
+    to.strikes, to.bouncing = 0, True
+    if swing_s(to, pose) < to.shortest:
+        return settle(to, times)
+    to.side = math.copysign(1.0, pose.rate)
+    longest = resolving_swing(to, pose, resolving(to, times))
+    return Choice(even(times.left, FIRST_PART * longest), Grip.SWING, to.side)
+
+
+@shared
+def settle(to: Landing, times: Times) -> Choice:
+    """Leave the block to its contacts."""
+    to.resting = True
+    return at_rest(to, times)
+
+
+@shared
+def until_impact(to: Landing, pose: Pose) -> float:
+    """Return the time [s] until the free corner meets the base, if the acceleration stays."""
+    bend = -to.fall
+    if to.between != 0.0:
+        bend = (pose.rate - to.last_rate) / to.between * to.side
+    rate = pose.rate * to.side + (1.0 - to.part) * bend * to.last_dt
+    angle = gap(to, pose) / to.width
+    inside = rate * rate - 2.0 * bend * angle
+    if rate >= 0.0 or inside < 0.0:
+        return math.inf
+    return max(2.0 * angle / (math.sqrt(inside) - rate), 0.0)
+
+
+@shared
+def gap(to: Landing, pose: Pose) -> float:
+    """Return the height [m] of the free corner above the base."""
+    raised = 0.5 * to.side * to.width * math.sin(pose.theta)
+    return pose.z - to.half_height * math.cos(pose.theta) + raised
+
+
+@shared
+def swing_s(to: Landing, pose: Pose) -> float:
+    """Return the duration [s] of the swing from one impact to the next, were there no load."""
+    # the higher corner's height tells a swing from a block that leans in a soft contact
+    reach = 0.5 * to.width * abs(math.sin(pose.theta))
+    raised = max(pose.z - to.half_height * math.cos(pose.theta) + reach, 0.0)
+    launched = math.sqrt(pose.rate * pose.rate + 2.0 * to.fall * raised / to.width)
+    return 2.0 * launched / to.fall
+
+
+@shared
+def resolving(to: Landing, times: Times) -> float:
+    """Return the longest step [s] that resolves the load."""
+    if times.load_s == math.inf:
+        return to.dt
+    return min(to.dt, max(times.load_s * to.load_part, LEAST_LOAD * to.dt))
+
+
+@shared
+def resolving_swing(to: Landing, pose: Pose, longest: float) -> float:
+    """Return the longest step [s], up to `longest`, that resolves a swing between impacts."""
+    return min(longest, max(swing_s(to, pose), to.shortest) * to.swing_part)

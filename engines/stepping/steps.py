@@ -1,106 +1,136 @@
-"""Steps: what a policy chooses, and what the base does meanwhile.
+"""Steps: how long they are, and what the base does meanwhile."""
 
-A policy chooses how long a step is. It never decides what the state becomes: the block lifts,
-strikes its base and comes to rest by the engine's own contact, whatever the policy expects.
-"""
+from typing import Any
 
-from typing import NamedTuple, Protocol
-
+from engines.compiled import FloatArray, State, fill, shared
+from engines.declaration import Stepping
 from engines.scene import Scene
-from engines.stepping.ground import mean_velocity_of
-from engines.stepping.timetable import Timetable
-from engines.world import Grip, Moment, Pose, Step
+from engines.stepping import ground as plain
+from engines.stepping.ground import Ground, mean_velocity
+from engines.stepping.landing import Landing, begin_landing, choose
+from engines.stepping.timetable import Times, begin_times, even, pass_to
+from engines.world import UNLIMITED, Choice, Grip, Moment, Pose, Resolution, Step
+
+for function in (
+    plain.one_minus_sinc,
+    plain.gained,
+    plain.within,
+    plain.segment_at,
+    plain.mean_velocity,
+):
+    shared(function)  # they stay Python, for scripts that have nothing else
+
+MIDDLE, END = Moment.MIDDLE.value, Moment.END.value
+
+POLICIES = tuple(Stepping)
+FIXED, LANDING = POLICIES.index(Stepping.FIXED), POLICIES.index(Stepping.LANDING)
 
 
-class Choice(NamedTuple):
-    """How long a step is [s], what it is for, and the corner turned about (0: both hold)."""
+class Pace(State):
+    """How a run steps, and where it is.
 
-    dt_s: float
-    grip: Grip
-    side: float
+    Attributes
+    ----------
+    policy : int
+        Which of `POLICIES` chooses.
+    dt : float
+        Ordinary step [s].
+    part : float
+        Part of a step that has passed at the moment of its velocity.
+    gravity : float
+        [m/s2].
+    felt : bool
+        Whether the block carries the body force of the base's acceleration, the base being at rest.
+    time, last_dt : float
+        End and length of the last step [s].
+    velocity, place : float
+        Of the base at the moment of the last velocity [m/s], and at the end of the step [m].
+    times : Times
+    landing : Landing
+    """
+
+    policy: int
+    dt: float
+    part: float
+    gravity: float
+    felt: bool
+    time: float
+    last_dt: float
+    velocity: float
+    place: float
+    times: Times
+    landing: Landing
 
 
-class Policy(Protocol):
-    """Chooses the steps of a run."""
-
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Choose the step from `time` [s] on, where the block has the pose `pose`."""
-
-
-class Stepper:
-    """Makes a policy's choices into steps, with what the base does meanwhile.
+def begin_pace(
+    pace: Pace,
+    scene: Scene,
+    dt_s: float,
+    stepping: Stepping,
+    moment: Moment = Moment.MIDDLE,
+    resolution: Resolution = UNLIMITED,
+) -> None:
+    """Prepare for the steps of a scene.
 
     Parameters
     ----------
-    policy : Policy
-        Chooses the steps.
+    pace : Pace
+        What is filled.
     scene : Scene
         What is being simulated.
+    dt_s : float
+        Ordinary step [s]; where an engine has steps of its own, the longest time between two looks.
+    stepping : Stepping
+        Who chooses the steps.
     moment : Moment, optional
         At which moment of a step the engine's velocity holds.
+    resolution : Resolution, optional
+        What the engine's numbers tell apart.
     """
-
-    def __init__(self, policy: Policy, scene: Scene, moment: Moment = Moment.MIDDLE) -> None:
-        self._policy = policy
-        self._mean_velocity = mean_velocity_of(scene.motion.segments())
-        self._gravity, self._felt = scene.block.gravity, scene.frame == "base"
-        self._moment, self._part = moment, moment.value
-        self._velocity = self._place = self._last_dt = 0.0
-        self.time = 0.0
-
-    def next(self, pose: Pose, lifted: bool) -> Step:
-        """Return the next step and advance `time` [s] to its end."""
-        dt, grip, side = self._policy.choose(self.time, pose, lifted)
-        begin, end = self.time, self.time + dt
-        # from the moment of the last velocity to that of this one
-        kick_s = self._part * dt + (1.0 - self._part) * self._last_dt
-        mean = self._mean_velocity(begin, end)
-        velocity = mean if self._moment is Moment.MIDDLE else self._velocity_at(end, dt)
-        base_kick, self._velocity = velocity - self._velocity, velocity
-        self._place += dt * mean
-        self.time, self._last_dt = end, dt
-        pull_x = -base_kick / dt if self._felt else 0.0
-        pull_z = -self._gravity * kick_s / dt
-        return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, self._place, grip, side)
-
-    def _velocity_at(self, end: float, dt: float) -> float:
-        """Base velocity [m/s] to which the block's velocity after a step belongs."""
-        return self._mean_velocity(end, end if self._moment is Moment.END else end + dt)
+    fill(
+        pace,
+        policy=POLICIES.index(stepping),
+        dt=dt_s,
+        part=moment.value,
+        gravity=scene.block.gravity,
+        felt=scene.frame == "base",
+    )
+    begin_times(pace.times, scene, dt_s, resolution.time_s)
+    begin_landing(pace.landing, scene, dt_s, moment, resolution)
 
 
-class FixedSteps:
-    """Steps that are all equal.
+@shared
+def next_step(
+    pace: Pace, ground: Ground, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool
+) -> Step:
+    """Return the next step, and advance to its end."""
+    dt, grip, side = chosen(pace, stops, loads, pose, lifted)
+    begin, end = pace.time, pace.time + dt
+    # from the moment of the last velocity to that of this one
+    kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
+    mean = mean_velocity(ground, begin, end)
+    velocity = mean if pace.part == MIDDLE else velocity_at(pace, ground, end, dt)
+    base_kick, pace.velocity = velocity - pace.velocity, velocity
+    pace.place += dt * mean
+    pace.time, pace.last_dt = end, dt
+    pull_x = -base_kick / dt if pace.felt else 0.0
+    pull_z = -pace.gravity * kick_s / dt
+    purpose: Any = grip.value  # in compiled code a name has no number of its own
+    return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
 
-    Parameters
-    ----------
-    dt_s : float
-        Step [s].
-    """
 
-    def __init__(self, dt_s: float) -> None:
-        self._choice = Choice(dt_s, Grip.SWING, 0.0)
-
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Return the step."""
-        return self._choice
+@shared
+def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
+    """Return the base velocity [m/s] to which the block's velocity after a step belongs."""
+    return mean_velocity(ground, end, end if pace.part == END else end + dt)
 
 
-class Looks:
-    """Even steps between the corners of the base's motion, for an engine with steps of its own.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is being simulated.
-    dt_s : float
-        Longest time [s] between two looks at the block.
-    """
-
-    def __init__(self, scene: Scene, dt_s: float) -> None:
-        self._dt = dt_s
-        self._times = Timetable(scene, dt_s)
-
-    def choose(self, time: float, pose: Pose, lifted: bool) -> Choice:
-        """Choose the time of the next look."""
-        self._times.pass_to(time)
-        return Choice(self._times.even(self._dt), Grip.SWING, 0.0)
+@shared
+def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool) -> Choice:
+    """Choose the next step; one that is all equal says neither what it is for nor the corner."""
+    if pace.policy == FIXED:
+        return Choice(pace.dt, Grip.SWING, 0.0)
+    pass_to(pace.times, stops, loads, pace.time)
+    if pace.policy == LANDING:
+        return choose(pace.landing, pace.times, pose, lifted)
+    return Choice(even(pace.times.left, pace.dt), Grip.SWING, 0.0)

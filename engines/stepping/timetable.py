@@ -5,11 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.motion import FloatArray, Motion
+from analytic.motion import Motion
+from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 
 SAME_TIME = 1e-9
 """Times closer than this part of the ordinary step are the same."""
+
+WHOLE = 2.0**53
+"""All numbers from here on are whole."""
 
 PULLS = np.array([1.0, -1.0])
 """Signs of the acceleration that lift a block, about its left corner and its right one."""
@@ -32,8 +36,44 @@ class Load(NamedTuple):
 NEVER = Load(math.inf, math.inf, 0.0)
 
 
-class Timetable:
-    """The stops that a step must not pass, and the loads, as time goes by.
+class Times(State):
+    """Where a run stands between the stops that a step must not pass, and the loads.
+
+    Attributes
+    ----------
+    same : float
+        Difference [s] of two times that are the same.
+    motion_end, end : float
+        Of the motion and of the observation [s].
+    stops, loads : int
+        Stops and loads that have passed.
+    left : float
+        Time [s] left until the next stop.
+    calm : float
+        Time [s] left until a block at rest may lift, or the motion or the observation ends.
+    loaded : bool
+        Whether the present load or else the next is present.
+    lifts_next : bool
+        Whether what ends the calm is a load.
+    load_s, load_side : float
+        How long that load lasts [s], inf if there is none, and its side.
+    """
+
+    same: float
+    motion_end: float
+    end: float
+    stops: int
+    loads: int
+    left: float
+    calm: float
+    loaded: bool
+    lifts_next: bool
+    load_s: float
+    load_side: float
+
+
+def timetable(scene: Scene, dt_s: float, resolved_s: float = 0.0) -> tuple[FloatArray, FloatArray]:
+    """Return the stops [s] that a step must not pass, and the loads, a row each.
 
     Parameters
     ----------
@@ -44,69 +84,56 @@ class Timetable:
     resolved_s : float, optional
         Times [s] closer than this are the same to the engine.
     """
-
-    def __init__(self, scene: Scene, dt_s: float, resolved_s: float = 0.0) -> None:
-        block, hints = scene.block, scene.hints
-        self._same = max(SAME_TIME * dt_s, resolved_s)
-        loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
-        if hints.swapped:
-            loads = [load._replace(side=-load.side) for load in loads]
-        ends = () if scene.duration is None else (scene.duration,)
-        stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
-        self._ends: tuple[float, ...] = (scene.motion.duration, *ends, math.inf)
-        self._stops: list[float] = [*sorted(stop for stop in stops if stop > self._same), math.inf]
-        self._loads = [*loads, NEVER]
-        self._stop = self._load = 0
-        self._now = 0.0
-
-    def pass_to(self, time: float) -> None:
-        """Move on to `time` [s]."""
-        self._now = time
-        while self._stops[self._stop] <= time + self._same:
-            self._stop += 1
-        while self._loads[self._load].end <= time + self._same:
-            self._load += 1
-
-    @property
-    def left(self) -> float:
-        """Time [s] left until the next stop."""
-        return self._stops[self._stop] - self._now
-
-    @property
-    def calm(self) -> float:
-        """Time [s] left until a block at rest may lift, or the motion or the observation ends."""
-        return self._calm_end() - self._now
-
-    def _calm_end(self) -> float:
-        end = next(end for end in self._ends if end > self._now + self._same)
-        return min(self.load.begin, end)
-
-    @property
-    def load(self) -> Load:
-        """The present load or else the next."""
-        return self._loads[self._load]
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the load is present."""
-        return self.load.begin <= self._now + self._same
-
-    @property
-    def lifts_next(self) -> bool:
-        """Whether what ends the calm is a load."""
-        return self.load.begin == self._calm_end()
-
-    def even(self, longest: float) -> float:
-        """Longest step [s], up to `longest`, of which a whole number leads to the next stop."""
-        return _even(self.left, longest)
-
-    def even_in_calm(self, longest: float) -> float:
-        """Longest step [s], up to `longest`, of which a whole number makes up the calm."""
-        return _even(self.calm, longest)
+    block, hints = scene.block, scene.hints
+    loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
+    if hints.swapped:
+        loads = [load._replace(side=-load.side) for load in loads]
+    ends = () if scene.duration is None else (scene.duration,)
+    stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
+    same = same_time(dt_s, resolved_s)
+    later = [*sorted(stop for stop in stops if stop > same), math.inf]
+    return np.array(later), np.array([*loads, NEVER])
 
 
-def _even(left: float, longest: float) -> float:
-    return longest if left == math.inf else left / math.ceil(left / longest * (1.0 - SAME_TIME))
+def same_time(dt_s: float, resolved_s: float = 0.0) -> float:
+    """Return the difference [s] of two times that are the same."""
+    return max(SAME_TIME * dt_s, resolved_s)
+
+
+def begin_times(times: Times, scene: Scene, dt_s: float, resolved_s: float = 0.0) -> None:
+    """Stand before the first stop and the first load."""
+    end = math.inf if scene.duration is None else scene.duration
+    fill(times, same=same_time(dt_s, resolved_s), motion_end=scene.motion.duration, end=end)
+
+
+@shared
+def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> None:
+    """Move on to `time` [s]."""
+    reached = time + times.same
+    while stops[times.stops] <= reached:
+        times.stops += 1
+    while loads[times.loads, 1] <= reached:
+        times.loads += 1
+    begin, end, side = loads[times.loads, 0], loads[times.loads, 1], loads[times.loads, 2]
+    times.load_s, times.load_side = end - begin if end < math.inf else math.inf, side
+    over = math.inf
+    if times.motion_end > reached:
+        over = times.motion_end
+    elif times.end > reached:
+        over = times.end
+    times.left = stops[times.stops] - time
+    times.calm = min(begin, over) - time
+    times.loaded = begin <= reached
+    times.lifts_next = begin == min(begin, over)
+
+
+@shared
+def even(left_s: float, longest: float) -> float:
+    """Return the longest step [s], up to `longest`, of which a whole number makes up a time."""
+    if left_s == math.inf:
+        return longest
+    parts = left_s / longest * (1.0 - SAME_TIME)
+    return left_s / (math.ceil(parts) if parts < WHOLE else parts)
 
 
 def loads_of(motion: Motion, onset: float) -> list[Load]:

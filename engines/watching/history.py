@@ -6,16 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.response import History
-from engines.watching.swing import Row
 
 
-def sample(rows: Sequence[Row], times: Sequence[float]) -> History:
-    """Sample a response at those of `times` [s] that it reached.
+def sample(rows: NDArray[np.float64], times: Sequence[float]) -> History:
+    """Sample a response, of which `rows` are all, at those of `times` [s] that it reached.
 
     Over a step, the rotation is a parabola through both ends. Its curvature comes from the step
     before or the step after, whichever gives less, so that it does not reach across an impact.
     """
-    time, rate_s, theta, rate = np.array(rows, dtype=np.float64).T
+    time, rate_s, theta, rate = rows.T
     wanted = np.asarray(times, dtype=np.float64)
     wanted = wanted[wanted <= time[-1]]
     # rows[0] is the start, so that step i leads from row i - 1 to row i

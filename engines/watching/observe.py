@@ -5,12 +5,28 @@ of the steps; what lies between two steps is interpolated.
 """
 
 import math
+from typing import Annotated
 
-from analytic.response import Impact, Outcome, Problem, Reason, Response
+from analytic.response import History, Impact, Outcome, Problem, Reason, Response
+from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
-from engines.watching.history import sample
-from engines.watching.swing import Row, Swing, extrapolated
-from engines.world import UNLIMITED, Moment, Pose, Resolution
+from engines.watching.swing import (
+    TIME,
+    Row,
+    Swing,
+    add,
+    begin_swing,
+    begun,
+    copy,
+    extrapolated,
+    landing,
+    launch,
+    lift_off,
+    put,
+    resolved,
+    row_of,
+)
+from engines.world import Moment, Pose, Resolution
 
 LIFT_WIDTHS = 1e-8
 """A block has lifted when its free corner is higher above the base than this part of its width,
@@ -37,200 +53,333 @@ SINK_WIDTHS = 0.05
 THROWN_WIDTHS = 1.0
 """... and one higher above the base than this has been thrown off."""
 
+LYING = 0.5 * math.pi
+"""Rotation [rad] at which the block lies on its side."""
 
-class Observer:
-    """Watches a block step by step and says what its response was.
+
+NO_PROBLEM, DIVERGED, SANK, THROWN, SLID = range(5)
+"""Why the response is no longer that of a rocking block; see `problem_of`."""
+
+UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
+"""Kinds of events."""
+
+KIND, WHEN, BEFORE, AFTER = range(4)
+"""Columns of events: the kind, the time [s], and velocities [rad/s] before and after an impact."""
+
+EVENTS_A_LOOK = 3
+"""Events that a look adds at most: the impact before, an uplift, and the impact between."""
+
+
+class Watch(State):
+    """What was seen of a block until now.
+
+    Attributes
+    ----------
+    ahead : float
+        Part of a step that its velocity is ahead of its end.
+    half_width, half_height, alpha : float
+        Of the block [m, m, rad].
+    lift, rest_time, rest_rate : float
+        From which height of the free corner on it is aloft [m], for how long it must not be to be
+        at rest [s], and how slowly it may turn then [rad/s].
+    motion_end, end : float
+        End of the motion, and of the observation [s].
+    slides : bool
+        Whether the block is meant to slide.
+    keeps_rows : bool
+        Whether a history is wanted.
+    rows, events : int
+        How many there are.
+    lifted : bool
+        Whether the block is aloft at the last row.
+    resting, rocked, crossed, overturned, turned : bool
+        Whether it is at rest, has left it at some time, has exceeded alpha, has overturned, and has
+        turned back after the motion.
+    peak : float
+        Largest rotation [rad].
+    slide, sink, highest : float
+        Of the pivot [m].
+    give, hop : float
+        How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
+    low_since : float
+        Since when it has not been aloft [s]; nan while it is.
+    last_rest : float
+        When it last came to rest [s].
+    uplift : int
+        Which event is the last uplift.
+    landed : bool
+        Whether a swing ended and the next has not begun, its end at landed_s [s] with the
+        velocity landed_rate [rad/s].
+    swing : Swing
+        The present swing.
+    two : array
+        The last two rows.
+    done : bool
+        Whether the response is decided.
+    problem : int
+        Why it is no longer that of a rocking block, and by how much [m]: far.
+    """
+
+    ahead: float
+    half_width: float
+    half_height: float
+    alpha: float
+    lift: float
+    rest_time: float
+    rest_rate: float
+    motion_end: float
+    end: float
+    slides: bool
+    keeps_rows: bool
+    rows: int
+    events: int
+    lifted: bool
+    resting: bool
+    rocked: bool
+    crossed: bool
+    overturned: bool
+    turned: bool
+    peak: float
+    slide: float
+    sink: float
+    highest: float
+    give: float
+    hop: float
+    low_since: float
+    last_rest: float
+    uplift: int
+    landed: bool
+    landed_s: float
+    landed_rate: float
+    swing: Swing
+    two: Annotated[FloatArray, (2, len(Row._fields))]
+    done: bool
+    problem: int
+    far: float
+
+
+def begin_watch(
+    watch: Watch, scene: Scene, dt_s: float, moment: Moment, resolution: Resolution
+) -> None:
+    """Begin at rest, or in a swing that no uplift began.
 
     Parameters
     ----------
+    watch : Watch
+        What is filled.
     scene : Scene
         What is being simulated.
     dt_s : float
         Ordinary step [s], which bounds what can be resolved.
-    moment : Moment, optional
+    moment : Moment
         At which moment of a step the engine's velocity holds.
-    resolution : Resolution, optional
+    resolution : Resolution
         What the engine's numbers tell apart.
-
-    Attributes
-    ----------
-    lifted : bool
-        Whether the block is aloft at the last row.
-    done : bool
-        Whether the response is decided.
-    broken : Problem or None
-        Why the response is no longer that of a rocking block.
     """
+    block, (theta, rate) = scene.block, scene.start
+    lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
+    lift += LIFT_FALL * block.gravity * dt_s**2
+    aloft, peak = bool(scene.side), abs(theta)
+    fill(
+        watch,
+        ahead=1.0 - moment.value,
+        half_width=0.5 * block.width,
+        half_height=0.5 * block.height,
+        alpha=block.alpha,
+        lift=lift,
+        rest_time=REST_TIME / block.p,
+        rest_rate=REST_RATE * block.p * block.alpha,
+        motion_end=scene.motion.duration,
+        end=math.inf if scene.duration is None else scene.duration,
+        slides=scene.friction == 0.0,
+        keeps_rows=scene.times is not None,
+        resting=not aloft,
+        rocked=aloft,
+        low_since=math.nan if aloft else 0.0,
+        peak=peak,
+        crossed=peak > block.alpha,
+        lifted=block.width * math.sin(peak) > lift,
+    )
+    watch.swing.side = scene.side
+    watch.two[1] = Row(0.0, 0.0, theta, rate)
 
-    def __init__(
-        self,
-        scene: Scene,
-        dt_s: float,
-        moment: Moment = Moment.MIDDLE,
-        resolution: Resolution = UNLIMITED,
-    ) -> None:
-        block, motion = scene.block, scene.motion
-        self._scene = scene
-        self._ahead = 1.0 - moment.value
-        self._half_width, self._half_height = 0.5 * block.width, 0.5 * block.height
-        self._alpha = block.alpha
-        self._lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
-        self._lift += LIFT_FALL * block.gravity * dt_s**2
-        self._rest_time, self._rest_rate = REST_TIME / block.p, REST_RATE * block.p * block.alpha
-        self._motion_end = motion.duration
-        self._end = math.inf if scene.duration is None else scene.duration
-        start = Row(0.0, 0.0, *scene.start)
-        self._rows: list[Row] | None = None if scene.times is None else [start]
-        self._before, self._now = start, start
-        self._landed: tuple[float, float] | None = None
-        self._uplifts: list[float] = []
-        self._rests: list[float] = []
-        self._impacts: list[Impact] = []
-        self._slide = self._sink = self._give = self._hop = self._highest = 0.0
-        self._overturned = self._turned = False
-        self._begin(scene)
-        self.done = False
-        self.broken: Problem | None = None
 
-    def _begin(self, scene: Scene) -> None:
-        """Begin at rest, or in a swing that no uplift began."""
-        theta, _ = scene.start
-        self._resting = not scene.side
-        self._rocked = not self._resting
-        self._swing = None if self._resting else Swing(scene.side, from_rest=False)
-        self._low_since: float = 0.0 if self._resting else math.nan
-        self._peak = abs(theta)
-        self._crossed = self._peak > self._alpha
-        self.lifted = 2.0 * self._half_width * math.sin(self._peak) > self._lift
+@shared
+def see(
+    watch: Watch, rows: FloatArray, events: FloatArray, time: float, dt_s: float, pose: Pose
+) -> None:
+    """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
+    theta = pose.theta
+    if not math.isfinite(pose.x + pose.z + theta + pose.rate):
+        watch.problem = DIVERGED
+        return
+    row = Row(time, time - watch.ahead * dt_s, theta, pose.rate)
+    sine, cosine = math.sin(theta), math.cos(theta)
+    reach = watch.half_width * abs(sine)
+    level = pose.z - watch.half_height * cosine
+    if watch.resting:
+        watch.give = max(watch.give, reach - level)
+    watch.lifted = level + reach > watch.lift + watch.give + 2.0 * watch.hop
+    if watch.lifted:
+        watch.hop = max(watch.hop, level - reach)
+    if abs(theta) <= watch.alpha:
+        inward = math.copysign(watch.half_width * (1.0 - cosine), theta)
+        watch.slide = max(watch.slide, abs(pose.x - watch.half_height * sine - inward))
+    check(watch, level - reach)
+    if watch.keeps_rows:
+        put(rows, watch.rows, row)
+        watch.rows += 1
+    if watch.lifted:
+        aloft(watch, events, row, dt_s)
+    else:
+        low(watch, events, row)
+    copy(watch.two, 1, 0)
+    put(watch.two, 1, row)
+    turning(watch)
+    decide(watch, row)
 
-    def see(self, time: float, dt_s: float, pose: Pose) -> None:
-        """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
-        x, z, theta, rate = pose
-        if not math.isfinite(x + z + theta + rate):
-            self.broken = Problem(Reason.DIVERGED, "the engine's state is not finite")
-            return
-        row = Row(time, time - self._ahead * dt_s, theta, rate)
-        sine, cosine = math.sin(theta), math.cos(theta)
-        reach = self._half_width * abs(sine)
-        level = z - self._half_height * cosine
-        if self._resting:
-            self._give = max(self._give, reach - level)
-        self.lifted = level + reach > self._lift + self._give + 2.0 * self._hop
-        if self.lifted:
-            self._hop = max(self._hop, level - reach)
-        if abs(theta) <= self._alpha:
-            inward = math.copysign(self._half_width * (1.0 - cosine), theta)
-            self._slide = max(self._slide, abs(x - self._half_height * sine - inward))
-        self._check(level - reach)
-        if self._rows is not None:
-            self._rows.append(row)
-        if self.lifted:
-            self._aloft(row, dt_s)
-        else:
-            self._low(row)
-        self._turning(self._before, self._now, row)
-        self._before, self._now = self._now, row
-        self._decide(row)
 
-    def _check(self, depth: float) -> None:
-        """Look at the lowest corner's height [m] above the base, and at the slide."""
-        width = 2.0 * self._half_width
-        self._sink, self._highest = max(self._sink, -depth), max(self._highest, depth)
-        if depth < -SINK_WIDTHS * width:
-            words = f"the pivot sank {-depth:.3g} m into the base"
-            self.broken = Problem(Reason.SANK, words)
-        elif depth > THROWN_WIDTHS * width:
-            words = f"the block was thrown {depth:.3g} m off the base"
-            self.broken = Problem(Reason.THROWN, words)
-        elif self._slide > SLIDE_WIDTHS * width and self._scene.friction != 0.0:
-            words = f"the pivot slid {self._slide:.3g} m along the base"
-            self.broken = Problem(Reason.SLID, words)
+@shared
+def check(watch: Watch, depth: float) -> None:
+    """Look at the lowest corner's height [m] above the base, and at the slide."""
+    width = 2.0 * watch.half_width
+    watch.sink, watch.highest = max(watch.sink, -depth), max(watch.highest, depth)
+    if depth < -SINK_WIDTHS * width:
+        watch.problem, watch.far = SANK, -depth
+    elif depth > THROWN_WIDTHS * width:
+        watch.problem, watch.far = THROWN, depth
+    elif watch.slide > SLIDE_WIDTHS * width and not watch.slides:
+        watch.problem, watch.far = SLID, watch.slide
 
-    def _aloft(self, row: Row, dt_s: float) -> None:
-        side = math.copysign(1.0, row.theta)
-        if self._swing is None or self._swing.side != side:
-            self._land()
-            self._swing = Swing(side, from_rest=self._resting)
-            self._hop = 0.0
-            if self._resting:
-                self._uplifts.append(self._now.time)
-                self._resting, self._rocked = False, True
-        self._swing.add(row, dt_s)
-        if self._swing.begun:
-            self._launch()
-            if self._swing.from_rest:
-                earliest = self._rests[-1] if self._rests else 0.0
-                self._uplifts[-1] = self._swing.lift_off(earliest)
-        self._low_since = math.nan
 
-    def _low(self, row: Row) -> None:
-        self._land()
-        if math.isnan(self._low_since):
-            self._low_since = row.time
-        if self._resting or abs(row.rate) > self._rest_rate:
-            return
-        if row.time - self._low_since >= self._rest_time:
-            self._resting = True
-            self._rests.append(self._low_since)
-            self._launch()
+@shared
+def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
+    """Take in a row at which the block is aloft."""
+    swing, side = watch.swing, math.copysign(1.0, row.theta)
+    if swing.side != side:
+        land(watch, events)
+        begin_swing(swing, side, watch.resting)
+        watch.hop = 0.0
+        if watch.resting:
+            watch.uplift = watch.events
+            note(watch, events, UPLIFT, watch.two[1, TIME], 0.0, 0.0)
+            watch.resting, watch.rocked = False, True
+    add(swing, row, dt_s)
+    if begun(swing):
+        complete(watch, events)
+        if swing.from_rest:
+            events[watch.uplift, WHEN] = lift_off(swing, watch.last_rest)
+    watch.low_since = math.nan
 
-    def _land(self) -> None:
-        """End the present swing, if there is one, with an impact."""
-        if self._swing is not None:
-            self._launch()
-            if self._swing.resolved:
-                self._landed = self._swing.landing()
-            self._swing = None
 
-    def _launch(self) -> None:
-        """Complete the last impact with the velocity after it, zero if no swing followed."""
-        if self._landed is not None:
-            time, velocity = self._landed
-            after = 0.0 if self._swing is None else self._swing.launch(time)
-            self._impacts.append(Impact(time, velocity, after))
-            self._landed = None
+@shared
+def low(watch: Watch, events: FloatArray, row: Row) -> None:
+    """Take in a row at which the block is not aloft."""
+    land(watch, events)
+    if math.isnan(watch.low_since):
+        watch.low_since = row.time
+    if watch.resting or abs(row.rate) > watch.rest_rate:
+        return
+    if row.time - watch.low_since >= watch.rest_time:
+        watch.resting, watch.last_rest = True, watch.low_since
+        note(watch, events, REST, watch.low_since, 0.0, 0.0)
+        complete(watch, events)
 
-    def _turning(self, a: Row, b: Row, c: Row) -> None:
-        """Note the largest rotation near the middle one of three rows."""
-        side = math.copysign(1.0, b.theta)
-        peak = abs(c.theta)
-        if b.rate * side > 0.0 >= c.rate * side:
-            bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
-            rate = extrapolated((b, c), b.time)
-            peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
-            self._turned = b.time >= self._motion_end and self.lifted
-        if peak > self._peak:
-            self._peak = peak
-            self._crossed = peak > self._alpha
 
-    def _decide(self, row: Row) -> None:
-        size, outward = abs(row.theta), row.theta * row.rate > 0.0
-        over = row.time >= self._motion_end
-        self._overturned = size >= 0.5 * math.pi or (over and size > self._alpha and outward)
-        settled = over and self._end == math.inf and (self._turned or self._resting)
-        self.done = self._overturned or settled or row.time >= self._end
+@shared
+def land(watch: Watch, events: FloatArray) -> None:
+    """End the present swing, if there is one, with an impact."""
+    swing = watch.swing
+    if swing.side != 0.0:
+        complete(watch, events)
+        if resolved(swing):
+            watch.landed = True
+            watch.landed_s, watch.landed_rate = landing(swing)
+        begin_swing(swing, 0.0, False)
 
-    def response(self, *, steps: int, wall_s: float) -> Response:
-        """Return what was seen until now."""
-        self._launch()
-        if self._overturned:
-            outcome, ratio = Outcome.OVERTURNED, math.inf
-        elif self._rocked:
-            outcome, ratio = Outcome.ROCKED, self._peak / self._alpha
-        else:
-            outcome, ratio = Outcome.AT_REST, 0.0
-        times = self._scene.times
-        return Response(
-            outcome=outcome,
-            peak_ratio=ratio,
-            crossed=self._crossed or self._overturned,
-            impacts=tuple(self._impacts),
-            uplifts=tuple(self._uplifts),
-            rests=tuple(self._rests),
-            steps=steps,
-            wall_s=wall_s,
-            history=None if times is None or self._rows is None else sample(self._rows, times),
-            slip_m=self._slide,
-            sink_m=self._sink,
-            hop_m=self._highest,
-        )
+
+@shared
+def complete(watch: Watch, events: FloatArray) -> None:
+    """Complete the last impact with the velocity after it, zero if no swing followed."""
+    if watch.landed:
+        time, swing = watch.landed_s, watch.swing
+        after = launch(swing, time) if swing.side != 0.0 else 0.0
+        note(watch, events, IMPACT, time, watch.landed_rate, after)
+        watch.landed = False
+
+
+@shared
+def note(
+    watch: Watch, events: FloatArray, kind: float, time: float, before: float, after: float
+) -> None:
+    """Write an event down."""
+    number = watch.events
+    events[number, KIND], events[number, WHEN] = kind, time
+    events[number, BEFORE], events[number, AFTER] = before, after
+    watch.events += 1
+
+
+@shared
+def turning(watch: Watch) -> None:
+    """Note the largest rotation near the last row but one."""
+    b, c = row_of(watch.two, 0), row_of(watch.two, 1)
+    side = math.copysign(1.0, b.theta)
+    peak = abs(c.theta)
+    if b.rate * side > 0.0 >= c.rate * side:
+        bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
+        rate = extrapolated(watch.two, 0, 2, b.time)
+        peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
+        watch.turned = b.time >= watch.motion_end and watch.lifted
+    if peak > watch.peak:
+        watch.peak = peak
+        watch.crossed = peak > watch.alpha
+
+
+@shared
+def decide(watch: Watch, row: Row) -> None:
+    """Say whether the response is decided."""
+    size, outward = abs(row.theta), row.theta * row.rate > 0.0
+    over = row.time >= watch.motion_end
+    watch.overturned = size >= LYING or (over and size > watch.alpha and outward)
+    settled = over and watch.end == math.inf and (watch.turned or watch.resting)
+    watch.done = watch.overturned or settled or row.time >= watch.end
+
+
+def problem_of(watch: Watch) -> Problem | None:
+    """Return why the response is no longer that of a rocking block."""
+    words = {
+        DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
+        SANK: (Reason.SANK, f"the pivot sank {watch.far:.3g} m into the base"),
+        THROWN: (Reason.THROWN, f"the block was thrown {watch.far:.3g} m off the base"),
+        SLID: (Reason.SLID, f"the pivot slid {watch.far:.3g} m along the base"),
+    }
+    return Problem(*words[int(watch.problem)]) if watch.problem else None
+
+
+def response_of(
+    watch: Watch, events: FloatArray, history: History | None, *, steps: int, wall_s: float
+) -> Response:
+    """Return what was seen until now; `events` has room for one more."""
+    complete(watch, events)
+    if watch.overturned:
+        outcome, ratio = Outcome.OVERTURNED, math.inf
+    elif watch.rocked:
+        outcome, ratio = Outcome.ROCKED, float(watch.peak / watch.alpha)
+    else:
+        outcome, ratio = Outcome.AT_REST, 0.0
+    seen = events[: watch.events]
+    uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
+    return Response(
+        outcome=outcome,
+        peak_ratio=ratio,
+        crossed=bool(watch.crossed or watch.overturned),
+        impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
+        uplifts=tuple(uplifts[:, WHEN].tolist()),
+        rests=tuple(rests[:, WHEN].tolist()),
+        steps=steps,
+        wall_s=wall_s,
+        history=history,
+        slip_m=float(watch.slide),
+        sink_m=float(watch.sink),
+        hop_m=float(watch.highest),
+    )

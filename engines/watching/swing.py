@@ -1,8 +1,9 @@
 """The times and velocities at both ends of a swing, from the steps in between."""
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from engines.compiled import FloatArray, State, shared
 
 RESOLVED_ROWS = 3
 """An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""
@@ -10,9 +11,15 @@ RESOLVED_ROWS = 3
 EDGE_ROWS = 3
 """Ends of steps from which the velocity at either end of a swing is read."""
 
+EDGE = EDGE_ROWS + 1
+"""Rows kept of either end of a swing."""
+
 SHORTENED = 0.7
 """A step shorter than this part of the one before is one of an approach, which halves what is left;
 even steps up to the next corner of the motion differ by less."""
+
+TIME, RATE_S, THETA, RATE = range(4)
+"""Columns of rows: the end of a step [s], the moment of its velocity [s], rotation, velocity."""
 
 
 class Row(NamedTuple):
@@ -28,76 +35,135 @@ class Row(NamedTuple):
     rate: float
 
 
-class Swing:
-    """The rows during which the block is aloft on one side."""
+class Swing(State):
+    """The rows during which the block is aloft on one side.
 
-    __slots__ = ("_dt", "_end", "_first", "_last", "from_rest", "rows", "side")
+    Attributes
+    ----------
+    side : float
+        -1 or 1; 0 where there is no swing.
+    from_rest : bool
+        Whether it began with an uplift.
+    rows : int
+        Rows until now.
+    first, last : array
+        Rows at both ends, without the shorter steps of an approach at the last.
+    kept : int
+        How many there are in `last`.
+    end, end_theta, dt : float
+        Time [s] and rotation [rad] at the last row of all, and the length [s] of its step.
+    """
 
-    def __init__(self, side: float, from_rest: bool) -> None:
-        self.side, self.from_rest = side, from_rest
-        self.rows = 0
-        self._first: list[Row] = []
-        self._last: list[Row] = []
-        self._end = Row(0.0, 0.0, 0.0, 0.0)
-        self._dt = 0.0
-
-    @property
-    def begun(self) -> bool:
-        """Whether the last row is the one that completes what is known of the beginning."""
-        return self.rows == EDGE_ROWS + 1
-
-    @property
-    def resolved(self) -> bool:
-        """Whether enough rows were seen to speak of an impact at the end."""
-        return self.rows >= RESOLVED_ROWS
-
-    def add(self, row: Row, dt_s: float) -> None:
-        """Take in the next row, at the end of a step of `dt_s` [s]."""
-        self.rows += 1
-        if self.rows <= EDGE_ROWS + 1:
-            self._first.append(row)
-        if dt_s > SHORTENED * self._dt:
-            self._last.append(row)
-            if len(self._last) > EDGE_ROWS + 1:
-                del self._last[0]
-        self._end, self._dt = row, dt_s
-
-    def landing(self) -> tuple[float, float]:
-        """Time [s] at which the swing meets theta = 0, and the velocity [rad/s] with which."""
-        # in the shorter steps before an impact, and in the one that leads to them, the contact's
-        # force may come later than the other forces
-        end, rows = self._end, self._last[:-1] or self._last
-        rate = extrapolated(rows, end.time)
-        if rate * self.side >= 0.0:
-            return end.time, rate
-        time = end.time - end.theta / rate
-        return time, extrapolated(rows, time)
-
-    def lift_off(self, earliest: float) -> float:
-        """Time [s], no earlier than `earliest`, at which the swing left the rest.
-
-        The base's acceleration passes the onset steadily, so that the square root of the angular
-        velocity grows in proportion to time.
-        """
-        a, b = self._first[1:3]
-        root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate else 0.0
-        if root <= 1.0:
-            return earliest
-        return max((root * a.rate_s - b.rate_s) / (root - 1.0), earliest)
-
-    def launch(self, time: float) -> float:
-        """Velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
-        # the step to the first row may contain the impact
-        return extrapolated(self._first[1:] or self._first, time)
+    side: float
+    from_rest: bool
+    rows: int
+    first: Annotated[FloatArray, (EDGE, len(Row._fields))]
+    last: Annotated[FloatArray, (EDGE, len(Row._fields))]
+    kept: int
+    end: float
+    end_theta: float
+    dt: float
 
 
-def extrapolated(rows: Sequence[Row], time: float) -> float:
-    """Angular velocity [rad/s] at `time` [s] by the polynomial through those of some steps."""
+@shared
+def begin_swing(swing: Swing, side: float, from_rest: bool) -> None:
+    """Forget the last swing for one on `side`, or for none where that is 0."""
+    swing.side, swing.from_rest = side, from_rest
+    swing.rows = swing.kept = 0
+    swing.dt = 0.0
+
+
+@shared
+def begun(swing: Swing) -> bool:
+    """Return whether the last row is the one that completes what is known of the beginning."""
+    return swing.rows == EDGE
+
+
+@shared
+def resolved(swing: Swing) -> bool:
+    """Return whether enough rows were seen to speak of an impact at the end."""
+    return swing.rows >= RESOLVED_ROWS
+
+
+@shared
+def put(rows: FloatArray, number: int, row: Row) -> None:
+    """Write a row."""
+    rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
+    rows[number, THETA], rows[number, RATE] = row.theta, row.rate
+
+
+@shared
+def row_of(rows: FloatArray, number: int) -> Row:
+    """Read a row."""
+    return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
+
+
+@shared
+def copy(rows: FloatArray, source: int, to: int) -> None:
+    """Write a row again in another place; a slice would compile for much longer."""
+    for column in range(rows.shape[1]):
+        rows[to, column] = rows[source, column]
+
+
+@shared
+def add(swing: Swing, row: Row, dt_s: float) -> None:
+    """Take in the next row, at the end of a step of `dt_s` [s]."""
+    if swing.rows < EDGE:
+        put(swing.first, swing.rows, row)
+    swing.rows += 1
+    if dt_s > SHORTENED * swing.dt:
+        if swing.kept == EDGE:
+            swing.kept -= 1
+            for i in range(swing.kept):
+                copy(swing.last, i + 1, i)
+        put(swing.last, swing.kept, row)
+        swing.kept += 1
+    swing.end, swing.end_theta, swing.dt = row.time, row.theta, dt_s
+
+
+@shared
+def landing(swing: Swing) -> tuple[float, float]:
+    """Return the time [s] at which the swing meets theta = 0, and the velocity [rad/s] then."""
+    # in the shorter steps before an impact, and in the one that leads to them, the contact's
+    # force may come later than the other forces
+    count = max(swing.kept - 1, 1)
+    rate = extrapolated(swing.last, 0, count, swing.end)
+    if rate * swing.side >= 0.0:
+        return swing.end, rate
+    time = swing.end - swing.end_theta / rate
+    return time, extrapolated(swing.last, 0, count, time)
+
+
+@shared
+def lift_off(swing: Swing, earliest: float) -> float:
+    """Return the time [s], no earlier than `earliest`, at which the swing left the rest.
+
+    The base's acceleration passes the onset steadily, so that the square root of the angular
+    velocity grows in proportion to time.
+    """
+    a, b = row_of(swing.first, 1), row_of(swing.first, 2)
+    root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
+    if root <= 1.0:
+        return earliest
+    return max((root * a.rate_s - b.rate_s) / (root - 1.0), earliest)
+
+
+@shared
+def launch(swing: Swing, time: float) -> float:
+    """Return the velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
+    rows = min(swing.rows, EDGE)
+    # the step to the first row may contain the impact
+    return extrapolated(swing.first, min(1, rows - 1), rows, time)
+
+
+@shared
+def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
+    """Return the angular velocity [rad/s] at `time` [s] by the polynomial through some rows."""
     total = 0.0
-    for row in rows:
+    for i in range(first, stop):
         weight = 1.0
-        for other in rows:
-            if other is not row:
-                weight *= (time - other.rate_s) / (row.rate_s - other.rate_s)
-        total += weight * row.rate
+        for j in range(first, stop):
+            if j != i:
+                weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
+        total += weight * rows[i, RATE]
     return total

@@ -218,6 +218,8 @@ METHODS = {
     "engine_s": Column("s", "of a step, the engine's own"),
     "adapter_s": Column("s", "of a step, the adapter around it"),
     "pose_s": Column("s", "of a step, reading the pose"),
+    "driver": Column("-", "who takes one step after the other: Python, or a compiled loop"),
+    "look_s": Column("s", "of a step, seeing the pose and choosing the next step"),
     "policy_s": Column("s", "of a step, choosing the next"),
     "observer_s": Column("s", "of a step, watching"),
     "threads": Column("-", "threads"),

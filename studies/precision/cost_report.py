@@ -45,9 +45,9 @@ def headline(folder: Path) -> str:
     """Say how long a step takes, and how much of that is the engine's own."""
     shares = read(folder, "shares").dropna(subset=["step_s", "engine_s"])
     words = [
-        f"{line['engine']} {1e6 * line['step_s']:.0f} µs "
-        f"(the engine's own step {1e6 * line['engine_s']:.0f} µs)"
-        for _, line in shares.iterrows()
+        f"{line['engine']} {1e6 * line['step_s']:.3g} µs "
+        f"(the engine's own step {1e6 * line['engine_s']:.2g} µs)"
+        for _, line in shares.drop_duplicates("engine", keep="last").iterrows()
     ]
     return f"A step of the stepping loop takes {', '.join(words)}."
 
@@ -58,12 +58,13 @@ def paragraph(folder: Path) -> str:
 
 
 def shares_text(shares: pd.DataFrame) -> str:
-    """Return the parts of a step [µs], and the share that is not the engine's."""
-    parts = shares.set_index("engine").filter(like="_s") * 1e6
-    own = 1.0 - shares["engine_s"] / shares["step_s"]
+    """Return the parts of a step [µs], and the whole over the engine's own part."""
+    parts = shares.filter(like="_s") * 1e6
+    over = shares["step_s"] / shares["engine_s"]
     shown = parts.rename(columns=lambda name: name.removesuffix("_s") + " µs").map("{:.2f}".format)
-    shown["beside the engine"] = own.map("{:.0%}".format)
-    return shown.reset_index().to_string(index=False)
+    shown["over the engine's"] = over.map("{:.2f}".format)
+    named = shares.filter(["engine", "driver"])
+    return named.join(shown).replace("nan", "-").to_string(index=False)
 
 
 def scenes_text(scenes: pd.DataFrame) -> str:

@@ -23,7 +23,6 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import FRAMES, Scene, core_engines, run
 from engines.scene import ACCURACIES
-from engines.world import Step
 
 
 def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
@@ -310,19 +309,13 @@ def test_processes_agree_bit_by_bit(engine: str) -> None:
 
 def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where only the base's position moves, friction feels nothing and the block slides."""
-    from engines.adapters import bullet, mujoco
+    from engines.adapters import bullet
 
-    if engine == "mujoco":
-        still = mujoco.MujocoWorld._move_base
-
-        def no_surface_velocity(self: mujoco.MujocoWorld, step: Step) -> None:
-            still(self, step)
-            self._model.geom_surfacevel[:] = 0.0
-
-        monkeypatch.setattr(mujoco.MujocoWorld, "_move_base", no_surface_velocity)
-    else:
+    if engine == "pybullet":
         monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, step: None)
-    response = run(engine, Scene(block=BLOCK, motion=pulse(1.5, 1.0), frame="world"))
+    settings = {"base_velocity": False}
+    asked = Scene(block=BLOCK, motion=pulse(1.5, 1.0), frame="world", settings=settings)
+    response = run(engine, asked)
     assert response.outcome is not Outcome.ROCKED
     assert response.outcome is not Outcome.OVERTURNED
 

@@ -16,9 +16,10 @@ from engines import ENGINES, Scene, core_engines, installed_engines, run
 from engines.adapters.bullet import BulletWorld
 from engines.adapters.bullet_settings import BulletSettings
 from engines.adapters.mujoco_settings import TUNED, MujocoSettings
+from engines.declaration import Stepping
 from engines.drive import build
 from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
-from engines.stepping.steps import FixedSteps, Stepper
+from engines.look import Look
 from studies.contact.claims import prices, rules
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
@@ -116,7 +117,9 @@ def test_solref_and_margin_reach_the_library():
     settings = of("mujoco", BEST, "reference: 2 dt 1").settings
     asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
     world = build(ENGINES["mujoco"], asked)
-    world.step(Stepper(FixedSteps(dt_s), asked).next(world.pose(), False))
+    look = Look(asked, dt_s, Stepping.FIXED)
+    look.make_room(1)
+    world.step(look.next(world.pose()))
     assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
     assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()

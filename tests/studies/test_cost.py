@@ -40,7 +40,7 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
 
 @pytest.mark.parametrize("engine", core_engines())
 def test_clocks_see_every_part_and_go_away(engine):
-    scene = Scene(block=BLOCK, motion=MOTION)
+    scene = Scene(block=BLOCK, motion=MOTION, compiled=False)
     plain = run(engine, scene)
     with clocks(engine) as spent:
         watched = run(engine, scene)
@@ -55,7 +55,7 @@ def test_clocks_see_every_part_and_go_away(engine):
 @pytest.mark.parametrize("known", [True, False])
 def test_the_parts_of_a_step_add_up(known, monkeypatch):
     """The adapter's part is what is left of its step; the clock's own time is nobody's."""
-    parts = {"step": 6.0, "pose": 1.0, "policy": 2.0, "observer": 3.0}
+    parts = {"step": 6.0, "pose": 1.0, "look": 2.0}
     if known:
         parts["engine"] = 4.0
     steps = run("pybullet", Scene(block=BLOCK, motion=MOTION)).steps
@@ -67,9 +67,15 @@ def test_the_parts_of_a_step_add_up(known, monkeypatch):
     monkeypatch.setattr(shares, "clocks", known_times)
     monkeypatch.setattr(shares, "tick", lambda: 0.5)
     row = share_table(["pybullet"], 0.0).iloc[0]
-    assert row[["pose_s", "policy_s", "observer_s"]].tolist() == pytest.approx([1.0, 2.0, 3.0])
+    assert row[["pose_s", "look_s"]].tolist() == pytest.approx([1.0, 2.0])
     assert row["adapter_s"] == pytest.approx(2.0 if known else 6.0)
     assert math.isnan(row["engine_s"]) != known
+
+
+def test_a_compiled_loop_has_a_row_of_its_own():
+    table = share_table(["mujoco"], 0.0)
+    assert table["driver"].tolist() == ["Python", "compiled"]
+    assert table["engine_s"].nunique() == 1
 
 
 def test_an_engine_that_is_not_here_has_no_shares(monkeypatch):

@@ -1,0 +1,131 @@
+"""One look a step: compiled or not, from Python or from a compiled loop, to the same bit."""
+
+import os
+import subprocess
+import sys
+from collections import OrderedDict
+from dataclasses import asdict
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic.response import Outcome, Response
+from engines import ENGINES, Scene, run
+from engines.adapters import mujoco_loop, mujoco_models
+from engines.drive import LOOK_AROUND, build
+from engines.look import roomy
+
+TIMES = [0.02 * i for i in range(80)]
+SCENES = {
+    "landing": {},
+    "history": {"times": TIMES, "duration": 2.0},
+    "released": {"start": (0.5 * BLOCK.alpha, 0.3), "accuracy": "loose"},
+    "fixed": {"preset": "fixed", "step": 5e-3},
+    "naive": {"preset": "naive"},
+    "moving base": {"frame": "world", "accuracy": "loose"},
+    "box": {"settings": {"geometry": "box"}, "accuracy": "loose"},
+    "free body": {"settings": {"planar": False}, "accuracy": "loose"},
+    "no reflection": {"settings": {"reflection": False}, "accuracy": "loose"},
+    "no margin": {"settings": {"carry": None, "preload": False}, "accuracy": "loose"},
+    "Runge-Kutta": {"settings": {"integrator": "RK4"}, "accuracy": "loose"},
+    "given up": {"max_steps": 300},
+    "slides": {"friction": 0.05},
+}
+
+
+def all_but_times(response: Response) -> str:
+    """Return all fields to the last bit, run times apart."""
+    found = asdict(response)
+    history = found.pop("history")
+    parts = [] if history is None else [array.tolist() for array in history.values()]
+    return repr({**found, "wall_s": 0.0, "setup_s": 0.0}) + repr(parts)
+
+
+@pytest.mark.parametrize("options", SCENES.values(), ids=SCENES)
+def test_a_compiled_loop_answers_as_python_does(options: dict[str, object]) -> None:
+    assert mujoco_loop.reachable()
+    at_once, one_by_one = (
+        run("mujoco", scene(pulse(1.3, 3.0, 2), compiled=compiled, **options))
+        for compiled in (True, False)
+    )
+    assert all_but_times(at_once) == all_but_times(one_by_one)
+
+
+@pytest.mark.parametrize("engine", [name for name in HERE if name in ("pybullet", "mujoco")])
+def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
+    """There is one source: numba switched off, the same functions are Python."""
+    code = (
+        "from test_look import all_but_times\n"
+        "from uses import pulse, scene\n"
+        "from engines import run\n"
+        f"asked = scene(pulse(1.3, 3.0, 2), accuracy='loose', times={TIMES!r})\n"
+        f"print(all_but_times(run({engine!r}, asked)))\n"
+    )
+    places = os.pathsep.join(path for path in sys.path if path)
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONPATH": places, "NUMBA_DISABLE_JIT": switch},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for switch in ("0", "1")
+    ]
+    assert "rocked" in found[0]
+    assert found[0] == found[1]
+
+
+def test_memory_that_is_not_where_it_should_be_is_left_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = scene(pulse(1.3, 3.0, 2), accuracy="loose")
+    compiled = run("mujoco", asked)
+    found = mujoco_loop.layout("mjData")
+
+    moved = SimpleNamespace(**{name: getattr(found, name) for name, *_ in found._fields_})
+    # another build, in which the numbers of contacts and of rows have changed places
+    moved.ncon, moved.nefc = found.nefc, found.ncon
+    elsewhere = {"mjData": moved, "mjOption": mujoco_loop.layout("mjOption")}
+    monkeypatch.setattr(mujoco_loop, "layout", elsewhere.__getitem__)
+    mujoco_loop.reachable.cache_clear()
+    try:
+        assert not mujoco_loop.reachable()
+        world = build(ENGINES["mujoco"], asked)
+        world.close()
+        assert world.drive is None  # type: ignore[attr-defined]
+        assert all_but_times(run("mujoco", asked)) == all_but_times(compiled)
+    finally:
+        mujoco_loop.reachable.cache_clear()
+
+
+def test_a_run_has_room_for_all_that_it_writes_down() -> None:
+    """Rows and events outgrow what there is room for at first."""
+    asked = Scene(block=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
+    response = run("mujoco", asked)
+    assert response.outcome is Outcome.ROCKED
+    assert response.steps > 4 * LOOK_AROUND
+    assert len(response.impacts) > 10
+
+
+def test_a_table_with_room_keeps_its_rows() -> None:
+    rows = np.arange(8.0).reshape(2, 4)
+    assert roomy(rows, 1, 1) is rows
+    table = roomy(rows, 2, 5)
+    assert len(table) >= 7
+    assert (table[:2] == rows).all()
+
+
+def test_a_model_that_was_used_is_as_good_as_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever it was used for before, in whichever order, after a failure, too."""
+    monkeypatch.setattr(mujoco_models, "idle", OrderedDict())
+    fresh = {}
+    for name, options in SCENES.items():
+        mujoco_models.idle.clear()
+        fresh[name] = all_but_times(run("mujoco", scene(pulse(1.3, 3.0, 2), **options)))
+    for name in np.random.default_rng(1).choice(list(SCENES), 40).tolist():
+        again = run("mujoco", scene(pulse(1.3, 3.0, 2), **SCENES[name]))
+        assert all_but_times(again) == fresh[name], name
+    assert 0 < len(mujoco_models.idle) <= mujoco_models.MOST_IDLE
