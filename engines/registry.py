@@ -23,6 +23,7 @@ OWN = {
     "dart": "engines.adapters.dart:ENGINE",
     "rapier": "engines.adapters.rapier:ENGINE",
     "drake": "engines.adapters.drake:ENGINE",
+    "newton": "engines.adapters.newton:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

@@ -1,0 +1,74 @@
+"""What Newton can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass
+
+from engines.factors import BOTH, DEFAULT, Factor, factor, level
+from engines.parts.settings import check, setting
+
+XPBD = "xpbd"
+"""The solver by positions; the other ones are Kamino's, by impulses."""
+
+SOLVERS = (XPBD, "padmm", "dvi")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewtonSettings:
+    """Settings of Newton, by default those of its own example of shapes; None leaves its own.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": four small spheres where the corners at the base are.
+    friction : float
+        Coefficient between block and base.
+    solver : str
+        "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
+    iterations : int
+        Of the solver.
+    relaxation : float or None
+        Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
+    weighting : bool or None
+        Whether "xpbd" divides a correction by the number of contacts, by which momentum is lost.
+    baumgarte : float or None
+        Part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01.
+    depth : float or None
+        Penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
+    tolerance : float or None
+        Of "padmm"; its own is 1e-6.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = 1.0
+    solver: str = setting(XPBD, names=SOLVERS)
+    iterations: int = setting(5, least=1)
+    relaxation: float | None = setting(above=0.0, most=2.0)
+    weighting: bool | None = None
+    baumgarte: float | None = setting(least=0.0, most=1.0)
+    depth: float | None = setting(least=0.0)
+    tolerance: float | None = setting(above=0.0)
+    corner_radius: float = setting(1e-3, above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+TUNED = NewtonSettings(solver="padmm", iterations=200, friction=1.3)
+
+FACTORS = (
+    Factor(
+        "solver",
+        ("solver", "iterations"),
+        (
+            level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
+            level("Kamino by DVI", BOTH, solver="dvi", iterations=200),
+        ),
+    ),
+    factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),
+    factor("weighting", level("no", (DEFAULT,), weighting=False), by_default=False),
+    factor("baumgarte", level("0", baumgarte=0.0), level("0.1", baumgarte=0.1)),
+    factor("geometry", level("corners", BOTH, geometry="corners")),
+    factor("friction"),
+)
+"""What its contact can be set to."""
