@@ -7,6 +7,7 @@ from engines.factors import (
     BOTH,
     DEFAULT,
     MOVING_BASE,
+    UNMOVED_BASE,
     Factor,
     Rule,
     factor,
@@ -130,8 +131,8 @@ RULES = (
         *(BEST, "inertia", "of 1 kg m²"),
     ),
     Rule(
-        "Keep to its own collision detector or FCL: Bullet's sees other contacts",
-        *(DEFAULT, "collision detector", "Bullet"),
+        "Drive a base that moves by a joint's velocity: friction does not feel one that is placed",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""
