@@ -8,6 +8,7 @@ from engines.factors import (
     BY_DEFAULT,
     DEFAULT,
     MOVING_BASE,
+    UNMOVED_BASE,
     Factor,
     Rule,
     factor,
@@ -140,6 +141,10 @@ RULES = (
     Rule(
         "Count in a small unit of length: depth is corrected by at most 1e-3 units/s",
         *(BEST, "unit of length", BY_DEFAULT),
+    ),
+    Rule(
+        "Drive a base that moves by a joint's velocity: friction does not feel one that is placed",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""
