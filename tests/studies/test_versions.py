@@ -108,6 +108,8 @@ def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path,
     assert list(again["release"].unique()) == ["1.0", "1.1", "3.0"]
     assert "cannot be installed" in again.iloc[-1]["message"]
     assert {path: path.stat().st_mtime_ns for path in made} == made
+    runs = json.loads((out / "provenance.json").read_text())["runs"]
+    assert [each["release"] for each in runs] == [["all"], named[1:]]
     assert "pretender 3.0 (cannot be installed" in study.paragraph(out)
 
 
