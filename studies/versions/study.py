@@ -67,7 +67,7 @@ def command(
     quick
         A tenth of the cases.
     environments
-        Folder for the environments, 10 to 100 MB each; by default one inside the results'.
+        Folder for the environments, 2 to 300 MB each; by default one inside the results'.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
