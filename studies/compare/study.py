@@ -140,7 +140,8 @@ def compare(
     rows = run_jobs(jobs, executor=executor, reduce=_reduce)
     if estimate:
         finer = [half for job in jobs if (half := halved(job)) is not None]
-        rows = with_estimates(rows, run_jobs(finer, executor=executor, reduce=_reduce))
+        halves = run_jobs(finer, executor=executor, reduce=_reduce)
+        rows = with_estimates(rows, halves, own_steps=effort.own)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
     return [compared[name] for name in sources]

@@ -166,6 +166,11 @@ class Effort:
     step: float | None = None
     accuracy: Accuracy | None = None
 
+    @property
+    def own(self) -> bool:
+        """Whether every source steps as it sees fit."""
+        return self.step is None and self.accuracy is None
+
     def options(self, name: str) -> dict[str, Any]:
         """Return the options that this means for a source."""
         source = resolve(name)

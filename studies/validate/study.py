@@ -25,6 +25,7 @@ from studies.measures.differences import (
     scientific,
     with_reference,
 )
+from studies.measures.halving import ELSEWHERE
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
@@ -146,7 +147,7 @@ def report(folder: Path) -> str:
             "\nThe largest errors:",
             worst_text(compared),
             *leaning_lines(folder, compared),
-            *(bounds_lines(compared) if halves else ()),
+            *(bounds_lines(folder, compared) if halves else ()),
             "",
             fill(paragraph(folder), 99),
         ]
@@ -174,10 +175,12 @@ def leaning_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     ]
 
 
-def bounds_lines(compared: pd.DataFrame) -> list[str]:
-    """Say what the estimates bound."""
+def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
+    """Say what the estimates bound, and if their factors were found at other steps."""
+    settings = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))["settings"]
+    own = Effort(step=settings["step"], accuracy=settings["accuracy"]).own
     text = "\nOf the errors of the peak the relative difference from that at half the step,"
-    return [text, bounds_text(compared)]
+    return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

@@ -1,7 +1,8 @@
 """An environment for each release: the engine of its own, all else shared with this one.
 
 What differs between two releases is then the engine alone, and an environment takes no more room
-than that. It is made once and kept.
+than that. Only a library that was built with an older numpy gets one, too. An environment is made
+once and kept.
 """
 
 import json
@@ -12,6 +13,7 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from engines import ENGINES
 from studies.kit.fingerprint import ROOT
 from studies.kit.provenance import write_text
 from studies.versions.releases import Release
@@ -21,6 +23,12 @@ MADE = "made.json"
 
 SHARED = "shared.pth"
 """File of an environment's packages that names where to look for the others, after its own."""
+
+OLD_NUMPY = ("numpy<2", "pandas<3")
+"""What a library needs that was built with an older numpy, and the pandas that works with that."""
+
+BUILT_WITH_OLD_NUMPY = "numpy.core.multiarray failed to import"
+"""What it says without."""
 
 MIB = 2.0**20
 
@@ -67,7 +75,9 @@ def environment(folder: Path, release: Release) -> Environment:
     folder.parent.mkdir(parents=True, exist_ok=True)
     _run([sys.executable, "-m", "venv", "--without-pip", str(folder)])
     share(folder)
-    _install(folder, release)
+    _install(folder, f"{release.package}=={release.version}")
+    if _needs_old_numpy(folder, ENGINES[release.engine].library):
+        _install(folder, *OLD_NUMPY)
     made = Environment(round(_size(folder) / MIB, 1), round(time.perf_counter() - began, 1))
     write_text(path, json.dumps(asdict(made)) + "\n")
     return made
@@ -81,10 +91,17 @@ def share(folder: Path) -> None:
     write_text(packages / SHARED, "".join(f"{path}\n" for path in dict.fromkeys(here)))
 
 
-def _install(folder: Path, release: Release) -> None:
+def _needs_old_numpy(folder: Path, library: str) -> bool:
+    """Say whether a library fails for being built with an older numpy than the one that is here."""
+    command = [str(python_of(folder)), "-P", "-c", f"import {library}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return bool(done.returncode) and BUILT_WITH_OLD_NUMPY in done.stderr
+
+
+def _install(folder: Path, *requirements: str) -> None:
     pip = [sys.executable, "-m", "pip", "--python", str(python_of(folder)), "install"]
     quiet = ["--quiet", "--no-input", "--retries", "1", "--disable-pip-version-check"]
-    _run([*pip, *quiet, "--only-binary", ":all:", f"{release.package}=={release.version}"])
+    _run([*pip, *quiet, "--only-binary", ":all:", *requirements])
 
 
 def _run(command: list[str]) -> None:

@@ -67,7 +67,7 @@ def command(
     quick
         A tenth of the cases.
     environments
-        Folder for the environments, 10 to 100 MB each; by default one inside the results'.
+        Folder for the environments, 2 to 300 MB each; by default one inside the results'.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
@@ -92,9 +92,9 @@ def command(
         asked = [ask(one, how) for one in _progress(_all(engines, releases, unlisted))]
         return {"releases": releases_table(asked)}
 
-    code = carry_out(
-        STUDY, Plan(settings={"quick": quick}, tabulate=tabulate), out, running, report
-    )
+    named = {"engine": engines, "release": releases}
+    plan = Plan(settings={"quick": quick}, growing=named, tabulate=tabulate)
+    code = carry_out(STUDY, plan, out, running, report)
     for problem in unlisted:
         print(f"{problem}; the releases that were not named are missing", file=sys.stderr)
     return 1 if unlisted else code

@@ -64,15 +64,18 @@ def _moved(row: Mapping[Any, Any]) -> str:
 def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
     """Say of each engine between how many of its releases an answer changed."""
     words = [
-        f"{engine} at {len(changes[changes['engine'] == engine])} of "
-        f"{mine['release'].nunique() - 1} steps from {mine['release'].iloc[0]} to "
-        f"{mine['release'].iloc[-1]}"
+        f"{engine} {_times(changes[changes['engine'] == engine], mine['release'].nunique() - 1)} "
+        f"from {mine['release'].iloc[0]} to {mine['release'].iloc[-1]}"
         for engine, mine in _answered(lines).groupby("engine", sort=False)
         if mine["release"].nunique() > 1
     ]
     if not words:
         return "Of each engine one release was asked."
     return f"From a release to the next an answer moves by more than {CHANGED:g}: {listed(words)}."
+
+
+def _times(changes: pd.DataFrame, most: int) -> str:
+    return f"{out_of(len(changes), most)} times" if most > 1 else ("once", "not")[changes.empty]
 
 
 def _answered(lines: pd.DataFrame) -> pd.DataFrame:
@@ -85,12 +88,13 @@ def told(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
     for engine, mine in lines.groupby("engine", sort=False):
         moves = [
             f"from {row['before']} to {row['release']} {_moved(row)} ({row['presets']})"
-            + (f"; its notes: {row['note']}" if row["note"] else "; no note says why")
+            + (f", and the notes say: {row['note']}" if row["note"] else ", and no note says why")
             for row in changes[changes["engine"] == engine].to_dict("records")
         ]
         answered = _answered(mine)
         if answered["release"].nunique() > 1:
-            sentences.append(f"{engine}: {'. '.join(moves) or 'nothing moved'}.")
+            still = f"nothing moved by more than {part(float(answered['moved'].max()))}"
+            sentences.append(f"{engine}: {'; '.join(moves) or still}.")
         lost = mine[~mine["release"].isin(answered["release"])].drop_duplicates("release")
         if len(lost):
             names = listed(list(lost["release"]))

@@ -14,7 +14,15 @@ from studies.cases.drawn import draw
 from studies.estimate import study
 from studies.estimate.calibration import beside_errors, factors
 from studies.kit.jobs import Job
-from studies.measures.halving import FACTORS, Trust, estimate, halved, published_trust, step_of
+from studies.measures.halving import (
+    ELSEWHERE,
+    FACTORS,
+    Trust,
+    estimate,
+    halved,
+    published_trust,
+    step_of,
+)
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
@@ -150,6 +158,12 @@ def test_a_comparison_carries_estimates(capsys):
     difference = abs(whole.peak_ratio / half.peak_ratio - 1.0)
     assert f"{difference:.1e}" in table
     assert f"{difference * published_trust('mujoco').factor:.1e}" in table
+    # the step is not the preset's own
+    assert ELSEWHERE in table
+    assert (
+        run([*case, "--omega", "6.2832", "--jobs", "1", "--estimate", "--sources", "mujoco"]) == 0
+    )
+    assert ELSEWHERE not in capsys.readouterr().out
 
 
 def test_sources_without_steps_to_halve_are_refused(tmp_path, capsys):

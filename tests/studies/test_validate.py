@@ -13,7 +13,7 @@ from studies.kit.journal import FolderError
 from studies.kit.options import EffortOptions, Running
 from studies.kit.plan import fill
 from studies.measures.differences import with_conditioning
-from studies.measures.halving import published_trust
+from studies.measures.halving import ELSEWHERE, published_trust
 from studies.measures.words import out_of
 from studies.validate import STUDY
 from studies.validate.hints import FALSE, KNOWN, leanings
@@ -126,6 +126,7 @@ def test_random_cases_carry_estimates_and_what_these_bound(tmp_path):
     assert out_of(bounded, len(known)) in text
     assert "moreau: its estimates were never held against errors" in text
     assert errors.loc["moreau", "bound"].isna().all()
+    assert f"({ELSEWHERE})" in text
 
 
 def test_without_estimates_there_is_no_table_of_them(tmp_path):
