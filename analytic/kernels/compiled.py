@@ -27,8 +27,21 @@ def kernel(function: Function) -> Function:
     No operation is merged with another: whether it is would depend on what the compiler inlines,
     and the last digit on which process compiled.
     """
+    return _compiled(function, counted=True)
+
+
+def inner(function: Function) -> Function:
+    """Compile, as `kernel`, what makes no array and assigns to no slice of one.
+
+    It counts no references to the arrays that it is given, which in the step of a response take as
+    long as its arithmetic.
+    """
+    return _compiled(function, counted=False)
+
+
+def _compiled(function: Function, *, counted: bool) -> Function:
     folder = kept_in()
-    compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+    compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted)
     with _cache_folder(folder):
         return cast(Function, compile_(function))
 
