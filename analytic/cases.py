@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import housner_restitution
 from analytic.checks import MOST_HALF_CYCLES
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner, kernel
 from analytic.kernels.law import FloatArray, Law
 from analytic.models import Model, find_model
 
@@ -94,21 +94,21 @@ def pose(
 compiled_restitution = kernel(housner_restitution)
 
 
-@kernel
+@inner
 def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
     """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness."""
     for i in range(alpha.size):
         eta[i] = max(compiled_restitution(alpha[i]), 0.0)
 
 
-@kernel
+@inner
 def law_of(linear: bool, constants: FloatArray, eta: float) -> Law:
     """Return the law of a case from a column of the constants."""
     k, saddle, factor, alpha, onset = constants
     return Law(linear, k, saddle, factor, alpha, onset, eta)
 
 
-@kernel
+@inner
 def write_pulse(case: FloatArray, segment: FloatArray) -> None:
     """Write the pulse of a case into a row of `motion.SEGMENT_COLUMNS` that is zero elsewhere."""
     _, amplitude, omega, half_cycles, _ = case

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.cases import law_of, pose
 from analytic.kernels.closed_form import work_to
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner, kernel
 from analytic.kernels.excursions import MAX_STEPS
 from analytic.kernels.law import Law
 from analytic.kernels.rest import ANGLE_TOLERANCE, side_after, time_to_rest
@@ -55,7 +55,7 @@ class Modes(NamedTuple):
     steps: NDArray[np.int32]
 
 
-@kernel
+@inner
 def next_lift(angle: float, level: float) -> tuple[int, float]:
     """Return how many half cycles on, and at which angle, the ground lifts a block at rest.
 
@@ -66,7 +66,7 @@ def next_lift(angle: float, level: float) -> tuple[int, float]:
     return 0, max(angle, level)
 
 
-@kernel
+@inner
 def is_quiet(law: Law, v: float, left: float) -> bool:
     """Tell whether a block that the ground lifts no more, on its base at v, is sure to survive.
 
@@ -77,7 +77,7 @@ def is_quiet(law: Law, v: float, left: float) -> bool:
     return v * math.exp(k * left) <= QUIET * math.sqrt(2.0 * work_to(law, law.saddle))
 
 
-@kernel
+@inner
 def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
     """Return mode and margin of a block at (y, v) when the pulse ends."""
     barrier = math.sqrt(2.0 * work_to(law, law.saddle))
@@ -92,13 +92,13 @@ def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
     return SURVIVES, max(here, min(after, 0.0)) / barrier
 
 
-@kernel
+@inner
 def later(pulse: Pulse, half_cycles: int) -> Pulse:
     """Return what is left of a pulse so many half cycles later."""
     return Pulse(pulse.amplitude, pulse.omega, pulse.half_cycles - half_cycles)
 
 
-@kernel
+@inner
 def ground_after(pulse: Pulse, angle: float, wait: float) -> float:
     """Return the ground acceleration [g] a time after an angle; zero after the pulse."""
     phase = angle + pulse.omega * wait
@@ -108,7 +108,7 @@ def ground_after(pulse: Pulse, angle: float, wait: float) -> float:
     return parity(turned) * pulse.amplitude * math.sin(rest)
 
 
-@kernel
+@inner
 def pulse_mode(
     law: Law, pulse: Pulse, work: FloatArray, segment: FloatArray
 ) -> tuple[int, float, int]:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from analytic.block import RigidBlock
 from analytic.checks import positive
 from analytic.kernels.closed_form import free_peak
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner, kernel
 from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
@@ -128,7 +128,7 @@ class Cubic(NamedTuple):
     h: float
 
 
-@kernel
+@inner
 def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     """Advance by one classical Runge-Kutta step."""
     side, tau, _, y, v = begin
@@ -141,7 +141,7 @@ def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     return Cubic(y, v, end, v + h * (k1 + 2.0 * (k2 + k3) + k4) / 6.0, h)
 
 
-@kernel
+@inner
 def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     """Advance by one step of constant average acceleration.
 
@@ -169,7 +169,7 @@ def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic
     return Cubic(y, v, end, v + 0.5 * h * (before + after), h)
 
 
-@kernel
+@inner
 def cubic_at(path: Cubic, x: float) -> tuple[float, float]:
     """Return value and slope of a step at the part x of it."""
     y, v, end, rate, h = path
@@ -179,13 +179,13 @@ def cubic_at(path: Cubic, x: float) -> tuple[float, float]:
     return y + x * (h * v + x * (c2 + x * c3)), v + x * (2.0 * c2 + 3.0 * x * c3) / h
 
 
-@kernel
+@inner
 def turns(path: Cubic) -> bool:
     """Tell whether the block turns back within a step."""
     return path.v > 0.0 and path.rate <= 0.0
 
 
-@kernel
+@inner
 def turning_value(path: Cubic) -> float:
     """Return the maximum of a step that turns."""
     low, high = 0.0, 1.0
@@ -212,7 +212,7 @@ def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
 UNDECIDED = -1
 
 
-@kernel
+@inner
 def verdict(law: Law, path: Cubic, free: bool) -> int:
     """Return whether a block is ROCKED or OVERTURNED by the end of a step, or UNDECIDED.
 
@@ -224,7 +224,7 @@ def verdict(law: Law, path: Cubic, free: bool) -> int:
     return ROCKED if free and turns(path) and y < law.saddle else UNDECIDED
 
 
-@kernel
+@inner
 def next_side(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
 ) -> tuple[float, float]:

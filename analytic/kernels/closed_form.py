@@ -6,7 +6,7 @@ acceleration in g. The public functions take radians and the units they name.
 
 import math
 
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law, State
 
 SERIES_BELOW = 1.0
@@ -15,7 +15,7 @@ LOST = 1e-17
 """Part of a sum below which a term, and the smaller ones after it, change no digit."""
 
 
-@kernel
+@inner
 def sine_minus_sinh(x: float, u: float) -> float:
     """Return sin(x)/x - sinh(u)/u without cancellation."""
     if max(x, u) > SERIES_BELOW:
@@ -33,7 +33,7 @@ def sine_minus_sinh(x: float, u: float) -> float:
     return total
 
 
-@kernel
+@inner
 def cosh_minus_cosine(x: float, u: float) -> float:
     """Return (cosh(u) - 1)/u^2 - (1 - cos(x))/x^2 without cancellation."""
     if max(x, u) > SERIES_BELOW:
@@ -51,7 +51,7 @@ def cosh_minus_cosine(x: float, u: float) -> float:
     return total
 
 
-@kernel
+@inner
 def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple[float, float]:
     """Return rotation and rate, h > 0 after a state, of y'' = -k^2 [saddle - y + side factor a].
 
@@ -87,7 +87,7 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
     return end, velocity
 
 
-@kernel
+@inner
 def work_to(law: Law, y: float) -> float:
     """Return half the squared velocity that a free block loses between rotations 0 and y."""
     if law.linear:
@@ -95,7 +95,7 @@ def work_to(law: Law, y: float) -> float:
     return 2.0 * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
 
 
-@kernel
+@inner
 def turning_rotation(law: Law, work: float) -> float:
     """Return the rotation at which a free block has lost `work`; inf if it passes the saddle."""
     barrier = work_to(law, law.saddle)
@@ -112,7 +112,7 @@ def turning_rotation(law: Law, work: float) -> float:
     return y
 
 
-@kernel
+@inner
 def free_peak(law: Law, y: float, v: float) -> float:
     """Return the largest rotation still to come of a free block, inf when it overturns.
 

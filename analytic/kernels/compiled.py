@@ -21,10 +21,11 @@ SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
 
 
-def keeper(sources: Path) -> Callable[[Function], Function]:
+def keeper(sources: Path, *, counted: bool = True) -> Callable[[Function], Function]:
     """Return the decorator of the kernels in a folder, which call no kernel of another one.
 
-    It compiles a function at its first call, keeps the result on disk, and releases the GIL.
+    It compiles a function at its first call, keeps the result on disk, and releases the GIL. What
+    makes no array needs no references to its arrays counted.
 
     No operation is merged with another: whether it is would depend on what the compiler inlines,
     and the last digit on which process compiled.
@@ -32,7 +33,9 @@ def keeper(sources: Path) -> Callable[[Function], Function]:
 
     def kernel(function: Function) -> Function:
         folder = kept_in(sources)
-        compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+        compile_ = numba.njit(
+            cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted
+        )
         with _cache_folder(folder):
             return cast(Function, compile_(function))
 
@@ -41,6 +44,13 @@ def keeper(sources: Path) -> Callable[[Function], Function]:
 
 kernel = keeper(SOURCES)
 """Compile a kernel of the reference at its first call."""
+
+inner = keeper(SOURCES, counted=False)
+"""Compile, as `kernel`, what makes no array and assigns to no slice of one.
+
+It counts no references to the arrays that it is given, which in the step of a response take as long
+as its arithmetic.
+"""
 
 
 @cache

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner, kernel
 from analytic.kernels.forces import watch_free, watch_rest, watch_step, watch_train
 from analytic.kernels.law import FloatArray, Law, Start, State
 from analytic.kernels.polynomial import (
@@ -99,7 +99,7 @@ class Step(NamedTuple):
     peak: float
 
 
-@kernel
+@inner
 def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
     """Write an event into the log if it has room; return the number of events so far."""
     if n < log.shape[0]:
@@ -116,7 +116,7 @@ def workspace() -> FloatArray:
     return np.empty((MAX_DEPTH + 12, ORDER + 1))
 
 
-@kernel
+@inner
 def expand(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
 ) -> float:
@@ -132,7 +132,7 @@ def expand(
     return trusted_step(y, accuracy)
 
 
-@kernel
+@inner
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
     """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
 
@@ -148,7 +148,7 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
     return 2.0 if low > 0.0 else next_root(q, degree, 0.0, work[1:])
 
 
-@kernel
+@inner
 def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
     """Return when, about h after a state, the closed form reaches zero."""
     x = h
@@ -163,7 +163,7 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
     return x
 
 
-@kernel
+@inner
 def take_step(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, peak: float, work: FloatArray
 ) -> Step:
@@ -213,7 +213,7 @@ def take_step(
     return Step(kind, h, x, tau, y, v, peak)
 
 
-@kernel
+@inner
 def sample_step(
     law: Law,
     segment: FloatArray,
@@ -238,11 +238,11 @@ def sample_step(
     return n
 
 
-@kernel
+@inner
 def sample_rest(notes: Notes, until: float, n: int) -> int:
     """Sample a rest up to a time; return the number of samples so far."""
     while n < notes.times.size and notes.times[n] <= until:
-        notes.samples[:, n] = 0.0
+        notes.samples[0, n] = notes.samples[1, n] = 0.0
         n += 1
     return n
 
@@ -277,9 +277,16 @@ def march(
     """
     if not is_finite(segments):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    watched = notes.limits.size > 0
-    last = max(until, segments[-1, 1])
-    moving = then_still(segments, last)
+    moving = then_still(segments, max(until, segments[-1, 1]))
+    return follow(law, accuracy, moving, start, notes, work)
+
+
+@inner
+def follow(
+    law: Law, accuracy: Accuracy, moving: FloatArray, start: Start, notes: Notes, work: FloatArray
+) -> End:
+    """Follow one response to the end of a motion whose last segment is still; as `march`."""
+    watched, last = notes.limits.size > 0, moving[-1, 1]
     side, y, v = start
     tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0

@@ -7,7 +7,7 @@ to the normal force means that it slides.
 import math
 
 from analytic.kernels.closed_form import turning_rotation, work_to
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import highest, value
 from analytic.kernels.rest import acceleration, strongest_between
@@ -17,7 +17,7 @@ REFINED = 1e-14
 """Part of the friction ratio below which a better one changes nothing."""
 
 
-@kernel
+@inner
 def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, float]:
     """Return (normal, horizontal) contact force over weight of the exact model.
 
@@ -31,27 +31,27 @@ def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, 
     return normal, horizontal
 
 
-@kernel
+@inner
 def keep(limits: FloatArray, normal: float, horizontal: float) -> None:
     """Keep the smallest normal force and the largest friction ratio in limits[0], limits[1]."""
     limits[0] = min(limits[0], normal)
     limits[1] = max(limits[1], abs(horizontal) / normal if normal > 0.0 else math.inf)
 
 
-@kernel
+@inner
 def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: float) -> None:
     """Watch one state of a block."""
     normal, horizontal = forces(law, side, a, y, v)
     keep(limits, normal, horizontal)
 
 
-@kernel
+@inner
 def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
     """Watch a block at rest between two times: it needs the friction that carries it along."""
     limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
 
 
-@kernel
+@inner
 def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
     """Watch a train of impacts that is summed, from the velocity v on `side` to rest."""
     if v == 0.0:
@@ -62,7 +62,7 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
     watch(limits, law, -side, a, 0.0, 0.0)
 
 
-@kernel
+@inner
 def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
     """Watch the part [0, x] of a step of length h, whose series `excursions.expand` left in `work`.
 
@@ -94,7 +94,7 @@ def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatAr
             limits[1] = ratio
 
 
-@kernel
+@inner
 def expand_forces(
     degree: int,
     h: float,
@@ -123,7 +123,7 @@ def expand_forces(
         scale *= h
 
 
-@kernel
+@inner
 def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
     """Watch a survivor's free rocking from (y, v) to its rest."""
     energy = 0.5 * v * v + work_to(law, y)
@@ -140,7 +140,7 @@ def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
     watch(limits, law, 1.0, 0.0, 0.0, 0.0)
 
 
-@kernel
+@inner
 def watch_swing(limits: FloatArray, law: Law, energy: float, top: float) -> None:
     """Watch a free block at rotations from 0 to `top`; at 0 it has the kinetic `energy`.
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray
 
 ORDER = 24
@@ -26,7 +26,7 @@ INVERSE_BINOMIALS = np.array(
 )
 
 
-@kernel
+@inner
 def value(a: FloatArray, degree: int, x: float) -> float:
     """Return sum a[i] x^i."""
     total = a[degree]
@@ -35,7 +35,7 @@ def value(a: FloatArray, degree: int, x: float) -> float:
     return total
 
 
-@kernel
+@inner
 def slope(a: FloatArray, degree: int, x: float) -> float:
     """Return sum i a[i] x^(i-1)."""
     total = degree * a[degree]
@@ -44,7 +44,7 @@ def slope(a: FloatArray, degree: int, x: float) -> float:
     return total
 
 
-@kernel
+@inner
 def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
     """Write the coefficients of sum a[i] (h x)^i into d[0..degree]."""
     scale = 1.0
@@ -53,7 +53,7 @@ def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
         scale *= h
 
 
-@kernel
+@inner
 def trend(d: FloatArray, degree: int, lead: int) -> int:
     """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0.
 
@@ -70,7 +70,7 @@ def trend(d: FloatArray, degree: int, lead: int) -> int:
     return -1 if most < 0.0 else 0
 
 
-@kernel
+@inner
 def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
     """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
     for i in range(degree + 1):
@@ -80,7 +80,7 @@ def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
             b[i] += b[i - 1]
 
 
-@kernel
+@inner
 def sign_changes(b: FloatArray, degree: int) -> int:
     """Count the sign changes in b[0..degree], zeros left out."""
     changes = 0
@@ -93,7 +93,7 @@ def sign_changes(b: FloatArray, degree: int) -> int:
     return changes
 
 
-@kernel
+@inner
 def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
     """Replace `b` by its left half and write its right half into `right`."""
     right[degree] = b[degree]
@@ -103,7 +103,7 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
         right[degree - r] = b[degree]
 
 
-@kernel
+@inner
 def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float:
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket."""
     rising = value(a, degree, high) > value(a, degree, low)
@@ -130,7 +130,7 @@ def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float
     return x
 
 
-@kernel
+@inner
 def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
     """Return the first root of `a` in (start, 1], or 2 when there is none.
 
@@ -174,7 +174,7 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
     return 2.0
 
 
-@kernel
+@inner
 def highest(
     d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
 ) -> tuple[float, float]:

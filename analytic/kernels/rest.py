@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner, kernel
 from analytic.kernels.law import FloatArray, Law
 
 ANGLE_TOLERANCE = 1e-14
@@ -15,13 +15,13 @@ MOMENT = 1e-12
 """Part of a time that counts as nothing: an excess over the onset that lasts no longer."""
 
 
-@kernel
+@inner
 def ground(segments: FloatArray, j: int, tau: float) -> float:
     """Return the ground acceleration [g] on segment j; zero after the last."""
     return shaking(segments[j], tau) if j < segments.shape[0] else 0.0
 
 
-@kernel
+@inner
 def shaking(segment: FloatArray, tau: float) -> float:
     """Return the ground acceleration [g] on a segment."""
     start, _, amplitude, omega, phase, offset, rate = segment
@@ -39,7 +39,7 @@ def then_still(segments: FloatArray, end: float) -> FloatArray:
     return longer
 
 
-@kernel
+@inner
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
     """Return on which segment a time is, j or later; their number after the last."""
     while j < segments.shape[0] and tau >= segments[j, 1]:
@@ -57,7 +57,7 @@ def is_finite(segments: FloatArray) -> bool:
     return True
 
 
-@kernel
+@inner
 def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
     """Return the largest abs(acceleration) of the ground between two times, from segment j on."""
     most = 0.0
@@ -67,13 +67,15 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
             break
         most = max(most, abs(ground(segments, i, first)), abs(ground(segments, i, last)))
         start, _, amplitude, omega, phase, _, _ = segments[i]
-        quarters = [omega * (t - start) + phase - 0.5 * math.pi for t in (first, last)]
-        if math.floor(quarters[0] / math.pi) < math.floor(quarters[1] / math.pi):
+        # a crest lies between two times that an odd number of quarter cycles divides
+        quarter = phase - 0.5 * math.pi
+        before = math.floor((omega * (first - start) + quarter) / math.pi)
+        if before < math.floor((omega * (last - start) + quarter) / math.pi):
             most = max(most, abs(amplitude))
     return most
 
 
-@kernel
+@inner
 def acceleration(law: Law, side: float, a: float, y: float) -> float:
     """Return y'' of a block at rotation y on the given side under the ground acceleration a."""
     if law.linear:
@@ -81,7 +83,7 @@ def acceleration(law: Law, side: float, a: float, y: float) -> float:
     return -(math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
 
 
-@kernel
+@inner
 def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(amplitude sin) first exceeds the onset from tau on, and whether smoothly."""
     start, _, amplitude, omega, phase, _, _ = segment
@@ -96,7 +98,7 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
     return tau + max(wait, 0.0) / omega, True
 
 
-@kernel
+@inner
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
@@ -115,7 +117,7 @@ def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
     return (time if time < end - moment else math.inf), True
 
 
-@kernel
+@inner
 def next_uplift(
     segments: FloatArray, j: int, tau: float, onset: float
 ) -> tuple[int, float, float, int]:
@@ -144,7 +146,7 @@ def next_uplift(
     return segments.shape[0], math.inf, 0.0, 0
 
 
-@kernel
+@inner
 def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     """Return how long a block leaving the base at v goes on to rock; inf if it does not rest.
 
@@ -162,7 +164,7 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     return 2.0 * v * (1.0 / here + law.eta / there) / (1.0 - law.eta * law.eta)
 
 
-@kernel
+@inner
 def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) -> bool:
     """Tell whether a train of impacts may be summed.
 
@@ -177,7 +179,7 @@ def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) 
     return change <= ZENO * min(abs(here), abs(there))
 
 
-@kernel
+@inner
 def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
     """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
 
@@ -199,7 +201,7 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
     return side
 
 
-@kernel
+@inner
 def after_impact(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:

@@ -17,7 +17,7 @@ import math
 from typing import NamedTuple
 
 from analytic.kernels.closed_form import linear_state
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner
 from analytic.kernels.excursions import LYING, MAX_STEPS
 from analytic.kernels.law import FloatArray, Law, State
 from analytic.kernels.polynomial import slope, value
@@ -61,13 +61,13 @@ class Pulse(NamedTuple):
     half_cycles: int
 
 
-@kernel
+@inner
 def parity(half_cycles: int) -> float:
     """Return the sign of the ground acceleration so many half cycles after a positive one."""
     return 1.0 - 2.0 * (half_cycles % 2)
 
 
-@kernel
+@inner
 def whole_half_cycles(angle: float) -> tuple[int, float]:
     """Return the half cycles in an angle and what is left of it, in [0, pi)."""
     if angle < math.pi:
@@ -76,19 +76,19 @@ def whole_half_cycles(angle: float) -> tuple[int, float]:
     return round((angle - rest) / math.pi), rest
 
 
-@kernel
+@inner
 def strongest_ahead(angle: float) -> float:
     """Return the largest sin from an angle to the end of its half cycle."""
     return 1.0 if angle < 0.5 * math.pi else math.sin(angle)
 
 
-@kernel
+@inner
 def safe_fall(y: float, v: float, most: float) -> float:
     """Return the time before which a block at (y, v) cannot land while -y'' is below `most`."""
     return (v + math.sqrt(v * v + 2.0 * most * y)) / most
 
 
-@kernel
+@inner
 def safe_rise(y: float, v: float, most: float) -> float:
     """Return the time before which a block at (y, v) cannot lie while y'' is below `most`."""
     room = LYING - y
@@ -107,7 +107,7 @@ class Arc(NamedTuple):
     falling: float
 
 
-@kernel
+@inner
 def begin_arc(law: Law, pulse: Pulse, start: float, v: float, side: float) -> Arc:
     """Return the closed form of a swing (paper, equations 6 to 10 and 17 to 21, corrected)."""
     k, omega = law.k, pulse.omega
@@ -119,7 +119,7 @@ def begin_arc(law: Law, pulse: Pulse, start: float, v: float, side: float) -> Ar
     return Arc(start, side, v, lead, wave, 0.5 * (total + gap), 0.5 * (total - gap))
 
 
-@kernel
+@inner
 def arc_at(
     law: Law,
     pulse: Pulse,
@@ -146,7 +146,7 @@ def arc_at(
     return y, v, ROUNDING * (law.saddle + abs(rising))
 
 
-@kernel
+@inner
 def stretch(out: bool, angle: float, level: float) -> tuple[bool, float]:
     """Tell whether the ground lifts from an angle on, and until which angle.
 
@@ -159,7 +159,7 @@ def stretch(out: bool, angle: float, level: float) -> tuple[bool, float]:
     return False, math.pi
 
 
-@kernel
+@inner
 def swing_linear(
     law: Law, pulse: Pulse, start: float, v: float, side: float, level: float, segment: FloatArray
 ) -> Swing:
@@ -215,13 +215,13 @@ def swing_linear(
     return Swing(STUCK, n, angle, y, v, steps)
 
 
-@kernel
+@inner
 def sixteenth_root(x: float) -> float:
     """Return x^(1/16)."""
     return math.sqrt(math.sqrt(math.sqrt(math.sqrt(x))))
 
 
-@kernel
+@inner
 def map_step(y: FloatArray) -> float:
     """Return the step over which a series of degree MAP_ORDER is accurate.
 
@@ -237,7 +237,7 @@ def map_step(y: FloatArray) -> float:
     return h
 
 
-@kernel
+@inner
 def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None:
     """Write the Taylor coefficients of side x ground acceleration into f[0..MAP_ORDER]."""
     f[0] = side * pulse.amplitude * math.sin(angle)
@@ -247,7 +247,7 @@ def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None
         f[i] = -square * PARTS[i] * PARTS[i - 1] * f[i - 2]
 
 
-@kernel
+@inner
 def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple[float, bool]:
     """Return where on [x, end] the series first reaches zero, and whether it does.
 
@@ -264,7 +264,7 @@ def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple
     return x, True
 
 
-@kernel
+@inner
 def reaches(y: FloatArray, end: float, most: float) -> bool:
     """Tell whether the series reaches the rotation at which the block lies, on [0, end]."""
     x = 0.0
@@ -278,7 +278,7 @@ def reaches(y: FloatArray, end: float, most: float) -> bool:
     return True
 
 
-@kernel
+@inner
 def highest_bound(y: FloatArray, h: float) -> float:
     """Return an upper bound of the series on [0, h]."""
     total = 0.0
@@ -287,7 +287,7 @@ def highest_bound(y: FloatArray, h: float) -> float:
     return total + y[0]
 
 
-@kernel
+@inner
 def lowest_bound(y: FloatArray, h: float) -> float:
     """Return a lower bound of the series on [0, h]."""
     total = 0.0
@@ -296,7 +296,7 @@ def lowest_bound(y: FloatArray, h: float) -> float:
     return total + y[0]
 
 
-@kernel
+@inner
 def swing_exact(
     law: Law, pulse: Pulse, start: float, v: float, side: float, lifted: float, work: FloatArray
 ) -> Swing:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import ORDER
 
@@ -42,7 +42,7 @@ def accuracy(tolerance: float) -> Accuracy:
     return Accuracy(min(max(order, LEAST_ORDER), ORDER), tolerance)
 
 
-@kernel
+@inner
 def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: FloatArray) -> None:
     """Write the Taylor coefficients at `tau` of side x ground acceleration into f[0..order].
 
@@ -59,7 +59,7 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
     f[1] += side * slope
 
 
-@kernel
+@inner
 def expand_exact(law: Law, order: int, work: FloatArray) -> None:
     """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
 
@@ -94,14 +94,14 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
         cosine[i + 1] = (c + rate[i + 1] * sine[0]) * PARTS[i + 1]
 
 
-@kernel
+@inner
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
     """Extend the series y[0], y[1], y[2] by a linear model, y'' = -k^2 [saddle - y + q f]."""
     for i in range(1, order - 1):
         y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * PARTS[i + 1] * PARTS[i + 2]
 
 
-@kernel
+@inner
 def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
     """Return the step over which the series y is accurate.
 
