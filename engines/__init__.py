@@ -29,7 +29,8 @@ The file holds
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``pose`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
-  as its own tutorial uses it) to the best there is, and what the studies try of its contact.
+  as its own tutorial uses it) to the best there is, what the studies try of its contact, and what
+  its users should know first (`rules`), each with the variant that shows what it is worth.
 
 The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
 declaration; every study reads it, and none names an engine.
