@@ -26,8 +26,8 @@ The file holds
 - where it can be, ``script``: the scene in the library's own words (`engines.script`), by which
   `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a dropped
   sphere (`engines.drop`), by which `rocking restitution` asks for a coefficient of restitution;
-- where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`),
-  which must give the same responses to the bit as ``step`` and ``pose`` do (`Scene.compiled`);
+- where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
+  the bit what ``step`` and ``pose`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own tutorial uses it) to the best there is, what the studies try of its contact, and what
   its users should know first (`rules`), each with the variant that shows what it is worth.

@@ -76,7 +76,8 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
 
 def least_clocked(engine: str, scene: Scene, budget_s: float) -> tuple[Response, dict[str, float]]:
     """Run with clocks around the parts; return the run that was disturbed least, and its sums."""
-    began, found = time.perf_counter(), []
+    began = time.perf_counter()
+    found: list[tuple[Response, dict[str, float]]] = []
     while not found or time.perf_counter() - began < budget_s:
         with clocks(engine) as spent:
             found.append((run(engine, scene), spent))
