@@ -41,7 +41,8 @@ def inner(function: Function) -> Function:
 
 def _compiled(function: Function, *, counted: bool) -> Function:
     folder = kept_in()
-    compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted)
+    njit: Any = numba.njit  # its types leave out what it takes with an underscore
+    compile_ = njit(cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted)
     with _cache_folder(folder):
         return cast(Function, compile_(function))
 

@@ -96,7 +96,7 @@ def report(folder: Path) -> str:
     write_findings(folder, found)
     conclusions = findings_text(found)
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    save_all(pictures(folder), folder)
+    save_all(drawn(compared), folder)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
@@ -112,10 +112,15 @@ def report(folder: Path) -> str:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw every figure of a folder from its sweep.csv alone."""
+    return drawn(with_reference(read(folder)))
+
+
+def drawn(compared: pd.DataFrame) -> dict[str, "Figure"]:
+    """Draw every figure of the rows beside the exact solution (`with_reference`)."""
     from studies.sweep.figure import draw_sweep
 
-    rows = read(folder)
-    return {f"figure-{n}": draw_sweep(rows, int(n)) for n in rows["figure"].unique()}
+    numbers = compared["figure"].unique()
+    return {f"figure-{n}": draw_sweep(compared[compared["figure"] == n]) for n in numbers}
 
 
 def headline(folder: Path) -> str:
