@@ -117,7 +117,7 @@ def simulate(
     def solve(notes: Notes) -> End:
         return march(law, exactly, segments, begin, until * block.p, notes, workspace())
 
-    return respond(block, solve, sampled, times is not None, watched=not law.linear)
+    return as_response(block, solve, sampled, times is not None, watched=not law.linear)
 
 
 def strongest(motion: Motion) -> float:
@@ -125,7 +125,7 @@ def strongest(motion: Motion) -> float:
     return float(strongest_between(motion.segments(), 0, 0.0, motion.duration))
 
 
-def respond(
+def as_response(
     block: RigidBlock,
     solve: Callable[[Notes], End],
     sampled: FloatArray,

@@ -44,7 +44,7 @@ from analytic.kernels.rest import (
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from analytic.simulate import check_window, respond, scaled_segments
+from analytic.simulate import as_response, check_window, scaled_segments
 from analytic.start import REST, folded
 
 METHODS = ("rk4", "average-acceleration")
@@ -107,7 +107,7 @@ def integrate(
         end = until * block.p if duration is not None else 0.0
         return tread(law, segments, begin, end, notes, solver)
 
-    return respond(block, solve, sampled, times is not None, watched=False)
+    return as_response(block, solve, sampled, times is not None, watched=False)
 
 
 class Solver(NamedTuple):

@@ -33,9 +33,8 @@ def keeper(sources: Path, *, counted: bool = True) -> Callable[[Function], Funct
 
     def kernel(function: Function) -> Function:
         folder = kept_in(sources)
-        compile_ = numba.njit(
-            cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted
-        )
+        njit: Any = numba.njit  # its types leave out what it takes with an underscore
+        compile_ = njit(cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted)
         with _cache_folder(folder):
             return cast(Function, compile_(function))
 

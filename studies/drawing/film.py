@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
+from PIL import Image
 from tqdm import tqdm
 
 from analytic.block import RigidBlock
@@ -25,6 +26,9 @@ from studies.kit.journal import Row
 
 HELD_S = 1.5
 """How long a film stays at its end [s], where its verdicts are read."""
+
+UNDITHERED = Image.Dither.NONE
+"""Every pixel in the colour nearest to it: mixed of dots it would flicker from frame to frame."""
 
 POSTS = 9
 """Posts that stand still behind the base, so that its motion is seen."""
@@ -76,7 +80,7 @@ def write_film(
     stage = Stage(block, motion, times, rows)
     with draft_place(path) as part:
         if path.suffix == ".gif":
-            _roll(stage, PillowWriter(fps=frames_a_second), part, dpi=80)
+            _roll(stage, GifWriter(fps=frames_a_second), part, dpi=80)
         else:
             with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
                 _roll(stage, FFMpegWriter(fps=frames_a_second, bitrate=1800), part, dpi=110)
@@ -92,6 +96,28 @@ def _roll(stage: "Stage", writer: AbstractMovieWriter, path: Path, dpi: int) -> 
             writer.grab_frame()
         for _ in range(round(HELD_S * writer.fps)):
             writer.grab_frame()
+
+
+class GifWriter(PillowWriter):
+    """Writes a film with one palette: finding one for each frame takes longer than drawing it."""
+
+    _frames: list[Image.Image]
+
+    def finish(self) -> None:
+        """Write the frames, in the 256 colours that fill most of the first, middle and last."""
+        frames = [frame.convert("RGB") for frame in self._frames]
+        seen = [frames[0], frames[len(frames) // 2], frames[-1]]
+        sheet = Image.fromarray(np.concatenate([np.asarray(frame) for frame in seen]))
+        counted = sheet.getcolors(sheet.width * sheet.height) or []
+        colours: dict[Any, Any] = {}
+        for _, colour in sorted(counted, reverse=True):
+            # pixels are matched in steps of four: of what is nearly alike the most frequent stays
+            colours.setdefault(tuple(np.array(colour) >> 3), colour)
+        palette = Image.new("P", (1, 1))
+        palette.putpalette([part for colour in [*colours.values()][:256] for part in colour])
+        first, *others = (frame.quantize(palette=palette, dither=UNDITHERED) for frame in frames)
+        first.save(self.outfile, save_all=True, append_images=others,
+                   duration=int(1000 / self.fps), loop=0)  # fmt: skip
 
 
 class Screen(Figure):

@@ -14,7 +14,7 @@ CLOSE = 0.1
 """A peak is predicted when it is right within this part."""
 
 
-def with_exact(rows: pd.DataFrame) -> pd.DataFrame:
+def beside_exact(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of all other sources beside the exact outcome and peak of their case."""
     exact = rows.loc[rows["source"] == "exact", [*CASE, "outcome", "peak_ratio"]]
     exact = exact.rename(columns={"outcome": "exact_outcome", "peak_ratio": "exact_peak"})
@@ -40,7 +40,7 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
         one of the same cases.
     """
     lines = []
-    for size, block in by_block(with_exact(rows)):
+    for size, block in by_block(beside_exact(rows)):
         known = (size["width_m"], size["height_m"])
         exact = fitted[(*known, "exact")]
         lines.append({**size, "source": "exact", **_capacity(exact, exact)})
@@ -114,5 +114,5 @@ def _capacity(here: Fragility, exact: Fragility) -> dict[str, float]:
 
 def confusion(rows: pd.DataFrame) -> pd.DataFrame:
     """Return how often each outcome stands beside each exact one, for each block and source."""
-    counted = with_exact(rows).groupby([*BLOCK, "source", "exact_outcome", "outcome"], sort=False)
+    counted = beside_exact(rows).groupby([*BLOCK, "source", "exact_outcome", "outcome"], sort=False)
     return counted.size().rename("cases").reset_index()

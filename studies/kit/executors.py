@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
 
-from pebble import ProcessPool
-
 from analytic.response import Response
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
@@ -66,6 +64,9 @@ class Local:
             yield from self._in_processes(slow)
 
     def _in_processes(self, jobs: Mapping[int, Job]) -> Generator[tuple[int, Response], None, None]:
+        # loaded by those alone who need processes: it takes as long to load as matplotlib's axes
+        from pebble import ProcessPool
+
         # engines hold state of their own: no fork of a process that has loaded them
         pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
         try:

@@ -5,8 +5,6 @@ from collections.abc import Callable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 
-from pebble import ProcessExpired
-
 from analytic.response import Reason, Response
 from studies.kit.jobs import Job, ask, one_line, short
 from studies.sources.registry import Source
@@ -28,6 +26,8 @@ def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source
 
 def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
     """Return the result of a process, or the failure as which it ended."""
+    from pebble import ProcessExpired
+
     try:
         return result()
     except TimeoutError:

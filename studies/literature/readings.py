@@ -54,7 +54,7 @@ def times_of(problem: Problem) -> FloatArray | None:
 NAMED = {problem.name: problem for problem in PROBLEMS}
 
 
-def put(job: Job, source: Source) -> Response:
+def solve_problem(job: Job, source: Source) -> Response:
     """Put a problem to a source, and read its quantity."""
     problem = NAMED[str(job.labels["problem"])]
 

@@ -10,7 +10,7 @@ from studies.kit.plan import Plan, carry_out
 from studies.literature import STUDY
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
-from studies.literature.readings import put, reduce, times_of
+from studies.literature.readings import reduce, solve_problem, times_of
 from studies.literature.report import headline, paragraph, pictures, report
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -47,7 +47,7 @@ def command(
         for source in dict.fromkeys((problem.model, "exact", *sources))
         if can_answer(problem, source)
     ]
-    plan = Plan(jobs=jobs, growing={"source": _asked(jobs)}, ask=put, reduce=reduce)
+    plan = Plan(jobs=jobs, growing={"source": _asked(jobs)}, ask=solve_problem, reduce=reduce)
     return carry_out(STUDY, plan, out, running, report)
 
 

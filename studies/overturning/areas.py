@@ -37,7 +37,7 @@ def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArr
     return found
 
 
-def with_exact(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
+def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
     """Return the engines' cells with the exact mode, the verdict and the impacts."""
     mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
     over = engines["outcome"] == "overturned"

@@ -25,7 +25,7 @@ SHORT = 1e5
 """ω/p of a pulse that is short beside the block's own time."""
 
 
-def edge(overturns: Callable[[float], bool], low: float, high: float) -> float:
+def threshold(overturns: Callable[[float], bool], low: float, high: float) -> float:
     """Return where a monotone outcome changes, by bisection to rounding."""
     while high - low > 4e-16 * high:
         middle = 0.5 * (low + high)
@@ -60,7 +60,7 @@ def without_impact(model: str, alpha: float, ratio: float, half_cycles: int) -> 
         amplitude = onsets * law.onset
         return bool(overturning_modes(alpha, amplitude, ratio, half_cycles, model).mode == 0)
 
-    found = edge(overturns, expected * 0.99, expected * 1.01)
+    found = threshold(overturns, expected * 0.99, expected * 1.01)
     pulse = "half-sine" if half_cycles == 1 else "full-sine"
     name = f"{model}, {pulse}, ω/p = {ratio:g}, no impact, over the onset"
     return {"check": name, "found": found, "against": CRITERION, "expected": expected}
@@ -70,7 +70,7 @@ def housner(ratio: float) -> dict[str, object]:
     """Return Housner's linearization under a half-sine, beside Housner's own formula."""
     alpha = 0.1
     expected = math.hypot(1.0, ratio)
-    found = edge(
+    found = threshold(
         lambda onsets: bool(
             overturning_modes(alpha, onsets * alpha, ratio, 1, "housner").mode >= 0
         ),
@@ -90,6 +90,6 @@ def short_pulse(alpha: float) -> dict[str, object]:
         amplitude = 0.5 * velocity * SHORT * block.p / block.gravity
         return bool(overturning_modes(alpha, amplitude, SHORT, 1).mode == 0)
 
-    found = edge(overturns, 0.5 * expected, 2.0 * expected)
+    found = threshold(overturns, 0.5 * expected, 2.0 * expected)
     name = f"exact, half-sine, ω/p = {SHORT:g}, its velocity [m/s]"
     return {"check": name, "found": found, "against": VELOCITY, "expected": expected}

@@ -14,7 +14,7 @@ from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.styles import style_of
 from studies.measures.differences import conditioning_of
-from studies.overturning.areas import modes_at, no_impact_line, with_exact
+from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
 
 PIXELS = 900
 KAPPA_SHOWN = 1e2
@@ -71,7 +71,7 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     Engines that differ in no cell are named instead of drawn.
     """
     models = [name for name in areas["model"].unique() if name != "exact"]
-    cells = with_exact(engines, window) if len(engines) else engines
+    cells = with_verdicts(engines, window) if len(engines) else engines
     parts = dict(iter(cells.groupby("source", sort=False))) if len(cells) else {}
     off = {name: int((part["verdict"] != "right").sum()) for name, part in parts.items()}
     drawn = [*models, *(name for name in parts if off[name])]

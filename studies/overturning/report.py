@@ -14,7 +14,7 @@ from studies.kit import provenance
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
 from studies.measures.words import listed, out_of, part
-from studies.overturning.areas import read, window_of, with_exact
+from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def engine_differences(engines: pd.DataFrame, window: Window) -> list[dict[str, 
     """
     if not len(engines):
         return []
-    compared = with_exact(engines, window)
+    compared = with_verdicts(engines, window)
     return [
         {
             "source": source,

@@ -86,7 +86,7 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
     return Plan(
         jobs=score_jobs(name, quick),
         settings={"engine": name, "adapter": adapter(name), "quick": quick, "bands": BANDS},
-        ask=functools.partial(put, quick=quick, time_limit_s=time_limit_s),
+        ask=functools.partial(ask_of_table, quick=quick, time_limit_s=time_limit_s),
         reduce=reduce,
         tabulate=by_label("table"),
         needed=lambda rows: [row for row in rows if row["table"] == SWEEP],
@@ -115,7 +115,7 @@ def _in(table: str, jobs: Sequence[Job]) -> list[Job]:
     return [replace(job, labels={**job.labels, "table": table}) for job in jobs]
 
 
-def put(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
+def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
     """Put a job of any of the three tables to its source."""
     if job.labels["table"] == STEPS:
         budget_s = precision.QUICK_BUDGET_S if quick else precision.BUDGET_S

@@ -97,7 +97,7 @@ def reference_sentence(matrix: pd.DataFrame) -> str:
 def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
     wrong = failures(matrix)
     tried = wrong[wrong["remedy"] != ""]
-    mended = tried[tried["remedy"] != NOTHING]
+    remedied = tried[tried["remedy"] != NOTHING]
     void = matrix[(matrix["invalid"] != "") & (matrix["verdict"] == "invalid")]
     unbounded = int(wrong["failure"].isin([reason.name for reason in UNBOUNDED]).sum())
     return [
@@ -105,7 +105,7 @@ def _on_verdicts(matrix: pd.DataFrame) -> list[str]:
         f"Answers that are not finite, throw the block away, or that the engine itself calls "
         f"faulty: {unbounded}; in which energy grows "
         f"in free rocking: {int((wrong['verdict'] == 'energy').sum())}.",
-        f"Another setting mends {len(mended)} of {len(wrong)} failures.",
+        f"Another setting mends {len(remedied)} of {len(wrong)} failures.",
         f"In {void['case'].nunique()} cases an engine differs where the reference itself does not "
         f"hold ({'; '.join(void['case'].unique())}).",
     ]

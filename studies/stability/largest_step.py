@@ -124,7 +124,7 @@ def search(job: Job, source: Source, time_limit_s: float) -> Response:
         return stable(step) and judge(case, job.source, run(step)).verdict is Verdict.GOOD
 
     factor = float(job.labels["factor"])
-    both = [edge(stable, factor), edge(accurate, factor)]
+    both = [largest_good(stable, factor), largest_good(accurate, factor)]
     steps = run.cache_info().currsize
     best = run(both[1]) if math.isfinite(both[1]) else run(START)
     return Searched(
@@ -143,7 +143,7 @@ def _at(job: Job, step: float) -> dict[str, Any]:
     return {"step": step, "settings": contact_settings(job.source, time, step)}
 
 
-def edge(good: Callable[[float], bool], factor: float) -> float:
+def largest_good(good: Callable[[float], bool], factor: float) -> float:
     """Return the largest step up to which all steps tried are good; nan if not even the smallest.
 
     From START to finer steps until one is good, to coarser ones until one is not, and between the

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, line_of, style_of
-from studies.measures.differences import with_reference
 
 OVERTURNED = "overturned"
 TOP, ROW = 1.2, 0.085
@@ -18,16 +17,14 @@ LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors."""
 
 
-def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
+def draw_sweep(rows: pd.DataFrame) -> Figure:
     """Draw one of figures 6 to 9: the peaks of the smallest width, and the errors of all widths.
 
     Parameters
     ----------
     rows : DataFrame
-        The columns of sweep.csv.
-    figure : int
+        Of one figure, from `studies.measures.differences.with_reference`.
     """
-    rows = with_reference(rows[rows["figure"] == figure])
     aspects, widths = sorted(rows["aspect"].unique()), sorted(rows["width_m"].unique())
     sources = list(rows["source"].unique())
     drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
@@ -45,8 +42,8 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
     grid[1, 0].set_ylabel("relative error of it  [–]")
     _name_the_lines(grid[0, -1], grid[1, -1], rows[rows["aspect"] == aspects[-1]], sources)
     first = rows.iloc[0]
-    title = f"Figure {figure}: {first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    drawing.suptitle(f"{title}; {_widths(widths)}", fontsize=11)
+    pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
+    drawing.suptitle(f"Figure {first['figure']}: {pulse}; {_widths(widths)}", fontsize=11)
     return drawing
 
 

@@ -7,7 +7,6 @@ from matplotlib.lines import Line2D
 
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import Style, style_of
-from studies.measures.differences import with_reference
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.words import capital
 
@@ -57,16 +56,15 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     return drawing
 
 
-def draw_by_preset(rows: pd.DataFrame, figure: int) -> Figure:
+def draw_by_preset(rows: pd.DataFrame) -> Figure:
     """Draw the errors of one of figures 6 to 9: a row for each preset, a column for each H/B.
 
     Parameters
     ----------
     rows : DataFrame
-        The columns of sweep.csv.
-    figure : int
+        Of one figure, from `studies.measures.differences.with_reference`.
     """
-    rows = with_reference(rows[(rows["figure"] == figure) & rows["source"].map(is_engine)])
+    rows = rows[rows["source"].map(is_engine)]
     rows = rows.assign(preset=rows["source"].map(preset_of))
     aspects, presets = sorted(rows["aspect"].unique()), in_order(rows["preset"])
     engines = list(dict.fromkeys(source.partition(":")[0] for source in rows["source"]))
@@ -81,8 +79,8 @@ def draw_by_preset(rows: pd.DataFrame, figure: int) -> Figure:
         axes.set_title(f"H/B = {aspect:g}", fontsize=10)
     for axes in grid[-1]:
         axes.set_xlabel("frequency  ω/p  [–]")
-    drawing.suptitle(f"Figure {figure}: errors of the peak; in the grey band outcomes that are "
-                     "wrong", fontsize=11)  # fmt: skip
+    title = "errors of the peak; in the grey band outcomes that are wrong"
+    drawing.suptitle(f"Figure {rows['figure'].iloc[0]}: {title}", fontsize=11)
     handles = [Line2D([], [], **style_of(name).points(5.0), label=name) for name in engines]
     drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
     return drawing

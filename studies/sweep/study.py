@@ -96,7 +96,7 @@ def report(folder: Path) -> str:
     write_findings(folder, found)
     conclusions = findings_text(found)
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    save_all(pictures(folder), folder)
+    save_all(drawn(compared, preset_table(whole(folder))), folder)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
@@ -111,19 +111,22 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw every figure of a folder from its sweep.csv and summary.csv alone.
+    """Draw every figure of a folder from its sweep.csv and summary.csv alone."""
+    return drawn(with_reference(read(folder)), preset_table(whole(folder)))
+
+
+def drawn(compared: pd.DataFrame, table: pd.DataFrame) -> dict[str, "Figure"]:
+    """Draw every figure of the rows beside the exact solution, and of the table of presets.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.
     """
     from studies.sweep.figure import draw_sweep
     from studies.sweep.presets import draw_by_preset, draw_overview
 
-    rows, table = read(folder), preset_table(whole(folder))
-    several = not table.empty and table["preset"].nunique() > 1
-    numbers = [int(n) for n in rows["figure"].unique()]
-    if not several:
-        return {f"figure-{n}": draw_sweep(rows, n) for n in numbers}
-    by_preset = {f"presets-{n}": draw_by_preset(rows, n) for n in numbers}
+    each = {str(n): rows for n, rows in compared.groupby("figure", sort=False)}
+    if table.empty or table["preset"].nunique() < 2:
+        return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
+    by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
     return {"overview": draw_overview(table), **by_preset}
 
 

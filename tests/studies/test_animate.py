@@ -8,14 +8,13 @@ import os
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.animation import PillowWriter
 from PIL import Image
 
 from analytic import RigidBlock, SinePulse, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
-from studies.drawing.film import Stage, outline, verdict
+from studies.drawing.film import GifWriter, Stage, outline, verdict
 from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
@@ -187,8 +186,8 @@ def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch, ca
 
     film = tmp_path / "film.gif"
     film.write_bytes(b"before")
-    monkeypatch.setattr(PillowWriter, "finish", full)
-    monkeypatch.setattr(PillowWriter, "grab_frame", lambda self, **_: None)
+    monkeypatch.setattr(GifWriter, "finish", full)
+    monkeypatch.setattr(GifWriter, "grab_frame", lambda self, **_: None)
     arguments = [*CASE, "--sources", "exact", "--slower", "0.1", "--out", str(film)]
     assert run(["animate", *arguments]) == 2
     error = capsys.readouterr().err

@@ -11,7 +11,7 @@ from studies.__main__ import run
 from studies.literature import readings
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import ModeEnd, OrbitLimit, Restitution, Threshold, number
-from studies.literature.readings import put, reduce
+from studies.literature.readings import reduce, solve_problem
 from studies.literature.study import can_answer, literature_job
 from studies.sources.registry import resolve
 
@@ -37,7 +37,8 @@ NAMED = {problem.name: problem for problem in PROBLEMS}
 
 def asked(problem, source):
     return reduce(
-        literature_job(problem, source), put(literature_job(problem, source), resolve(source))
+        literature_job(problem, source),
+        solve_problem(literature_job(problem, source), resolve(source)),
     )
 
 

@@ -24,7 +24,7 @@ from studies.stability.largest_step import (
     LARGEST_STEP,
     PROBLEMS,
     SMALLEST_STEP,
-    edge,
+    largest_good,
     search,
     search_job,
 )
@@ -155,13 +155,13 @@ def test_a_rocking_too_small_to_see_is_no_wrong_outcome():
 
 @pytest.mark.parametrize("limit", [2e-4, 3e-3, 0.011, 0.3])
 def test_edge_is_found_within_its_factor(limit):
-    found = edge(lambda step: step <= limit, FACTOR)
+    found = largest_good(lambda step: step <= limit, FACTOR)
     assert limit / FACTOR <= found <= limit
 
 
 def test_edge_of_all_and_of_nothing():
-    assert edge(lambda step: True, FACTOR) == LARGEST_STEP
-    assert math.isnan(edge(lambda step: step < SMALLEST_STEP, FACTOR))
+    assert largest_good(lambda step: True, FACTOR) == LARGEST_STEP
+    assert math.isnan(largest_good(lambda step: step < SMALLEST_STEP, FACTOR))
 
 
 def test_largest_accurate_step_is_accurate_and_the_next_is_not():

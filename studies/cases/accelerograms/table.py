@@ -14,7 +14,7 @@ UNEVEN = 0.03
 """Part of a step by which a printed time may miss its place: what four decimals do to 256 Hz."""
 
 
-class Row(NamedTuple):
+class Sample(NamedTuple):
     """A line of numbers: where it is in the file, and what it says in the file's units."""
 
     line: int
@@ -54,8 +54,8 @@ def _is_row(line: str) -> bool:
     return is_number(re.split(r"[\s,;]", line.strip(), maxsplit=1)[0])
 
 
-def _rows(lines: Sequence[str], begin: int, separator: str | None) -> list[Row]:
-    rows: list[Row] = []
+def _rows(lines: Sequence[str], begin: int, separator: str | None) -> list[Sample]:
+    rows: list[Sample] = []
     for at, line in enumerate(lines[begin:], start=begin + 1):
         text = line.strip().rstrip(",;")
         if not text or _is_remark(text):
@@ -64,7 +64,7 @@ def _rows(lines: Sequence[str], begin: int, separator: str | None) -> list[Row]:
         if len(words) != 2:
             columns = f"line {at} has {len(words)} columns"
             raise ValueError(f"{columns}; it must have two, time and acceleration")
-        rows.append(Row(at, number(words[0].strip(), at), number(words[1].strip(), at)))
+        rows.append(Sample(at, number(words[0].strip(), at), number(words[1].strip(), at)))
         if len(rows) > MOST_SAMPLES:
             raise too_long(MOST_SAMPLES, "more than ")
     return rows
@@ -79,7 +79,7 @@ def _check_commas(rows: Iterable[str], separator: str | None) -> None:
         )
 
 
-def _check_order(rows: Sequence[Row]) -> None:
+def _check_order(rows: Sequence[Sample]) -> None:
     """Raise ValueError if the second column may be the times, too."""
     if len(rows) < 3:
         return
