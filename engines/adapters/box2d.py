@@ -10,7 +10,7 @@ import warnings
 from typing import Any
 
 from engines.adapters.box2d_script import script
-from engines.adapters.box2d_settings import FACTORS, LANDING, TUNED, Box2DSettings
+from engines.adapters.box2d_settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.parts.readback import disagreement
 from engines.parts.shapes import FLOOR_HEIGHTS
@@ -197,4 +197,5 @@ ENGINE = Engine(
     shortest_step=1e-5,
     script=script,
     factors=FACTORS,
+    rules=RULES,
 )

@@ -13,6 +13,7 @@ from engines.adapters.dart_settings import (
     IN_PLANE,
     IN_SPACE,
     LANDING,
+    RULES,
     TUNED,
     DartSettings,
 )
@@ -221,5 +222,6 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     factors=FACTORS,
+    rules=RULES,
     own_step="dartpy:simulation.World.step",
 )

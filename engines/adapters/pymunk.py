@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from engines.adapters.pymunk_script import script
-from engines.adapters.pymunk_settings import FACTORS, LANDING, LEVEL, TUNED, PymunkSettings
+from engines.adapters.pymunk_settings import FACTORS, LANDING, LEVEL, RULES, TUNED, PymunkSettings
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -196,4 +196,5 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     script=script,
     factors=FACTORS,
+    rules=RULES,
 )

@@ -3,7 +3,17 @@
 import math
 from dataclasses import dataclass, replace
 
-from engines.factors import MOVING_BASE, factor, level
+from engines.factors import (
+    BEST,
+    BY_DEFAULT,
+    DEFAULT,
+    LEFT_OUT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, fall
 from engines.scene import Scene
@@ -82,7 +92,11 @@ LANDING = replace(TUNED, positions=True, reflection=True)
 FACTORS = (
     factor("geometry"),
     factor("positions", level("moved by the adapter", positions=True), by_default=False),
-    factor("iterations", level("10", iterations=10), level("100", iterations=100)),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (level("100", iterations=100, sweeps=None),),
+    ),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
     factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
@@ -90,3 +104,20 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Keep the step of `space.step` the same: the impulses it starts from are scaled by the "
+        "ratio of two steps",
+        *("landing", LEFT_OUT, "positions"),
+    ),
+    Rule(
+        "Give a slender body more `iterations`, some 20/sin²α: they are 10",
+        *(BEST, "iterations", BY_DEFAULT),
+    ),
+    Rule(
+        "Scale `collision_slop` to what you build: bodies sink by 0.1 units of length",
+        *(DEFAULT, "slop", "1e-4 m"),
+    ),
+)
+"""What its users should know, each with its measured effect."""

@@ -8,7 +8,14 @@ import math
 from typing import Any
 
 from engines.adapters.rapier_script import script
-from engines.adapters.rapier_settings import FACTORS, LANDING, TUNED, RapierSettings, parameters
+from engines.adapters.rapier_settings import (
+    FACTORS,
+    LANDING,
+    RULES,
+    TUNED,
+    RapierSettings,
+    parameters,
+)
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -195,6 +202,7 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
+    rules=RULES,
     remedy={"iterations": 1000},
     own_step="rapier3d:PhysicsWorld.step",
 )

@@ -3,7 +3,17 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.factors import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, given, setting
 
 
@@ -135,3 +145,23 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Leave the translation out of the plane free: locked, with two rotations, no friction acts",
+        *(BEST, "locks", "y locked"),
+    ),
+    Rule(
+        "Switch `contact_recycling` off: what turns slowly slides off an old contact",
+        *(BEST, "contact recycling", BY_DEFAULT),
+    ),
+    Rule(
+        "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
+        *(DEFAULT, "sleeping", "off"),
+    ),
+    Rule(
+        "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",
+        *(BEST, "contact spring", BY_DEFAULT),
+    ),
+)
+"""What its users should know first."""

@@ -85,6 +85,8 @@ SUMMARIES = {
     "failed": Column("-", "cases without a usable result"),
     "wrong": Column("-", "outcomes that are not the exact ones"),
     "right": Column("-", "outcomes that are the exact ones"),
+    "close": Column("-", "of these, peaks within a tenth, and overturnings"),
+    "far": Column("-", "of these, peaks off by more than a tenth"),
     "agree": Column("-", "outcomes that are the exact ones"),
     "false": Column("-", "false overturnings; in differences.csv their part of the map"),
     "missed": Column("-", "missed overturnings; in differences.csv their part of the map"),
