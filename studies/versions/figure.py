@@ -49,10 +49,11 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> list[Name]
     axes.set_xticks(range(len(releases)), releases, rotation=60, ha="right", fontsize=8)
     for release in changes["release"]:
         axes.axvline(place[str(release)] - 0.5, color="#999999", linewidth=1.0)
-    for release in lines.loc[lines["failed"].isna(), "release"]:
-        axes.axvspan(
-            place[str(release)] - 0.5, place[str(release)] + 0.5, color="#EEEEEE", linewidth=0.0
-        )
+    answered = set(lines.loc[lines["failed"] < lines["cases"], "release"])
+    for release in (name for name in releases if name not in answered):
+        at = place[release]
+        axes.axvspan(at - 0.5, at + 0.5, color="#EEEEEE", linewidth=0.0)
+        axes.text(at, 1e-4, "no answer", rotation=90, fontsize=8, color="#555555", ha="center")
     names = []
     for source, rows in lines[lines["source"] != ""].groupby("source", sort=False):
         engine, _, preset = str(source).partition(":")

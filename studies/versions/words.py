@@ -62,20 +62,24 @@ def _moved(row: Mapping[Any, Any]) -> str:
 
 
 def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
-    """Say of each engine between how many of its releases an answer changed."""
-    words = [
-        f"{engine} {_times(changes[changes['engine'] == engine], mine['release'].nunique() - 1)} "
-        f"from {mine['release'].iloc[0]} to {mine['release'].iloc[-1]}"
-        for engine, mine in _answered(lines).groupby("engine", sort=False)
-        if mine["release"].nunique() > 1
-    ]
-    if not words:
+    """Say between which releases of which engines an answer moved, and between which none did."""
+    moved, still = [], []
+    for engine, mine in _answered(lines).groupby("engine", sort=False):
+        releases = mine["release"].unique()
+        times = len(changes[changes["engine"] == engine])
+        name = f"{engine} ({releases[0]} to {releases[-1]}"
+        if times:
+            moved.append(f"{name}, at {out_of(times, len(releases) - 1)} steps)")
+        elif len(releases) > 1:
+            still.append(f"{name})")
+    if not (moved or still):
         return "Of each engine one release was asked."
-    return f"From a release to the next an answer moves by more than {CHANGED:g}: {listed(words)}."
-
-
-def _times(changes: pd.DataFrame, most: int) -> str:
-    return f"{out_of(len(changes), most)} times" if most > 1 else ("once", "not")[changes.empty]
+    bound, words = f"by more than {CHANGED:g}", []
+    if still:
+        words.append(f"no answer moves {bound} in {listed(still)}")
+    if moved:
+        words.append(f"{'some do' if still else f'answers move {bound}'} in {listed(moved)}")
+    return f"From one release to the next {'; '.join(words)}."
 
 
 def _answered(lines: pd.DataFrame) -> pd.DataFrame:
@@ -93,7 +97,8 @@ def told(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
         ]
         answered = _answered(mine)
         if answered["release"].nunique() > 1:
-            still = f"nothing moved by more than {part(float(answered['moved'].max()))}"
+            most = float(answered["moved"].max())
+            still = f"nothing moved by more than {part(most)}" if most else "nothing moved at all"
             sentences.append(f"{engine}: {'; '.join(moves) or still}.")
         lost = mine[~mine["release"].isin(answered["release"])].drop_duplicates("release")
         if len(lost):

@@ -24,6 +24,7 @@ from studies.versions.notes import NOTES, notes_between
 from studies.versions.releases import Release, check_releases, chosen, last_of_minors, listed
 from studies.versions.report import read
 from studies.versions.tables import CHANGED, releases_table
+from studies.versions.words import first_claim, told
 
 ENGINE = """
 from dataclasses import replace
@@ -210,6 +211,24 @@ def test_a_change_is_what_moves_by_more_than_a_millionth_or_turns():
     assert changes["turned"].to_list() == [0, 1]
 
 
+def test_what_moved_and_what_did_not_is_said():
+    rows = {"3.0.0": [0.3, 0.4], "3.1.0": [0.3, 0.4], "3.2.0": [0.3, 0.5]}
+    asked = [Asked(Release("mujoco", name), answers(peaks)) for name, peaks in rows.items()]
+    still, all_of_them = releases_table(asked[:2]), releases_table(asked)
+    said = first_claim(still, changes_table(still))
+    assert said == (
+        "From one release to the next no answer moves by more than 1e-06 in mujoco "
+        "(3.0.0 to 3.1.0)."
+    )
+    said = first_claim(all_of_them, changes_table(all_of_them))
+    assert said == (
+        "From one release to the next answers move by more than 1e-06 in mujoco (3.0.0 to 3.2.0, "
+        "at 1 of 2 steps)."
+    )
+    told_of = told(all_of_them, changes_table(all_of_them))
+    assert "from 3.1.0 to 3.2.0 1 of 2 peaks by up to 25 % (naive), and no note" in told_of
+
+
 def test_a_release_that_answers_nothing_is_passed_over():
     """Its row says why, and its neighbours are held against each other."""
     lost = answers([math.nan, math.nan], ["failed", "failed"]).assign(message="AttributeError: x")
@@ -245,8 +264,9 @@ def known_elsewhere(name, source):
 @pytest.mark.parametrize("name", [f"figure {FIGURE}", "random"])
 def test_the_published_lines_of_the_pinned_releases_are_those_of_other_studies(name):
     lines, found = read(PUBLISHED / "versions", "releases"), 0
-    here = [releases.installed(row.engine).version == row.release for row in lines.itertuples()]
-    for line in lines[here & (lines["set"] == name)].to_dict("records"):
+    for line in lines[lines["set"] == name].to_dict("records"):
+        if releases.installed(line["engine"]).version != line["release"]:
+            continue
         engine, _, preset = line["source"].partition(":")
         source = engine if preset == "landing" else line["source"]
         mine = known_elsewhere(name, source).iloc[::EVERY]
