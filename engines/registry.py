@@ -22,6 +22,7 @@ OWN = {
     "box2d": "engines.adapters.box2d:ENGINE",
     "dart": "engines.adapters.dart:ENGINE",
     "rapier": "engines.adapters.rapier:ENGINE",
+    "drake": "engines.adapters.drake:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

@@ -18,6 +18,9 @@ from engines.parts.settings import check, setting
 DETECTORS = ("DART", "FCL", "BULLET", "ODE")
 """The library's collision detectors, by its own names."""
 
+IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
+"""Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DartSettings:
@@ -126,6 +129,10 @@ FACTORS = (
 """What its contact can be set to."""
 
 RULES = (
+    Rule(
+        "Let nothing that touches be locked out of the plane: free the base to slide there",
+        *(BEST, "base in the plane", "no"),
+    ),
     Rule(
         "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
         *(BEST, "inertia", "of 1 kg m²"),

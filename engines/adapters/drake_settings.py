@@ -1,0 +1,109 @@
+"""What Drake can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass, replace
+
+from engines.factors import BOTH, DEFAULT, Factor, factor, level
+from engines.parts.settings import check, setting
+from engines.parts.shapes import NO_JAM
+
+CENIC = "cenic"
+"""The integrator of a continuous plant; the other solvers are those of a discrete one."""
+
+SOLVERS = ("lagged", "similar", "sap", CENIC)
+"""The library's models of contact, by its own names."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrakeSettings:
+    """Settings of Drake, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", of which the library sees one contact, the deepest, or "corners": small spheres where
+        the corners at the base are.
+    planar : bool
+        Give the block a planar joint, and two corners in the middle plane instead of four at the
+        edges.
+    friction : float
+        Coefficient between block and base.
+    solver : str or None
+        One of `SOLVERS`; by default "lagged".
+    stiffness : float or None
+        Of a contact over m/dt^2, dt being the step, or the time between two looks at an engine that
+        chooses its own steps; the library's own is 1e6 N/m, whatever the mass.
+    relaxation : float or None
+        Time in which "sap" lets a contact relax, over the step.
+    dissipation : float or None
+        Of the other solvers, over 1/(p R), the time over which a contact's speed is reckoned.
+    stiction : float or None
+        Speed over p R at which a contact that sticks may slip.
+    near_rigid : float or None
+        Of "sap": below which part of what a contact's mass alone would give its stiffness is held.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    accuracy : float or None
+        Of "cenic": the error of a step over alpha, by which it chooses its own; without it, it
+        takes those that it is told.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    friction: float = 1.0
+    solver: str | None = setting(names=SOLVERS)
+    stiffness: float | None = setting(above=0.0)
+    relaxation: float | None = setting(least=0.0)
+    dissipation: float | None = setting(least=0.0)
+    stiction: float | None = setting(above=0.0)
+    near_rigid: float | None = setting(least=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)
+    accuracy: float | None = setting(above=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+TUNED = DrakeSettings(
+    geometry="corners",
+    planar=True,
+    friction=NO_JAM,
+    solver=CENIC,
+    stiffness=1.0,
+    dissipation=1e3,
+    stiction=1e-5,
+)
+
+CONTROLLED = replace(TUNED, stiffness=2.5e3, accuracy=1e-8)
+
+LAGGED = "friction goes by the normal force of the last step, which no impact has foreseen"
+DEEPEST = "a box touches a half-space in one point, its deepest"
+
+FACTORS = (
+    Factor(
+        "solver",
+        ("solver", "relaxation", "near_rigid"),
+        (
+            level("SAP, relaxation 10", solver="sap", relaxation=10.0, near_rigid=0.0),
+            level("SAP, relaxation 1", solver="sap", relaxation=1.0, near_rigid=0.0),
+            level("SAP", (DEFAULT,), solver="sap"),
+            level("similar", BOTH, solver="similar"),
+        ),
+    ),
+    factor("stiffness", level("10", stiffness=10.0), level("0.1", stiffness=0.1)),
+    factor(
+        "dissipation", level("100", dissipation=1e2), level("1e4", trap=LAGGED, dissipation=1e4)
+    ),
+    factor("stiction", level("1e-4", stiction=1e-4)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("4 corners", BOTH, geometry="corners", planar=False),
+            level("planar box", trap=DEEPEST, geometry="box"),
+        ),
+        traps={"fixed": DEEPEST},
+    ),
+    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor("friction", level("10", friction=10.0)),
+)
+"""What its contact can be set to."""

@@ -1,0 +1,127 @@
+"""Drake: how near it comes, by steps of its own too, and the traps that it sets without a word."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from test_landing import errors_of_sweep
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic import simulate
+from analytic.response import Outcome, Reason, Response
+from engines import Scene, run
+from studies.kit.executors import Local
+from studies.kit.jobs import Job
+
+pytestmark = pytest.mark.skipif("drake" not in HERE, reason="pydrake is not installed")
+
+MOTION = pulse(1.3, 3.0, 2)
+OWN_STEPS = "error-controlled"
+
+
+def rocked(preset: str, density: float = 1000.0, **settings: Any) -> Response:
+    return run("drake", scene(MOTION, preset=preset, density=density, settings=settings))
+
+
+def error(preset: str, density: float = 1000.0, **settings: Any) -> float:
+    peak = rocked(preset, density, **settings).peak_ratio
+    return abs(peak / simulate(BLOCK, MOTION).peak_ratio - 1.0)
+
+
+def test_some_of_the_sweep() -> None:
+    """Some ten thousand steps err by 1e-8 alpha each, and a corner is met half a step late."""
+    errors = errors_of_sweep("drake", every=120)
+    assert np.median(errors) < 5e-4
+    assert max(errors) < 2e-3
+
+
+def test_smaller_errors_of_a_step_make_smaller_errors() -> None:
+    found = [error(OWN_STEPS, accuracy=accuracy) for accuracy in (1e-4, 1e-6, 1e-8)]
+    assert found[0] > 5.0 * found[1]
+    assert found[1] > 2.0 * found[2]
+
+
+def test_looks_may_be_far_apart() -> None:
+    """The base's motion is told look by look, the engine's steps are its own in between."""
+    loose, standard = (
+        run("drake", Scene(block=BLOCK, motion=MOTION, accuracy=accuracy))
+        for accuracy in ("loose", "standard")
+    )
+    assert loose.peak_ratio == pytest.approx(standard.peak_ratio, rel=2e-3)
+    assert loose.steps > 0.5 * standard.steps
+
+
+def test_the_library_s_own_accuracy_is_too_loose_for_a_block() -> None:
+    """CENIC's own is 1e-3 m or rad a step, whatever the size: a block may go through its base."""
+    assert error(OWN_STEPS, accuracy=1e-3 / BLOCK.alpha) > 0.05
+
+
+def test_a_contact_is_as_stiff_under_a_heavier_block() -> None:
+    """1e6 N/m, whatever stands on it: a light block errs little, a heavy one sinks in."""
+    light, ordinary = (error("naive", density) for density in (10.0, 1000.0))
+    assert light < 0.02 < 0.1 < ordinary
+    heavy = rocked("naive", density=1e5)
+    assert heavy.reason is Reason.SANK
+
+
+def test_a_contact_that_goes_with_the_mass_errs_as_much_under_any() -> None:
+    light, heavy = (rocked("fixed", density=density).peak_ratio for density in (10.0, 1e5))
+    assert light == pytest.approx(heavy, rel=1e-6)
+
+
+def test_a_soft_contact_hides_the_onset() -> None:
+    """With the library's own a block stands that the base lifts, and that is no failure."""
+    above = run("drake", scene(pulse(1.05, 1.0), preset="naive"))
+    assert above.outcome is Outcome.AT_REST
+    assert simulate(BLOCK, pulse(1.05, 1.0)).outcome is Outcome.ROCKED
+
+
+def test_friction_lags_behind_what_dissipates() -> None:
+    """It goes by the normal force at the beginning of a step, of which dissipation makes much or
+    nothing: the pivot slides, at equal steps by inches."""
+    assert error("fixed") < 5e-3
+    assert error("fixed", dissipation=1e4) > 0.05
+    assert rocked("fixed", dissipation=1e5).reason is Reason.SLID
+
+
+def test_a_box_touches_a_half_space_in_one_point() -> None:
+    assert error("fixed", geometry="box") > 10.0 * error("fixed")
+
+
+def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A condition of its own that does not hold is no error in Python but the end of it."""
+    from engines.adapters import drake
+
+    monkeypatch.setattr(drake, "mean_velocity_of", lambda _: lambda begin, end: float("nan"))
+    response = rocked(OWN_STEPS)
+    assert response.reason is Reason.FAULT
+    assert "condition" in response.message
+    assert "\n" not in response.message
+
+
+def test_a_step_that_does_not_end_is_ended_by_the_limit() -> None:
+    """Steps of its own may become as short as they like within one call of the library."""
+    endless = {"settings": {"accuracy": 1e-300}, "step": 10.0}
+    job = Job(labels={}, block=BLOCK, motion=MOTION, source="drake", options=endless)
+    [(_, response)] = Local(1, 10.0)([job])
+    assert response.outcome is Outcome.FAILED
+    assert response.reason is Reason.UNDECIDED
+    assert "time limit of 10 s" in response.message
+
+
+def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    from engines.adapters.drake import DrakeWorld
+
+    made = DrakeWorld._properties
+
+    def forgetful(self: DrakeWorld, scene: Scene) -> Any:
+        self._s = replace(self._s, friction=0.5)
+        properties = made(self, scene)
+        self._s = replace(self._s, friction=1.3)
+        return properties
+
+    monkeypatch.setattr(DrakeWorld, "_properties", forgetful)
+    assert rocked("fixed").message == "friction was set to 1.3 but reads 0.5"
