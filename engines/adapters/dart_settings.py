@@ -130,10 +130,6 @@ FACTORS = (
 
 RULES = (
     Rule(
-        "Let nothing that touches be locked out of the plane: free the base to slide there",
-        *(BEST, "base in the plane", "no"),
-    ),
-    Rule(
         "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
         *(BEST, "inertia", "of 1 kg m²"),
     ),

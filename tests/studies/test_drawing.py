@@ -118,7 +118,7 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     assert sorted(int(word.split()[0]) for word in rest) == sorted(
         n - MATTER for n in counts if n > MATTER
     )
-    assert len(words) == (mine["preset"].nunique() + 1) + 2 * (MATTER + 1)
+    assert len(words) == sum(1 + min(n, MATTER) + (n > MATTER) for n in counts)
     broken = mine[mine["max_error"].isna()]
     assert all(any(level in word for word in words) for level in broken["level"])
     assert REST not in "".join(words)
