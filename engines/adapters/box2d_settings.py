@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import BEST, BY_DEFAULT, MOVING_BASE, Rule, factor, level
+from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, MOVING_BASE, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, fall
 from engines.scene import Scene
@@ -87,7 +87,8 @@ RULES = (
     Rule(
         "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
         "units, and speed is cut to 2 units a step",
-        *(BEST, "units", BY_DEFAULT),
+        *(DEFAULT, "units", AS_BEST),
+        kept=True,
     ),
     Rule(
         "Lower a floor by that skin, if bodies are to touch it where it is",

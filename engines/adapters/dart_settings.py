@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from engines.factors import (
     BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
     MOVING_BASE,
     UNMOVED_BASE,
@@ -131,16 +130,8 @@ FACTORS = (
 
 RULES = (
     Rule(
-        "Let nothing that touches be locked out of the plane: free the base to slide there",
-        *(BEST, "base in the plane", "no"),
-    ),
-    Rule(
         "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
         *(BEST, "inertia", "of 1 kg m²"),
-    ),
-    Rule(
-        "Count in a small unit of length: depth is corrected by at most 1e-3 units/s",
-        *(BEST, "unit of length", BY_DEFAULT),
     ),
     Rule(
         "Drive a base that moves by a joint's velocity: friction does not feel one that is placed",

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass, replace
 
 from engines.factors import (
-    BEST,
-    BY_DEFAULT,
     DEFAULT,
     LEFT_OUT,
     MOVING_BASE,
+    OWN_STEP,
+    OWN_STEPS,
     Factor,
     Rule,
     factor,
@@ -112,12 +112,12 @@ RULES = (
         *("landing", LEFT_OUT, "positions"),
     ),
     Rule(
-        "Give a slender body more `iterations`, some 20/sin²α: they are 10",
-        *(BEST, "iterations", BY_DEFAULT),
+        "Step finer than 0.02 s: positions move by the velocities of the step before",
+        *(DEFAULT, OWN_STEPS, OWN_STEP),
     ),
     Rule(
-        "Scale `collision_slop` to what you build: bodies sink by 0.1 units of length",
-        *(DEFAULT, "slop", "1e-4 m"),
+        "Leave `collision_slop` above 0: at 0 contacts come and go",
+        *(DEFAULT, "slop", "0"),
     ),
 )
 """What its users should know, each with its measured effect."""

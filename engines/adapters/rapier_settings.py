@@ -158,6 +158,7 @@ RULES = (
     Rule(
         "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
         *(DEFAULT, "sleeping", "off"),
+        kept=True,
     ),
     Rule(
         "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",
