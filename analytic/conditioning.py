@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
+from analytic.cases import law_of, pose, write_pulse
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import (
@@ -24,13 +25,13 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
-from analytic.kernels.law import UPRIGHT, Law, Start
-from analytic.kernels.polynomial import ORDER, highest, slope, value
-from analytic.kernels.rest import acceleration, ground
+from analytic.kernels.law import UPRIGHT, Law, Start, State
+from analytic.kernels.polynomial import ORDER, highest, slope, stretch, value
+from analytic.kernels.rest import acceleration, ground, segment_at
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.simulate import pulse_law, scaled_segments, stack_cases
+from analytic.simulate import scaled_segments
 from analytic.start import REST, folded
 
 AMPLITUDE, RESTITUTION = 0, 1
@@ -62,12 +63,15 @@ def condition_numbers(
 
     Parameters and errors are those of `peak_ratios`; the arrays have the broadcast shape.
     """
-    declared = find_model(model)
-    cases, shape = stack_cases(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
-    constants = np.stack(declared.constants(cases[0]))
-    found = np.empty((2, cases.shape[1]))
-    condition_pulses(declared.linear, accuracy(TOLERANCE), constants, cases, found)
-    return Conditioning(*(row.reshape(shape) for row in found))
+    cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
+    exactly = accuracy(TOLERANCE)
+    by_amplitude, by_eta = np.empty(cases.size), np.empty(cases.size)
+
+    def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
+        condition_pulses(linear, exactly, constants, given, by_amplitude[part], by_eta[part])
+
+    cases.solve(solve)
+    return Conditioning(by_amplitude.reshape(cases.shape), by_eta.reshape(cases.shape))
 
 
 def conditioning(
@@ -92,16 +96,16 @@ def condition_pulses(
     exactly: Accuracy,
     constants: FloatArray,
     cases: FloatArray,
-    found: FloatArray,
+    by_amplitude: FloatArray,
+    by_eta: FloatArray,
 ) -> None:
-    """Fill `found` with the condition numbers of each case, a column of `stack_cases`."""
+    """Write the condition numbers of each case, one a column."""
     work = workspace()
     segments = np.zeros((1, 7))
     for i in range(cases.shape[1]):
-        law = pulse_law(linear, constants[:, i], cases[:, i], segments)
-        found[AMPLITUDE, i], found[RESTITUTION, i] = condition(
-            law, exactly, segments, UPRIGHT, work
-        )
+        law = law_of(linear, constants[:, i], cases[4, i])
+        write_pulse(cases[:, i], segments[0])
+        by_amplitude[i], by_eta[i] = condition(law, exactly, segments, UPRIGHT, work)
 
 
 @kernel
@@ -122,13 +126,22 @@ def condition(
     return follow(law, accuracy, segments, log[: end.events], work)
 
 
+class Slopes(NamedTuple):
+    """Derivatives by ln(a_p) and by ln(eta), a row each.
+
+    now (2, 2): of the rotation and of its rate; peak (2,): of the largest rotation so far.
+    """
+
+    now: FloatArray
+    peak: FloatArray
+
+
 @kernel
 def follow(
     law: Law, accuracy: Accuracy, segments: FloatArray, log: FloatArray, work: FloatArray
 ) -> tuple[float, float]:
     """Follow the derivatives through the excursions between the events of a march's log."""
-    moved = np.zeros(2)
-    state = np.zeros((2, 2))
+    slopes = Slopes(np.zeros((2, 2)), np.zeros(2))
     last = segments[-1, 1]
     peak = y = v = 0.0
     j = 0
@@ -136,8 +149,7 @@ def follow(
         kind, tau, before, after = log[n]
         if kind == RESTED:
             continue
-        while j < segments.shape[0] and tau >= segments[j, 1]:
-            j += 1
+        j = segment_at(segments, j, tau)
         a, y = ground(segments, j, tau), 0.0
         if kind == START:
             side = math.copysign(1.0, before if before != 0.0 else after)
@@ -146,31 +158,30 @@ def follow(
         elif kind == UPLIFT:
             side = -math.copysign(1.0, a)
             lead, v = int(before), 0.0
-            state[:] = 0.0
+            slopes.now[:] = 0.0
         else:
             side, v, lead = math.copysign(1.0, after), abs(after), 1
-            strike(law, side, a, -abs(before), state)
+            strike(law, side, a, -abs(before), slopes.now)
             if v == 0.0:
                 side, lead = -math.copysign(1.0, a), 2
         until = log[n + 1, 1] if n + 1 < log.shape[0] else last
-        y, v, peak = fly(
-            law, accuracy, segments, j, side, tau, until, lead, y, v, state, peak, moved, work
-        )
+        begin = State(side, tau, lead, y, v)
+        y, v, peak = fly(law, accuracy, segments[j:], begin, until, peak, slopes, work)
     if log[-1, 0] != RESTED:
-        peak = peak_to_come(law, y, v, state, peak, moved)
-    return moved[AMPLITUDE] / peak, moved[RESTITUTION] / peak
+        peak = peak_to_come(law, y, v, peak, slopes)
+    return slopes.peak[AMPLITUDE] / peak, slopes.peak[RESTITUTION] / peak
 
 
 @kernel
-def strike(law: Law, side: float, a: float, before: float, state: FloatArray) -> None:
-    """Take the derivatives through an impact, onto `side`; `before` < 0 is the velocity of y."""
+def strike(law: Law, side: float, a: float, before: float, now: FloatArray) -> None:
+    """Take `Slopes.now` through an impact, onto `side`; `before` < 0 is the velocity of y."""
     here, there = acceleration(law, -side, a, 0.0), acceleration(law, side, a, 0.0)
     for i in range(2):
-        later = -state[i, 0] / before
+        later = -now[i, 0] / before
         lost = law.eta * before if i == RESTITUTION else 0.0
-        velocity = -law.eta * (state[i, RATE] + here * later) - lost
-        state[i, 0] = law.eta * before * later
-        state[i, RATE] = velocity - there * later
+        velocity = -law.eta * (now[i, RATE] + here * later) - lost
+        now[i, 0] = law.eta * before * later
+        now[i, RATE] = velocity - there * later
 
 
 @kernel
@@ -178,47 +189,53 @@ def fly(
     law: Law,
     accuracy: Accuracy,
     segments: FloatArray,
-    j: int,
-    side: float,
-    tau: float,
+    begin: State,
     until: float,
-    lead: int,
-    y: float,
-    v: float,
-    state: FloatArray,
     peak: float,
-    moved: FloatArray,
+    slopes: Slopes,
     work: FloatArray,
 ) -> tuple[float, float, float]:
-    """Follow one excursion and its derivatives from (y, v) at `tau` to `until`.
+    """Follow one excursion and its derivatives from a state to a time.
 
-    Returns y, its velocity, and the largest rotation so far, whose derivatives are in `moved`.
+    Parameters
+    ----------
+    law, accuracy, work
+        As for `march`.
+    segments : ndarray, shape (m, 7)
+        The ground motion from the time of the state on.
+    begin : State
+    until : float
+        No later than the end of the motion.
+    peak : float
+        The largest rotation so far.
+    slopes : Slopes
+        Moved on to `until`.
+
+    Returns
+    -------
+    y, v, peak : float
     """
     series, d, spare = work[0], work[4], work[5:]
     delta = np.empty((3, ORDER + 1))
     order = accuracy.order
+    side, tau, lead, y, v = begin
+    j = 0
     while tau < until:
-        while tau >= segments[j, 1]:
-            j += 1
-        series[0], series[1] = y, v
-        h = expand(law, accuracy, segments[j], side, tau, lead, work)
+        j = segment_at(segments, j, tau)
+        h = expand(law, accuracy, segments[j], State(side, tau, lead, y, v), work)
         end = min(segments[j, 1], until)
         landed = tau + h >= end
         if landed:
             h = end - tau
-        expand_derivatives(law, order, work, state, delta)
-        scale = 1.0
-        for i in range(order + 1):
-            d[i] = series[i] * scale
-            delta[0, i] *= scale
-            delta[1, i] *= scale
-            scale *= h
+        stretch(series, order, h, d)
         peak, where = highest(d, order, lead, 1.0, peak, spare)
+        expand_derivatives(law, order, work, slopes.now, delta)
         for i in range(2):
+            stretch(delta[i], order, h, delta[i])
             if where >= 0.0:
-                moved[i] = value(delta[i], order, where)
-            state[i, 0] = value(delta[i], order, 1.0)
-            state[i, RATE] = slope(delta[i], order, 1.0) / h
+                slopes.peak[i] = value(delta[i], order, where)
+            slopes.now[i, 0] = value(delta[i], order, 1.0)
+            slopes.now[i, RATE] = slope(delta[i], order, 1.0) / h
         y, v, lead = value(d, order, 1.0), slope(d, order, 1.0) / h, 0
         tau = end if landed else tau + h
     return y, v, peak
@@ -226,7 +243,7 @@ def fly(
 
 @kernel
 def expand_derivatives(
-    law: Law, order: int, work: FloatArray, state: FloatArray, delta: FloatArray
+    law: Law, order: int, work: FloatArray, now: FloatArray, delta: FloatArray
 ) -> None:
     """Fill delta[:2] with the series of the derivatives, from those `expand` left in `work`.
 
@@ -234,8 +251,8 @@ def expand_derivatives(
     """
     f, sine, cosine = work[1], work[2], work[3]
     stiff = delta[2]
-    delta[:2, 0] = state[:, 0]
-    delta[:2, 1] = state[:, RATE]
+    delta[:2, 0] = now[:, 0]
+    delta[:2, 1] = now[:, RATE]
     for n in range(order - 1):
         forced = law.k * law.k * law.factor * f[n]
         if not law.linear:
@@ -254,9 +271,7 @@ def expand_derivatives(
 
 
 @kernel
-def peak_to_come(
-    law: Law, y: float, v: float, state: FloatArray, peak: float, moved: FloatArray
-) -> float:
+def peak_to_come(law: Law, y: float, v: float, peak: float, slopes: Slopes) -> float:
     """Take the derivatives on to the peak of the free rocking after the motion, if it is higher."""
     ahead = free_peak(law, y, v)
     if ahead <= peak:
@@ -265,8 +280,8 @@ def peak_to_come(
     here, there = -acceleration(law, 1.0, 0.0, y), -acceleration(law, 1.0, 0.0, ahead)
     work = 0.5 * v * v + work_to(law, y)
     for i in range(2):
-        change = kept * (v * state[i, RATE] + here * state[i, 0])
+        change = kept * (v * slopes.now[i, RATE] + here * slopes.now[i, 0])
         if i == RESTITUTION and v < 0.0:
             change += 2.0 * kept * work
-        moved[i] = change / there
+        slopes.peak[i] = change / there
     return ahead

@@ -1,14 +1,12 @@
 """Outcomes and modes of many responses to pulses: what an overturning map is made of."""
 
 import math
-import os
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import housner_restitution
+from analytic.cases import law_of, pose
 from analytic.kernels.closed_form import work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import MAX_STEPS
@@ -25,9 +23,7 @@ from analytic.kernels.swings import (
     swing_linear,
     whole_half_cycles,
 )
-from analytic.models import find_model
 from analytic.motion import FloatArray
-from analytic.simulate import check_cases
 
 NOT_LIFTED, SURVIVES, FAILED = -2, -1, -3
 """Modes that are no number of impacts."""
@@ -35,9 +31,6 @@ NOT_LIFTED, SURVIVES, FAILED = -2, -1, -3
 QUIET = 5e-4
 """Velocity, over the one that just overturns a block from its base, that a map takes for rest
 after the last uplift; the margin is then -1 to within twice as much."""
-
-CHUNK = 16384
-"""Cases that are held as columns of floats at a time."""
 
 
 class Modes(NamedTuple):
@@ -125,7 +118,6 @@ def pulse_mode(
     level = math.asin(law.onset / pulse.amplitude)
     angle = v = side = lifted = 0.0
     impacts = steps = 0
-    series, f, sine, cosine = work[0], work[1], work[2], work[3]
     while True:
         if side == 0.0:
             turned, angle = next_lift(angle, level)
@@ -136,7 +128,7 @@ def pulse_mode(
         if law.linear:
             swing = swing_linear(law, pulse, angle, v, side, level, segment)
         else:
-            swing = swing_exact(law, pulse, angle, v, side, lifted, series, f, sine, cosine)
+            swing = swing_exact(law, pulse, angle, v, side, lifted, work)
         steps += swing.steps
         if swing.end == TOPPLED:
             return impacts, math.inf, steps
@@ -163,16 +155,6 @@ def pulse_mode(
             side = 0.0
 
 
-compiled_restitution = kernel(housner_restitution)
-
-
-@kernel
-def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
-    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness."""
-    for i in range(alpha.size):
-        eta[i] = max(compiled_restitution(alpha[i]), 0.0)
-
-
 @kernel
 def solve_modes(
     linear: bool,
@@ -182,12 +164,11 @@ def solve_modes(
     margins: FloatArray,
     steps: NDArray[np.int32],
 ) -> None:
-    """Solve a chunk of `overturning_modes`, one case a column."""
-    work, segment = np.empty((4, MAP_ORDER + 1)), np.zeros(7)
+    """Solve a part of `overturning_modes`, one case a column."""
+    work, segment = np.empty((5, MAP_ORDER + 1)), np.zeros(7)
     for i in range(cases.shape[1]):
-        k, saddle, factor, alpha, onset = constants[:, i]
-        _, amplitude, omega, half_cycles, eta = cases[:, i]
-        law = Law(linear, k, saddle, factor, alpha, onset, eta)
+        law = law_of(linear, constants[:, i], cases[4, i])
+        _, amplitude, omega, half_cycles, _ = cases[:, i]
         pulse = Pulse(abs(amplitude), omega, int(half_cycles))
         segment[1], segment[2], segment[3] = math.pi / omega, pulse.amplitude, omega
         modes[i], margins[i], steps[i] = pulse_mode(law, pulse, work, segment)
@@ -205,7 +186,7 @@ def overturning_modes(
     """Find whether and how sine pulses overturn blocks, on all cores.
 
     Faster than `peak_ratios`, from other kernels: neither peaks nor what comes after the pulse are
-    computed, and a step of the exact model is accurate to 1e-13. The inputs are broadcast a chunk
+    computed, and a step of the exact model is accurate to 1e-13. The inputs are broadcast a part
     at a time, so that beside them and the results no memory is needed.
 
     Parameters
@@ -224,30 +205,13 @@ def overturning_modes(
     ValueError
         If an argument is outside its range or the shapes do not broadcast.
     """
-    declared = find_model(model)
-    ratio = 0.0 if restitution is None else restitution
-    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, ratio)
-    shape, size = columns[0].shape, columns[0].size
-    found = Modes(np.empty(size, np.int16), np.empty(size), np.empty(size, np.int32))
+    cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
+    size = cases.size
+    mode, margin, steps = np.empty(size, np.int16), np.empty(size), np.empty(size, np.int32)
 
-    def solve(start: int) -> None:
-        part = slice(start, min(start + CHUNK, size))
-        cases = np.array([column.flat[part] for column in columns], dtype=np.float64)
-        if restitution is None:
-            fill_restitution(cases[0], cases[4])
-        check_cases(cases)
-        constants = np.stack(declared.constants(cases[0]))
-        solve_modes(
-            declared.linear,
-            constants,
-            cases,
-            found.mode[part],
-            found.margin[part],
-            found.steps[part],
-        )
+    def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
+        solve_modes(linear, constants, given, mode[part], margin[part], steps[part])
 
-    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-        for _ in pool.map(solve, range(0, size, CHUNK)):
-            pass
-    mode, margin, steps = found
+    cases.solve(solve, threads)
+    shape = cases.shape
     return Modes(mode.reshape(shape), margin.reshape(shape), steps.reshape(shape))

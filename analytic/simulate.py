@@ -1,16 +1,15 @@
 """The reference's two entries: `simulate` for one response, `peak_ratios` for arrays of them."""
 
 import math
-import os
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import RigidBlock, housner_restitution
-from analytic.checks import MOST_HALF_CYCLES, finite
+from analytic.block import RigidBlock
+from analytic.cases import law_of, pose, write_pulse
+from analytic.checks import finite
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import (
     BROKEN,
@@ -24,7 +23,7 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
-from analytic.kernels.law import UPRIGHT, Law
+from analytic.kernels.law import UPRIGHT
 from analytic.kernels.rest import strongest_between
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
@@ -45,9 +44,6 @@ FAILURES = {
 
 LOOSEST = 1e-2
 """Largest tolerance that `simulate` takes."""
-
-CHUNK = 4096
-"""Cases that one call of the compiled kernel takes."""
 
 
 def simulate(
@@ -219,54 +215,16 @@ def peak_ratios(
     ValueError
         If an argument is outside its range or the shapes do not broadcast.
     """
-    declared = find_model(model)
-    cases, shape = stack_cases(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
-    constants = np.stack(declared.constants(cases[0]))
+    cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     exactly = accuracy(TOLERANCE)
-    peaks, codes = np.empty(cases.shape[1]), np.empty(cases.shape[1], dtype=np.int8)
+    peaks, codes = np.empty(cases.size), np.empty(cases.size, dtype=np.int8)
 
-    def solve(start: int) -> None:
-        part = slice(start, start + CHUNK)
-        solve_pulses(
-            declared.linear, exactly, constants[:, part], cases[:, part], peaks[part], codes[part]
-        )
+    def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
+        solve_pulses(linear, exactly, constants, given, peaks[part], codes[part])
 
-    starts = range(0, cases.shape[1], CHUNK)
-    if len(starts) <= 1:
-        for start in starts:
-            solve(start)
-    else:
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(solve, starts))
-    return peaks.reshape(shape), np.array(OUTCOMES, dtype=object)[codes].reshape(shape)
-
-
-def stack_cases(
-    alpha: ArrayLike,
-    amplitude_g: ArrayLike,
-    omega_over_p: ArrayLike,
-    half_cycles: ArrayLike,
-    restitution: ArrayLike | None,
-) -> tuple[FloatArray, tuple[int, ...]]:
-    """Return the parameters of `peak_ratios`, checked, one case a column, and their shape."""
-    alpha = np.asarray(alpha, dtype=np.float64)
-    if restitution is None:
-        restitution = np.maximum(np.vectorize(housner_restitution, otypes=[float])(alpha), 0.0)
-    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, restitution)
-    cases = np.stack([np.ravel(column).astype(np.float64) for column in columns])
-    check_cases(cases)
-    return cases, columns[0].shape
-
-
-@kernel
-def pulse_law(linear: bool, constants: FloatArray, case: FloatArray, segments: FloatArray) -> Law:
-    """Return the law of a column of `stack_cases`, and write its pulse into segments[0]."""
-    k, saddle, factor, alpha, onset = constants
-    _, amplitude, omega, half_cycles, eta = case
-    segments[0, 1] = half_cycles * math.pi / omega
-    segments[0, 2] = amplitude
-    segments[0, 3] = omega
-    return Law(linear, k, saddle, factor, alpha, onset, eta)
+    cases.solve(solve)
+    outcomes = np.array(OUTCOMES, dtype=object)[codes]
+    return peaks.reshape(cases.shape), outcomes.reshape(cases.shape)
 
 
 @kernel
@@ -278,12 +236,13 @@ def solve_pulses(
     peaks: FloatArray,
     codes: NDArray[np.int8],
 ) -> None:
-    """Solve a chunk of `peak_ratios`, one case a column."""
+    """Solve a part of `peak_ratios`, one case a column."""
     work = workspace()
     segments = np.zeros((1, 7))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
     for i in range(cases.shape[1]):
-        law = pulse_law(linear, constants[:, i], cases[:, i], segments)
+        law = law_of(linear, constants[:, i], cases[4, i])
+        write_pulse(cases[:, i], segments[0])
         end = march(law, exactly, segments, UPRIGHT, 0.0, notes, work)
         codes[i] = end.outcome
         peaks[i] = end.peak / law.alpha
@@ -329,20 +288,3 @@ def read_log(
     uplifts = tuple(float(t) / p for kind, t, _, _ in log if kind == UPLIFT)
     rests = tuple(float(t) / p for kind, t, _, _ in log if kind == RESTED)
     return impacts, uplifts, rests
-
-
-def check_cases(cases: FloatArray) -> None:
-    """Raise ValueError unless every column of (alpha, amplitude, omega, n, eta) is in range."""
-    alpha, _, omega, half_cycles, eta = cases
-    whole = (half_cycles >= 1.0) & (half_cycles == np.floor(half_cycles))
-    whole &= half_cycles <= MOST_HALF_CYCLES
-    rules = {
-        "alpha": (alpha, (alpha > 0.0) & (alpha < 0.5 * math.pi), "in (0, pi/2)"),
-        "amplitude_g": (cases[1], np.isfinite(cases[1]), "finite"),
-        "omega_over_p": (omega, (omega > 0.0) & np.isfinite(omega), "positive and finite"),
-        "half_cycles": (half_cycles, whole, f"a whole number from 1 to {MOST_HALF_CYCLES:g}"),
-        "restitution": (eta, (eta >= 0.0) & (eta <= 1.0), "between 0 and 1"),
-    }
-    for name, (column, allowed, words) in rules.items():
-        if not np.all(allowed):
-            raise ValueError(f"{name} is {column[~allowed][0]}; it must be {words}")

@@ -5,6 +5,7 @@ repeated in tenths, and so on, until abs(theta) is below the event tolerance at 
 """
 
 import math
+from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
@@ -27,15 +28,18 @@ from analytic.kernels.excursions import (
     End,
     Notes,
     note,
+    sample_rest,
 )
-from analytic.kernels.law import Law, Start
+from analytic.kernels.law import Law, Start, State
 from analytic.kernels.rest import (
     acceleration,
+    after_impact,
     ground,
     is_finite,
     next_uplift,
-    side_after,
-    time_to_rest,
+    segment_at,
+    shaking,
+    then_still,
 )
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
@@ -97,37 +101,55 @@ def integrate(
     until, sampled = check_window(motion, duration, times)
     begin = folded(block, law, motion, start, sampled)
     segments = scaled_segments(block, motion)
+    solver = Solver(method == "rk4", step, event_tolerance)
 
     def solve(notes: Notes) -> End:
         end = until * block.p if duration is not None else 0.0
-        return tread(law, segments, begin, end, notes, method == "rk4", step, event_tolerance)
+        return tread(law, segments, begin, end, notes, solver)
 
     return respond(block, solve, sampled, times is not None, watched=False)
 
 
+class Solver(NamedTuple):
+    """How to step: by RK4 or by average acceleration; the step [1/p]; the event tolerance [rad]."""
+
+    rk4: bool
+    step: float
+    tolerance: float
+
+
+class Cubic(NamedTuple):
+    """A step as the cubic through (y, v) at its begin and (end, rate) at its end, h later."""
+
+    y: float
+    v: float
+    end: float
+    rate: float
+    h: float
+
+
 @kernel
-def rk4_step(
-    law: Law, segments: FloatArray, j: int, side: float, tau: float, y: float, v: float, h: float
-) -> tuple[float, float]:
-    """Advance (y, v) by one classical Runge-Kutta step."""
-    middle = ground(segments, j, tau + 0.5 * h)
-    k1 = acceleration(law, side, ground(segments, j, tau), y)
+def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
+    """Advance by one classical Runge-Kutta step."""
+    side, tau, _, y, v = begin
+    middle = shaking(segment, tau + 0.5 * h)
+    k1 = acceleration(law, side, shaking(segment, tau), y)
     k2 = acceleration(law, side, middle, y + 0.5 * h * v)
     k3 = acceleration(law, side, middle, y + 0.5 * h * (v + 0.5 * h * k1))
-    k4 = acceleration(law, side, ground(segments, j, tau + h), y + h * (v + 0.5 * h * k2))
-    return y + h * v + h * h * (k1 + k2 + k3) / 6.0, v + h * (k1 + 2.0 * (k2 + k3) + k4) / 6.0
+    k4 = acceleration(law, side, shaking(segment, tau + h), y + h * (v + 0.5 * h * k2))
+    end = y + h * v + h * h * (k1 + k2 + k3) / 6.0
+    return Cubic(y, v, end, v + h * (k1 + 2.0 * (k2 + k3) + k4) / 6.0, h)
 
 
 @kernel
-def average_step(
-    law: Law, segments: FloatArray, j: int, side: float, tau: float, y: float, v: float, h: float
-) -> tuple[float, float]:
-    """Advance (y, v) by one step of constant average acceleration.
+def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
+    """Advance by one step of constant average acceleration.
 
     The end's rotation is found by Newton's method with the tangent of the step's begin (modified
     Newton-Raphson).
     """
-    a0, a1 = ground(segments, j, tau), ground(segments, j, tau + h)
+    side, tau, _, y, v = begin
+    a0, a1 = shaking(segment, tau), shaking(segment, tau + h)
     before = acceleration(law, side, a0, y)
     if law.linear:
         stiffness = law.k * law.k
@@ -144,12 +166,13 @@ def average_step(
         if abs(move) <= 1e-15 * abs(end):
             break
     after = acceleration(law, side, a1, end)
-    return end, v + 0.5 * h * (before + after)
+    return Cubic(y, v, end, v + 0.5 * h * (before + after), h)
 
 
 @kernel
-def cubic(y: float, v: float, end: float, rate: float, h: float, x: float) -> tuple[float, float]:
-    """Return value and slope at x h of the cubic through (y, v) at 0 and (end, rate) at h."""
+def cubic_at(path: Cubic, x: float) -> tuple[float, float]:
+    """Return value and slope of a step at the part x of it."""
+    y, v, end, rate, h = path
     rise = end - y
     c2 = 3.0 * rise - h * (2.0 * v + rate)
     c3 = h * (v + rate) - 2.0 * rise
@@ -157,28 +180,67 @@ def cubic(y: float, v: float, end: float, rate: float, h: float, x: float) -> tu
 
 
 @kernel
-def turning_value(y: float, v: float, end: float, rate: float, h: float) -> float:
-    """Return the maximum of the cubic through (y, v > 0) at 0 and (end, rate <= 0) at h."""
+def turns(path: Cubic) -> bool:
+    """Tell whether the block turns back within a step."""
+    return path.v > 0.0 and path.rate <= 0.0
+
+
+@kernel
+def turning_value(path: Cubic) -> float:
+    """Return the maximum of a step that turns."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if cubic(y, v, end, rate, h, middle)[1] > 0.0:
+        if cubic_at(path, middle)[1] > 0.0:
             low = middle
         else:
             high = middle
-    return cubic(y, v, end, rate, h, low)[0]
+    return cubic_at(path, low)[0]
+
+
+@kernel
+def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
+    """Sample a step from a state; return the number of samples so far."""
+    while n < notes.times.size and notes.times[n] <= begin.tau + path.h:
+        theta, speed = cubic_at(path, (notes.times[n] - begin.tau) / path.h)
+        notes.samples[0, n] = begin.side * theta
+        notes.samples[1, n] = begin.side * speed
+        n += 1
+    return n
+
+
+UNDECIDED = -1
+
+
+@kernel
+def verdict(law: Law, path: Cubic, free: bool) -> int:
+    """Return whether a block is ROCKED or OVERTURNED by the end of a step, or UNDECIDED.
+
+    A free one, for which the ground does nothing more, is at its turning point or past the saddle.
+    """
+    y, v = path.end, path.rate
+    if y >= LYING or (free and y > law.saddle and v >= 0.0):
+        return OVERTURNED
+    return ROCKED if free and turns(path) and y < law.saddle else UNDECIDED
+
+
+@kernel
+def next_side(
+    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
+) -> tuple[float, float]:
+    """Return what `after_impact` does, but 0 for what stays below the tolerance, too.
+
+    It cannot be told from rest.
+    """
+    onward, wait = after_impact(law, segments, j, tau, side, v)
+    pull = -acceleration(law, side, ground(segments, j, tau), 0.0)
+    unseen = wait < math.inf and 0.5 * v * v < tolerance * pull
+    return 0.0 if unseen else onward, wait
 
 
 @kernel
 def tread(
-    law: Law,
-    segments: FloatArray,
-    start: Start,
-    until: float,
-    notes: Notes,
-    rk4: bool,
-    step: float,
-    tolerance: float,
+    law: Law, segments: FloatArray, start: Start, until: float, notes: Notes, solver: Solver
 ) -> End:
     """Follow one response with a fixed step; arguments as for `excursions.march`.
 
@@ -186,28 +248,25 @@ def tread(
     """
     if not is_finite(segments):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    times, samples = notes.times, notes.samples
-    moving = segments[-1, 1]
-    last = max(until, moving)
+    ended = segments[-1, 1]
+    last, followed = max(until, ended), until > ended
+    moving = then_still(segments, until if followed else math.inf)
     side, y, v = start
-    tau, peak, h = 0.0, y, step
+    tau, peak, h = 0.0, y, solver.step
     j = steps = impacts = events = n = 0
     if side != 0.0:
         events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
-            j, rise, side, _ = next_uplift(segments, j, tau, law.onset)
-            while n < times.size and times[n] <= min(rise, last):
-                samples[:, n] = 0.0
-                n += 1
+            j, rise, side, _ = next_uplift(moving, j, tau, law.onset)
+            n = sample_rest(notes, min(rise, last), n)
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
-            tau, h = rise, step
+            tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
-        while j < len(segments) and tau >= segments[j, 1]:
-            j += 1
-        if until > moving and tau >= until:
+        j = segment_at(moving, j, tau)
+        if followed and tau >= until:
             ahead = free_peak(law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, tau)
@@ -215,50 +274,34 @@ def tread(
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
-        boundary = segments[j, 1] if j < len(segments) else (until if until > moving else math.inf)
-        landed = tau + h >= boundary
-        length = boundary - tau if landed else h
-        if rk4:
-            end, rate = rk4_step(law, segments, j, side, tau, y, v, length)
+        segment, begin = moving[j], State(side, tau, 0, y, v)
+        landed = tau + h >= segment[1]
+        length = segment[1] - tau if landed else h
+        if solver.rk4:
+            path = rk4_step(law, segment, begin, length)
         else:
-            end, rate = average_step(law, segments, j, side, tau, y, v, length)
-        if not (abs(end) + abs(rate) < math.inf and length > tau * VANISHING):
+            path = average_step(law, segment, begin, length)
+        if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
             return End(BROKEN, peak, steps, impacts, events, tau)
-        if end < -tolerance and length > 1e-15:
+        if path.end < -solver.tolerance and length > 1e-15:
             h = FRACTION * length
             continue
 
-        if v > 0.0 and rate <= 0.0:
-            peak = max(peak, turning_value(y, v, end, rate, length))
-        peak = max(peak, end)
-        while n < times.size and times[n] <= tau + length:
-            theta, speed = cubic(y, v, end, rate, length, (times[n] - tau) / length)
-            samples[0, n] = side * theta
-            samples[1, n] = side * speed
-            n += 1
-        turned = v > 0.0 and rate <= 0.0 and end < law.saddle
-        tau = boundary if landed else tau + length
-        y, v = end, rate
-        decided = until <= moving < tau
-        if y >= LYING or (decided and y > law.saddle and v >= 0.0):
-            return End(OVERTURNED, peak, steps, impacts, events, tau)
-        if decided and turned:
-            return End(ROCKED, peak, steps, impacts, events, tau)
-        if not (y <= tolerance and v < 0.0):
-            h = step if v > 0.0 else h
-            continue
-
-        impacts += 1
-        events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
-        side, y, v, h = -side, 0.0, -law.eta * v, step
-        while j < len(segments) and tau >= segments[j, 1]:
-            j += 1
-        a = ground(segments, j, tau)
-        wait = time_to_rest(law, side, v, a)
-        # what stays below the tolerance cannot be told from rest
-        unseen = wait < math.inf and 0.5 * v * v < -tolerance * acceleration(law, side, a, 0.0)
-        onward = side_after(law, side, v, a, ground(segments, j, tau + wait), wait)
-        side = 0.0 if unseen else onward
-        if side == 0.0:
-            tau, v = tau + wait, 0.0
-            events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
+        peak = max(peak, turning_value(path) if turns(path) else path.end, path.end)
+        n = sample_cubic(path, begin, notes, n)
+        tau = segment[1] if landed else tau + length
+        y, v = path.end, path.rate
+        found = verdict(law, path, until <= ended < tau)
+        if found != UNDECIDED:
+            return End(found, peak, steps, impacts, events, tau)
+        if v > 0.0:
+            h = solver.step
+        if y <= solver.tolerance and v < 0.0:
+            impacts += 1
+            events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
+            j = segment_at(moving, j, tau)
+            turned, y, v, h = -side, 0.0, -law.eta * v, solver.step
+            side, wait = next_side(law, moving, j, tau, turned, v, solver.tolerance)
+            if side == 0.0:
+                tau, v = tau + wait, 0.0
+                events = note(notes.log, events, RESTED, tau, 0.0, 0.0)

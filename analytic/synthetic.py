@@ -15,10 +15,10 @@ from analytic.motion import FloatArray
 from analytic.record import Record
 
 PER_CYCLE = 200
-"""Default samples in a cycle of a pulse, ..."""
+"""Default samples in a cycle of a pulse."""
 
 MISSED = (2.0 * math.pi / PER_CYCLE) ** 2 / 8.0
-"""... and the part of it, 1.2e-4, that the interpolant then misses."""
+"""Part of a pulse, 1.2e-4, that linear interpolation between PER_CYCLE samples misses."""
 
 RICKER_HALF = 1.5
 """Half length of a Ricker wavelet over its period; there its acceleration is 1e-8 of the peak."""

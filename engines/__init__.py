@@ -27,7 +27,8 @@ The file holds
   `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a dropped
   sphere (`engines.drop`), by which `rocking restitution` asks for a coefficient of restitution;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
-  as its own tutorial uses it) to the best there is, and what the studies try of its contact.
+  as its own tutorial uses it) to the best there is, what the studies try of its contact, and what
+  its users should know first (`rules`), each with the variant that shows what it is worth.
 
 The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
 declaration; every study reads it, and none names an engine.

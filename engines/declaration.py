@@ -9,7 +9,7 @@ from typing import Any
 
 from analytic.block import RigidBlock
 from engines.drop import Bouncing
-from engines.factors import Factor
+from engines.factors import Factor, Rule
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
 from engines.script import Script
@@ -153,6 +153,8 @@ class Engine:
         Ways to ask it for a coefficient of restitution; none where it was not tried.
     factors : tuple of Factor
         What its contact can be set to.
+    rules : tuple of Rule
+        What its users should know first.
     remedy : mapping
         The setting of its solver that is worth a try where a tuned preset fails.
     own_step : str
@@ -179,6 +181,7 @@ class Engine:
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
     bouncing: tuple[Bouncing, ...] = ()
     factors: tuple[Factor, ...] = ()
+    rules: tuple[Rule, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)
     own_step: str = ""
     compiles: bool = False

@@ -7,6 +7,15 @@ from typing import Any
 BEST, DEFAULT = "fixed", "naive"
 """The presets from which one factor at a time is varied."""
 
+AS_BEST, BY_DEFAULT = "as in the best", "default"
+"""Names of the values that these two take from each other."""
+
+LEFT_OUT = "left out"
+"""Name of the factor of what a preset is helped by: without one of them at a time."""
+
+OWN_STEPS, OWN_STEP = "step", "the library's own"
+"""Factor and level of the defaults at their own step, which elsewhere is the same for all."""
+
 BOTH = (BEST, DEFAULT)
 
 Settings = Mapping[str, Any]
@@ -72,6 +81,27 @@ def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Fact
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
 
 
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a user of a library should do, and the variant of a preset that shows what it is worth.
+
+    Attributes
+    ----------
+    words : str
+        In the library's own words, as an order.
+    preset, factor, level : str
+        The variant, as a study of contacts calls it.
+    kept : bool
+        Whether it is the variant that keeps the rule, and the preset that does not.
+    """
+
+    words: str
+    preset: str
+    factor: str
+    level: str
+    kept: bool = False
+
+
 UNMOVED = "a base without a velocity: friction does not feel it"
 
 MOVING_BASE = Factor(
@@ -88,3 +118,6 @@ MOVING_BASE = Factor(
     ),
 )
 """The base that moves in the world, or is moved by position alone (setting `base_velocity`)."""
+
+UNMOVED_BASE = (BEST, MOVING_BASE.name, MOVING_BASE.levels[1].name)
+"""What a rule about such a base is shown by."""

@@ -7,6 +7,7 @@ from studies import (
     animate,
     compare,
     contact,
+    defaults,
     ensemble,
     estimate,
     export,
@@ -25,6 +26,7 @@ from studies import (
     throughput,
     validate,
     validity,
+    versions,
 )
 from studies.kit.study import Chapter, Study
 
@@ -34,6 +36,7 @@ STUDIES: tuple[Study, ...] = (
     animate.STUDY,
     export.STUDY,
     sweep.STUDY,
+    defaults.STUDY,
     histories.STUDY,
     linearizations.STUDY,
     free.STUDY,
@@ -46,6 +49,7 @@ STUDIES: tuple[Study, ...] = (
     contact.STUDY,
     symptoms.STUDY,
     restitution.STUDY,
+    versions.STUDY,
     stability.STUDY,
     overturning.STUDY,
     validity.STUDY,
@@ -63,6 +67,7 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 if TYPE_CHECKING:
     from studies.advise import study as _advise
     from studies.contact import study as _contact
+    from studies.defaults import study as _defaults
     from studies.ensemble import study as _ensemble
     from studies.estimate import study as _estimate
     from studies.free import study as _free
@@ -81,10 +86,11 @@ if TYPE_CHECKING:
     from studies.symptoms import study as _symptoms
     from studies.validate import study as _validate
     from studies.validity import study as _validity
+    from studies.versions import study as _versions
 
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _estimate, _symptoms, _restitution, _score),
+        *(_advise, _defaults, _estimate, _symptoms, _restitution, _score, _versions),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

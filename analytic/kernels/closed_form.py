@@ -7,7 +7,7 @@ acceleration in g. The public functions take radians and the units they name.
 import math
 
 from analytic.kernels.compiled import kernel
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.law import FloatArray, Law, State
 
 SERIES_BELOW = 1.0
 """Below this argument the two differences of functions are summed from their series."""
@@ -52,15 +52,23 @@ def cosh_minus_cosine(x: float, u: float) -> float:
 
 
 @kernel
-def linear_state(
-    law: Law, segment: FloatArray, side: float, tau: float, lead: int, y: float, v: float, h: float
-) -> tuple[float, float]:
-    """Advance y'' = -k^2 [saddle - y + side factor a(tau)] from (y, v) at tau by h > 0.
+def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple[float, float]:
+    """Return rotation and rate, h > 0 after a state, of y'' = -k^2 [saddle - y + side factor a].
 
     The paper's equations (6)-(10) and (17)-(21), corrected, with the terms grouped so that short
-    steps lose no digits. `lead` is 3 after a smooth uplift, where y'' starts from zero.
+    steps lose no digits. With a lead of 3, after a smooth uplift, y'' starts from zero.
+
+    Parameters
+    ----------
+    law : Law
+        A linear one.
+    segment : ndarray, shape (7,)
+        The ground motion: a row of `motion.SEGMENT_COLUMNS` in units of 1/p and g.
+    begin : State
+    h : float
     """
     start, _, amplitude, omega, phase, offset, slope = segment
+    side, tau, lead, y, v = begin
     k, force = law.k, side * law.factor
     psi = omega * (tau - start) + phase
     sine, cosine = math.sin(psi), math.cos(psi)

@@ -13,15 +13,26 @@ import numpy as np
 from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.compiled import kernel
 from analytic.kernels.forces import watch_free, watch_rest, watch_step, watch_train
-from analytic.kernels.law import FloatArray, Law, Start
-from analytic.kernels.polynomial import MAX_DEPTH, ORDER, highest, next_root, slope, value
+from analytic.kernels.law import FloatArray, Law, Start, State
+from analytic.kernels.polynomial import (
+    MAX_DEPTH,
+    ORDER,
+    bracketed_root,
+    highest,
+    next_root,
+    slope,
+    stretch,
+    trend,
+    value,
+)
 from analytic.kernels.rest import (
     acceleration,
+    after_impact,
     ground,
     is_finite,
     next_uplift,
-    side_after,
-    time_to_rest,
+    segment_at,
+    then_still,
 )
 from analytic.kernels.taylor import (
     Accuracy,
@@ -33,6 +44,8 @@ from analytic.kernels.taylor import (
 
 AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
 UPLIFT, IMPACT, RESTED, START = 0.0, 1.0, 2.0, 3.0
+FREE, HIT, FALLEN, LOST = 0, 1, 2, 3
+"""What a step ends with: none of these, an impact, the block on its side, an overflow."""
 LYING = 0.5 * math.pi
 """Rotation at which the side of the block lies on the ground."""
 MAX_STEPS = 2_000_000
@@ -71,6 +84,21 @@ class End(NamedTuple):
     time: float
 
 
+class Step(NamedTuple):
+    """A step: what it ended with, its length h, the part x in (0, 1] of it that was gone.
+
+    Then time, rotation and rate there, and the largest rotation so far.
+    """
+
+    kind: int
+    h: float
+    x: float
+    tau: float
+    y: float
+    v: float
+    peak: float
+
+
 @kernel
 def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
     """Write an event into the log if it has room; return the number of events so far."""
@@ -90,22 +118,17 @@ def workspace() -> FloatArray:
 
 @kernel
 def expand(
-    law: Law,
-    accuracy: Accuracy,
-    segment: FloatArray,
-    side: float,
-    tau: float,
-    lead: int,
-    work: FloatArray,
+    law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
 ) -> float:
-    """Fill work[0] with the series of y, whose y[0] and y[1] are set; return the step it allows."""
+    """Fill work[0] with the series of y from a state; return the step it allows."""
     y, f = work[0], work[1]
-    expand_forcing(segment, tau, side, accuracy.order, f)
-    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0]) if lead < 3 else 0.0
+    y[0], y[1] = begin.y, begin.v
+    expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
+    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0]) if begin.lead < 3 else 0.0
     if law.linear:
         expand_linear(law, accuracy.order, f, y)
         return LINEAR_STEP / max(law.k, segment[3])
-    expand_exact(law, accuracy.order, f, y, work[2], work[3])
+    expand_exact(law, accuracy.order, work)
     return trusted_step(y, accuracy)
 
 
@@ -126,20 +149,11 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
 
 
 @kernel
-def polish(
-    law: Law,
-    segment: FloatArray,
-    side: float,
-    tau: float,
-    lead: int,
-    y: float,
-    v: float,
-    h: float,
-) -> float:
-    """Return the impact near tau + h, found on the series, as the root of the closed form."""
+def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
+    """Return when, about h after a state, the closed form reaches zero."""
     x = h
     for _ in range(4):
-        end, rate = linear_state(law, segment, side, tau, lead, y, v, x)
+        end, rate = linear_state(law, segment, begin, x)
         move = end / rate
         if not abs(move) < 1e-6 * h:
             break
@@ -150,31 +164,85 @@ def polish(
 
 
 @kernel
+def take_step(
+    law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, peak: float, work: FloatArray
+) -> Step:
+    """Step from a state, no further than to an impact, a fall, or the end of a segment.
+
+    Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
+    work[4].
+    """
+    series, d, spare = work[0], work[4], work[5:]
+    order, lead, end = accuracy.order, begin.lead, segment[1]
+    h = expand(law, accuracy, segment, begin, work)
+    if not begin.tau * VANISHING < h < math.inf:
+        return Step(LOST, h, 0.0, begin.tau, begin.y, begin.v, peak)
+    if lead == 1 and series[2] < 0.0:
+        h = min(h, -FAR * begin.v / series[2])
+    whole = begin.tau + h >= end
+    if whole:
+        h = end - begin.tau
+    stretch(series, order, h, d)
+
+    way = trend(d, order, lead)
+    if way > 0:
+        x, peak = 2.0, max(peak, value(d, order, 1.0))
+    elif way < 0 and lead == 0:
+        x = bracketed_root(d, order, 0.0, 1.0) if value(d, order, 1.0) < 0.0 else 2.0
+    else:
+        x = first_crossing(d, order, lead, 0.0, spare)
+        peak, _ = highest(d, order, lead, min(x, 1.0), peak, spare)
+    kind = HIT if x <= 1.0 else FREE
+    x = min(x, 1.0)
+    fall = first_crossing(d, order, 0, LYING, spare) if peak >= LYING else 2.0
+    if fall <= x:
+        kind, x = FALLEN, fall
+    elif kind == HIT and law.linear:
+        x = min(polish(law, segment, begin, x * h) / h, 1.0)
+
+    if law.linear:
+        y, v = linear_state(law, segment, begin, x * h)
+    else:
+        y, v = value(d, order, x), slope(d, order, x) / h
+    # a root within rounding of the step's end may escape the polynomial, not the state
+    if kind == FREE and y <= 0.0:
+        kind = HIT
+    if kind != FALLEN and not abs(y) + abs(v) < math.inf:
+        kind = LOST
+    tau = end if whole and x == 1.0 else begin.tau + x * h
+    return Step(kind, h, x, tau, y, v, peak)
+
+
+@kernel
 def sample_step(
     law: Law,
     segment: FloatArray,
-    side: float,
-    tau: float,
-    lead: int,
-    h: float,
-    end: float,
+    begin: State,
     d: FloatArray,
     order: int,
-    y: float,
-    v: float,
+    step: Step,
     notes: Notes,
     n: int,
 ) -> int:
-    """Sample the step from (y, v) at tau up to tau + end; return the number of samples so far."""
-    times, samples = notes.times, notes.samples
-    while n < times.size and times[n] <= tau + end:
-        at = times[n] - tau
+    """Sample a step, whose series on [0, 1] is d; return the number of samples so far."""
+    h = step.h
+    while n < notes.times.size and notes.times[n] <= begin.tau + step.x * h:
+        at = notes.times[n] - begin.tau
         if law.linear:
-            theta, rate = linear_state(law, segment, side, tau, lead, y, v, at)
+            theta, rate = linear_state(law, segment, begin, at)
         else:
             theta, rate = value(d, order, at / h), slope(d, order, at / h) / h
-        samples[0, n] = side * theta
-        samples[1, n] = side * rate
+        notes.samples[0, n] = begin.side * theta
+        notes.samples[1, n] = begin.side * rate
+        n += 1
+    return n
+
+
+@kernel
+def sample_rest(notes: Notes, until: float, n: int) -> int:
+    """Sample a rest up to a time; return the number of samples so far."""
+    while n < notes.times.size and notes.times[n] <= until:
+        notes.samples[:, n] = 0.0
         n += 1
     return n
 
@@ -207,37 +275,32 @@ def march(
     work : ndarray
         From `workspace()`.
     """
-    series, d, spare = work[0], work[4], work[5:]
-    order = accuracy.order
-    last = max(until, segments[-1, 1])
-    still = np.zeros(7)
     if not is_finite(segments):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
+    watched = notes.limits.size > 0
+    last = max(until, segments[-1, 1])
+    moving = then_still(segments, last)
     side, y, v = start
-    tau, peak = 0.0, y
+    tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
-    lead = 1 if y == 0.0 else 0
     if side != 0.0:
         events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
             resting = j
-            j, rise, side, lead = next_uplift(segments, j, tau, law.onset)
-            while n < notes.times.size and notes.times[n] <= min(rise, last):
-                notes.samples[:, n] = 0.0
-                n += 1
-            if notes.limits.size > 0:
-                watch_rest(notes.limits, segments, resting, tau, rise)
+            j, rise, side, lead = next_uplift(moving, j, tau, law.onset)
+            n = sample_rest(notes, min(rise, last), n)
+            if watched:
+                watch_rest(notes.limits, moving, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last)
             tau = rise
             events = note(notes.log, events, UPLIFT, tau, float(lead), 0.0)
-        while j < len(segments) and tau >= segments[j, 1]:
-            j += 1
+        j = segment_at(moving, j, tau)
         if tau >= last:
             ahead = free_peak(law, y, v)
-            if notes.limits.size > 0:
+            if watched:
                 watch_free(notes.limits, law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, last)
@@ -245,62 +308,24 @@ def march(
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
         steps += 1
-        segment = segments[j] if j < len(segments) else still
-        boundary = segment[1] if j < len(segments) else last
-        series[0], series[1] = y, v
-        h = expand(law, accuracy, segment, side, tau, lead, work)
-        if not tau * VANISHING < h < math.inf:
+        segment, begin = moving[j], State(side, tau, lead, y, v)
+        step = take_step(law, accuracy, segment, begin, peak, work)
+        if step.kind == LOST:
             return End(BROKEN, peak, steps, impacts, events, tau)
-        if lead == 1 and series[2] < 0.0:
-            h = min(h, -FAR * v / series[2])
-        landed = tau + h >= boundary
-        if landed:
-            h = boundary - tau
-        scale = 1.0
-        for i in range(order + 1):
-            d[i] = series[i] * scale
-            scale *= h
-
-        x = first_crossing(d, order, lead, 0.0, spare)
-        hit = x <= 1.0
-        x = min(x, 1.0)
-        peak, _ = highest(d, order, lead, x, peak, spare)
-        fallen = peak >= LYING and first_crossing(d, order, 0, LYING, spare) <= x
-        if fallen:
-            x = first_crossing(d, order, 0, LYING, spare)
-        elif hit and law.linear:
-            x = min(polish(law, segment, side, tau, lead, y, v, x * h) / h, 1.0)
-        n = sample_step(law, segment, side, tau, lead, h, x * h, d, order, y, v, notes, n)
-        if notes.limits.size > 0:
-            watch_step(notes.limits, order, h, x, work)
-        if fallen:
-            return End(OVERTURNED, peak, steps, impacts, events, tau + x * h)
-
-        if law.linear:
-            y, v = linear_state(law, segment, side, tau, lead, y, v, x * h)
-        else:
-            y, v = value(d, order, x), slope(d, order, x) / h
-        if not abs(y) + abs(v) < math.inf:
-            return End(BROKEN, peak, steps, impacts, events, tau)
-        # a root within rounding of the step's end may escape the polynomial, not the state
-        hit = hit or y <= 0.0
-        tau = boundary if landed and x == 1.0 else tau + x * h
-        lead = 0
-        if not hit:
-            continue
-
-        impacts += 1
-        events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
-        side, y, v, lead = -side, 0.0, -law.eta * v, 1
-        a = ground(segments, j, tau)
-        wait = time_to_rest(law, side, v, a)
-        onward = side_after(law, side, v, a, ground(segments, j, tau + wait), wait)
-        if onward == 0.0:
-            if notes.limits.size > 0:
-                watch_train(notes.limits, law, side, a, v)
-            tau += wait
-            events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-            v = 0.0
-        elif v == 0.0:
-            lead = 2
-        side = onward
+        n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
+        if watched:
+            watch_step(notes.limits, accuracy.order, step.h, step.x, work)
+        tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
+        if step.kind == FALLEN:
+            return End(OVERTURNED, peak, steps, impacts, events, tau)
+        if step.kind == HIT:
+            impacts += 1
+            events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
+            turned, y, v = -side, 0.0, -law.eta * v
+            side, wait = after_impact(law, moving, j, tau, turned, v)
+            lead = 1 if v != 0.0 else 2
+            if side == 0.0:
+                if watched:
+                    watch_train(notes.limits, law, turned, ground(moving, j, tau), v)
+                tau, v = tau + wait, 0.0
+                events = note(notes.log, events, RESTED, tau, 0.0, 0.0)

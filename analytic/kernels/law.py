@@ -37,5 +37,19 @@ class Start(NamedTuple):
     v: float
 
 
+class State(NamedTuple):
+    """Where a block is: its side, +1 or -1, the time, rotation y = s theta and its rate.
+
+    lead is the power of time with which the rotation grows from there: 1 out of an impact, 2 or 3
+    out of an uplift (`rest.next_uplift`), 0 where it does not start from zero.
+    """
+
+    side: float
+    tau: float
+    lead: int
+    y: float
+    v: float
+
+
 UPRIGHT = Start(0.0, 0.0, 0.0)
 """A block at rest on its base."""

@@ -45,6 +45,32 @@ def slope(a: FloatArray, degree: int, x: float) -> float:
 
 
 @kernel
+def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
+    """Write the coefficients of sum a[i] (h x)^i into d[0..degree]."""
+    scale = 1.0
+    for i in range(degree + 1):
+        d[i] = a[i] * scale
+        scale *= h
+
+
+@kernel
+def trend(d: FloatArray, degree: int, lead: int) -> int:
+    """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0.
+
+    The first `lead` coefficients are zero.
+    """
+    first = max(lead, 1)
+    least = most = first * d[first]
+    for i in range(first + 1, degree + 1):
+        rate = i * d[i]
+        least += min(rate, 0.0)
+        most += max(rate, 0.0)
+    if least > 0.0:
+        return 1
+    return -1 if most < 0.0 else 0
+
+
+@kernel
 def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
     """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
     for i in range(degree + 1):

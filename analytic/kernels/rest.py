@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from analytic.kernels.compiled import kernel
 from analytic.kernels.law import FloatArray, Law
 
@@ -16,11 +18,33 @@ MOMENT = 1e-12
 @kernel
 def ground(segments: FloatArray, j: int, tau: float) -> float:
     """Return the ground acceleration [g] on segment j; zero after the last."""
-    if j >= segments.shape[0]:
-        return 0.0
-    start, _, amplitude, omega, phase, offset, rate = segments[j]
+    return shaking(segments[j], tau) if j < segments.shape[0] else 0.0
+
+
+@kernel
+def shaking(segment: FloatArray, tau: float) -> float:
+    """Return the ground acceleration [g] on a segment."""
+    start, _, amplitude, omega, phase, offset, rate = segment
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
+
+
+@kernel
+def then_still(segments: FloatArray, end: float) -> FloatArray:
+    """Return a ground motion with one segment more, on which nothing moves until `end`."""
+    count = segments.shape[0]
+    longer = np.zeros((count + 1, segments.shape[1]))
+    longer[:count] = segments
+    longer[count, 0], longer[count, 1] = segments[count - 1, 1], end
+    return longer
+
+
+@kernel
+def segment_at(segments: FloatArray, j: int, tau: float) -> int:
+    """Return on which segment a time is, j or later; their number after the last."""
+    while j < segments.shape[0] and tau >= segments[j, 1]:
+        j += 1
+    return j
 
 
 @kernel
@@ -173,6 +197,19 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
         # no velocity is left, but the ground lifts the block again at once
         return -math.copysign(1.0, now)
     return side
+
+
+@kernel
+def after_impact(
+    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
+) -> tuple[float, float]:
+    """Return `side_after` an impact that sends the block to a side at v, and `time_to_rest`.
+
+    The ground moves on as on segment j.
+    """
+    a = ground(segments, j, tau)
+    wait = time_to_rest(law, side, v, a)
+    return side_after(law, side, v, a, ground(segments, j, tau + wait), wait), wait
 
 
 ZENO = 1e-4

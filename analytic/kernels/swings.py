@@ -19,9 +19,9 @@ from typing import NamedTuple
 from analytic.kernels.closed_form import linear_state
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import LYING, MAX_STEPS
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.law import FloatArray, Law, State
 from analytic.kernels.polynomial import slope, value
-from analytic.kernels.taylor import expand_exact
+from analytic.kernels.taylor import PARTS, expand_exact
 
 LANDED, TOPPLED, LEFT_OVER, STUCK = 0, 1, 2, 3
 """How a swing ends: an impact, overturned, still up when the pulse ends, too many steps."""
@@ -135,8 +135,8 @@ def arc_at(
     """
     k, omega = law.k, pulse.omega
     if t * max(k, omega) < SHORT:
-        begin = arc.start / omega
-        y, v = linear_state(law, segment, arc.side, begin, arc.lead, 0.0, arc.v, t)
+        begin = State(arc.side, arc.start / omega, arc.lead, 0.0, arc.v)
+        y, v = linear_state(law, segment, begin, t)
         return y, v, 0.0
     grown = math.exp(k * t)
     rising, falling = arc.rising * grown, arc.falling / grown
@@ -244,7 +244,7 @@ def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None
     f[1] = side * pulse.amplitude * pulse.omega * math.cos(angle)
     square = pulse.omega * pulse.omega
     for i in range(2, MAP_ORDER + 1):
-        f[i] = -square * f[i - 2] / (i * (i - 1))
+        f[i] = -square * PARTS[i] * PARTS[i - 1] * f[i - 2]
 
 
 @kernel
@@ -298,21 +298,13 @@ def lowest_bound(y: FloatArray, h: float) -> float:
 
 @kernel
 def swing_exact(
-    law: Law,
-    pulse: Pulse,
-    start: float,
-    v: float,
-    side: float,
-    lifted: float,
-    series: FloatArray,
-    f: FloatArray,
-    sine: FloatArray,
-    cosine: FloatArray,
+    law: Law, pulse: Pulse, start: float, v: float, side: float, lifted: float, work: FloatArray
 ) -> Swing:
     """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`.
 
-    Until the time `lifted` the ground lifts the block.
+    Until the time `lifted` the ground lifts the block; `work` has the shape (5, MAP_ORDER + 1).
     """
+    series, f = work[0], work[1]
     alpha, omega = law.alpha, pulse.omega
     low, high = math.sin(alpha), math.cos(alpha)
     t, angle, y, top = 0.0, start, 0.0, 0.0
@@ -325,7 +317,7 @@ def swing_exact(
         # where the ground passes through the onset the second derivative starts from zero
         smooth = y == 0.0 and v == 0.0 and abs(low + f[0] * high) <= CONTACT * low
         series[2] = 0.0 if smooth else -0.5 * (math.sin(alpha - y) + f[0] * math.cos(alpha - y))
-        expand_exact(law, MAP_ORDER, f, series, sine, cosine)
+        expand_exact(law, MAP_ORDER, work)
         ahead = max(((pulse.half_cycles - n) * math.pi - angle) / omega, 0.0)
         h = map_step(series)
         ended = h >= ahead

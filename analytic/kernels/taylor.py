@@ -6,6 +6,8 @@ The rotation is folded to one side, y = s theta > 0; time is in units of 1/p, ac
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from analytic.kernels.compiled import kernel
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import ORDER
@@ -16,6 +18,10 @@ LONGEST_STEP = 4.0
 
 TOLERANCE = 1e-16
 """Default truncation error of a step, relative to the rotation it covers."""
+
+
+PARTS = np.array([0.0, *(1.0 / i for i in range(1, ORDER + 1))])
+"""1/i: where a division by a whole number would be waited for."""
 
 
 class Accuracy(NamedTuple):
@@ -46,51 +52,53 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
     angle = omega * (tau - start) + phase
     f[0] = side * amplitude * math.sin(angle)
     f[1] = side * amplitude * omega * math.cos(angle)
+    square = omega * omega
     for i in range(2, order + 1):
-        f[i] = -omega * omega * f[i - 2] / (i * (i - 1))
+        f[i] = -square * PARTS[i] * PARTS[i - 1] * f[i - 2]
     f[0] += side * (offset + slope * (tau - start))
     f[1] += side * slope
 
 
 @kernel
-def expand_exact(
-    law: Law, order: int, f: FloatArray, y: FloatArray, sine: FloatArray, cosine: FloatArray
-) -> None:
-    """Extend the series y[0], y[1], y[2] by the exact equation, y'' = -[sin z + f cos z].
+def expand_exact(law: Law, order: int, work: FloatArray) -> None:
+    """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
 
     Parameters
     ----------
     law : Law
-        Of which alpha is used: z = alpha - y.
+        Of which alpha is used.
     order : int
         Degree of the series.
-    f : ndarray, shape (>= order + 1,)
-        Taylor coefficients of side x ground acceleration [g].
-    y : ndarray, shape (>= order + 1,)
-        Filled from index 3 on.
-    sine, cosine : ndarray, shape (>= order + 1,)
-        Workspace: the series of sin z and cos z.
+    work : ndarray, shape (>= 5, >= order + 1)
+        Series: of y, of which the first three coefficients are known, of side x ground acceleration
+        [g], known, and of sin z and cos z; the last row is spare.
     """
+    y, f, sine, cosine, rate = work[0], work[1], work[2], work[3], work[4]
     sine[0] = math.sin(law.alpha - y[0])
     cosine[0] = math.cos(law.alpha - y[0])
-    for i in range(1, order - 1):
-        s = c = forced = 0.0
-        for j in range(1, i + 1):
-            rate = j * y[j]
-            s -= rate * cosine[i - j]
-            c += rate * sine[i - j]
-        sine[i] = s / i
-        cosine[i] = c / i
-        for j in range(i + 1):
+    for i in range(order - 1):
+        # three sums at a time, of the forcing now and of the next sine and cosine, and the terms
+        # that were known last at the end: else every addition would wait for the one before
+        rate[i + 1] = (i + 1) * y[i + 1]
+        forced = s = c = 0.0
+        for j in range(1, i):
             forced += f[j] * cosine[i - j]
-        y[i + 2] = -(sine[i] + forced) / ((i + 1) * (i + 2))
+            s += rate[j + 1] * cosine[i - j]
+            c += rate[j + 1] * sine[i - j]
+        if i > 0:
+            s += rate[1] * cosine[i]
+            c += rate[1] * sine[i]
+            forced += f[i] * cosine[0]
+            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * PARTS[i + 1] * PARTS[i + 2]
+        sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * PARTS[i + 1]
+        cosine[i + 1] = (c + rate[i + 1] * sine[0]) * PARTS[i + 1]
 
 
 @kernel
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
     """Extend the series y[0], y[1], y[2] by a linear model, y'' = -k^2 [saddle - y + q f]."""
     for i in range(1, order - 1):
-        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) / ((i + 1) * (i + 2))
+        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * PARTS[i + 1] * PARTS[i + 2]
 
 
 @kernel
@@ -101,15 +109,9 @@ def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
     a step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
     """
     order, tolerance = accuracy
+    last, before = math.log(abs(y[order]) / tolerance), math.log(abs(y[order - 1]) / tolerance)
     h = 1.0
     for _ in range(2):
-        size = max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h)
-        last = abs(y[order]) / size
-        before = abs(y[order - 1]) / size
-        bound = LONGEST_STEP
-        if last > 0.0:
-            bound = min(bound, (tolerance / last) ** (1.0 / order))
-        if before > 0.0:
-            bound = min(bound, (tolerance / before) ** (1.0 / (order - 1)))
-        h = bound
+        size = math.log(max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h))
+        h = min(LONGEST_STEP, math.exp(min((size - last) / order, (size - before) / (order - 1))))
     return h

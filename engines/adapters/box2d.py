@@ -7,14 +7,13 @@ radius, and half is the height by which its floor is raised.
 """
 
 import warnings
-from dataclasses import dataclass, replace
 from typing import Any
 
+from engines.adapters.box2d_script import script
+from engines.adapters.box2d_settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
-from engines.factors import MOVING_BASE, factor, level
 from engines.parts.readback import disagreement
-from engines.parts.settings import check, setting
-from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
+from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
 
@@ -25,49 +24,6 @@ LIBRARY_STEP_S = 1.0 / 60.0
 MANUAL = "the library's own hello world, 1/60 s with 6 and 2 iterations"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Box2DSettings:
-    """Settings of Box2D, by default those of its own first example.
-
-    Attributes
-    ----------
-    geometry : str
-        "box": one polygon on another, or "corners": circles at the corners, each on a polygon of
-        its own.
-    friction : float
-        Coefficient between block and base.
-    iterations, position_iterations : int
-        Of the solver, for velocities and for positions.
-    units : float or None
-        Units of length in the height of the block; None counts in metres.
-    skins_below : bool
-        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
-    continuous : bool
-        Whether the library looks for impacts within a step.
-    margin : float or None
-        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
-        contact.
-    reflection : bool
-        Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
-    """
-
-    geometry: str = setting("box", names=("box", "corners"))
-    friction: float = setting(1.0, least=0.0)
-    iterations: int = setting(6, least=1)
-    position_iterations: int = setting(2, least=0)
-    units: float | None = setting(None, above=0.0)
-    skins_below: bool = False
-    continuous: bool = True
-    margin: float | None = setting(None, above=0.0)
-    reflection: bool = False
-    base_velocity: bool = True
-
-    def __post_init__(self) -> None:
-        check(self)
-
-
 class Box2DWorld:
     """A block on one kinematic body, or on one for each corner."""
 
@@ -76,12 +32,11 @@ class Box2DWorld:
     def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
         self.settings = settings
         block, self._box2d = scene.block, imported()
-        self._unit = 1.0 if settings.units is None else settings.units / block.height
+        self._unit = settings.unit_of(scene)
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
         self._half = (0.5 * block.width * self._unit, 0.5 * block.height * self._unit)
-        fall = (block.alpha * block.p * dt_s) ** 2 * block.height
-        self._reach = 0.5 * (settings.margin or 0.0) * fall * self._unit
+        self._reach = settings.reach_of(scene, dt_s)
         self._world = self._box2d.b2World(gravity=(0.0, 0.0), doSleep=False)
         self._world.continuousPhysics = settings.continuous
         self._far = FLOOR_HEIGHTS * block.height * self._unit
@@ -202,18 +157,6 @@ def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
     return Box2DWorld(scene, settings, dt_s)
 
 
-TUNED = Box2DSettings(
-    geometry="corners",
-    friction=NO_JAM,
-    iterations=100,
-    position_iterations=0,
-    units=50.0,
-    skins_below=True,
-    continuous=False,
-    margin=10.0,
-)
-LANDING = replace(TUNED, reflection=True)
-
 ENGINE = Engine(
     name="box2d",
     title="Box2D",
@@ -252,14 +195,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     precision=Precision.SINGLE,
     shortest_step=1e-5,
-    factors=(
-        factor("geometry"),
-        factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
-        factor("position_iterations", level("2", position_iterations=2)),
-        factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
-        factor("skins_below"),
-        factor("continuous"),
-        factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
-        MOVING_BASE,
-    ),
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
 )

@@ -23,6 +23,7 @@ from engines.adapters.bullet_settings import (
     FACTORS,
     LANDING,
     LIBRARY_STEP_S,
+    RULES,
     TUNED,
     BulletSettings,
     spring,
@@ -211,6 +212,7 @@ ENGINE = Engine(
     spring=spring,
     bouncing=BOUNCING,
     factors=FACTORS,
+    rules=RULES,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",
 )

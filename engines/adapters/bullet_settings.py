@@ -3,7 +3,18 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BEST, BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.factors import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES
 
@@ -195,6 +206,23 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Turn drag off, `changeDynamics(linearDamping=0, angularDamping=0)`: it is 0.04",
+        *(DEFAULT, "damping", AS_BEST),
+        kept=True,
+    ),
+    Rule(
+        "Give a body made of small shapes its own `localInertiaDiagonal`: it is that of the shapes",
+        *(BEST, "inertia", BY_DEFAULT),
+    ),
+    Rule(
+        "Build a box as a box: a convex mesh is held by another algorithm",
+        *(DEFAULT, "geometry", "hull on plane"),
+    ),
+)
+"""What its users should know first."""
 
 
 def spring(time: float, step: float) -> dict[str, float]:

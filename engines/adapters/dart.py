@@ -7,17 +7,23 @@ left where they are.
 
 from typing import Any
 
-from engines.adapters.dart_settings import FACTORS, LANDING, TUNED, DartSettings
+from engines.adapters.dart_script import script
+from engines.adapters.dart_settings import (
+    FACTORS,
+    IN_PLANE,
+    IN_SPACE,
+    LANDING,
+    RULES,
+    TUNED,
+    DartSettings,
+)
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size
+from engines.parts.shapes import Point, corner_spheres, fall, floor_half_size, half_size
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
-
-IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
-"""Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
 
 
 class DartWorld:
@@ -30,8 +36,7 @@ class DartWorld:
         self._dart = imported("dartpy")
         self._moving = scene.frame == "world"
         self._driven = self._moving or settings.reflection
-        fall = (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
-        self._margin = (settings.margin or 0.0) * fall * self._unit
+        self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         self._dt = self._speed = self._place = 0.0
         self._pivot: float | None = None
         self._corners: list[tuple[Any, Point]] = []
@@ -215,6 +220,8 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     spatial=True,
+    script=script,
     factors=FACTORS,
+    rules=RULES,
     own_step="dartpy:simulation.World.step",
 )

@@ -2,11 +2,24 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.factors import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
 
 DETECTORS = ("DART", "FCL", "BULLET", "ODE")
 """The library's collision detectors, by its own names."""
+
+IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
+"""Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,3 +127,19 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Let nothing that touches be locked out of the plane: free the base to slide there",
+        *(BEST, "base in the plane", "no"),
+    ),
+    Rule(
+        "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
+        *(BEST, "inertia", "of 1 kg m²"),
+    ),
+    Rule(
+        "Count in a small unit of length: depth is corrected by at most 1e-3 units/s",
+        *(BEST, "unit of length", BY_DEFAULT),
+    ),
+)
+"""What its users should know first."""

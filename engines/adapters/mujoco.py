@@ -14,6 +14,7 @@ from engines.adapters.mujoco_settings import (
     DEFAULT_CONTACT_S,
     FACTORS,
     LANDING,
+    RULES,
     TUNED,
     MujocoSettings,
     kept,
@@ -270,6 +271,7 @@ ENGINE = Engine(
     spring=spring,
     bouncing=BOUNCING,
     factors=FACTORS,
+    rules=RULES,
     remedy={"impratio": 100.0},
     own_step="mujoco:mj_step",
 )

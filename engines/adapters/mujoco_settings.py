@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
+from engines.factors import BOTH, DEFAULT, MOVING_BASE, UNMOVED_BASE, Factor, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
 
@@ -195,6 +195,19 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Give contacts a `solref` that follows the step: it is 0.02 s, and soft",
+        *(DEFAULT, "reference", "2 dt 1"),
+        kept=True,
+    ),
+    Rule(
+        "Give a base that is moved its velocity, `surfacevel`: friction does not feel a mocap move",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
 
 
 def kept(scene: Scene, s: MujocoSettings) -> MujocoSettings:

@@ -7,15 +7,14 @@ positions itself, by the library's own function, from the library's own velociti
 """
 
 import math
-from dataclasses import dataclass, replace
 from typing import Any
 
+from engines.adapters.pymunk_script import script
+from engines.adapters.pymunk_settings import FACTORS, LANDING, LEVEL, RULES, TUNED, PymunkSettings
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
-from engines.factors import MOVING_BASE, factor, level
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
-from engines.parts.settings import check, setting
-from engines.parts.shapes import FLOOR_HEIGHTS, NO_JAM
+from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
 
@@ -25,55 +24,8 @@ UNIT_S = 1e-3
 MOST_REFLECTION = 2.0
 """A step that is much longer than the one before gives back no more than this part."""
 
-LEVEL = 1e-9
-"""A block that leans by less [rad] stands on both corners: held to the margin while it falls, the
-free corner would come to rest above the base."""
-
 LIBRARY_STEP_S = 0.02
 README = "the library's own first example, space.step(0.02)"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PymunkSettings:
-    """Settings of pymunk; None leaves the library's default.
-
-    Attributes
-    ----------
-    geometry : str
-        "box": one polygon on one segment, or "corners": points at the corners, each on a polygon of
-        its own.
-    friction : float
-        Coefficient between block and base.
-    iterations, slop, bias : optional
-        `Space.iterations`, `collision_slop` [m] and `collision_bias`.
-    sweeps : float or None
-        Iterations over 1/sin^2(alpha), in place of `iterations`: the impulses of the two corners
-        on which a block stands converge the slower, the more slender it is.
-    positions : bool
-        Move the positions after the velocities, by the adapter.
-    margin : float or None
-        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
-        contact; slop is then beyond it.
-    reflection : bool
-        Give the pivot's velocity back while the block turns about it, by elasticity and surface
-        velocity.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
-    """
-
-    geometry: str = setting("box", names=("box", "corners"))
-    friction: float = setting(1.0, least=0.0)
-    iterations: int | None = setting(None, least=1)
-    slop: float | None = setting(None, least=0.0)
-    bias: float | None = setting(None, least=0.0, most=1.0)
-    sweeps: float | None = setting(None, above=0.0)
-    positions: bool = False
-    margin: float | None = setting(None, above=0.0)
-    reflection: bool = False
-    base_velocity: bool = True
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 class PymunkWorld:
@@ -83,16 +35,13 @@ class PymunkWorld:
         self.settings = settings
         self._pm: Any = imported("pymunk")
         self._half = (0.5 * scene.block.width, 0.5 * scene.block.height)
-        fall = (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
-        self._margin = (settings.margin or 0.0) * fall
+        self._margin = settings.margin_of(scene, dt_s)
         self._moving, self._dt = scene.frame == "world", 0.0
-        self._iterations = settings.iterations
-        if settings.sweeps is not None:
-            self._iterations = math.ceil(settings.sweeps / math.sin(scene.block.alpha) ** 2)
+        self._iterations = settings.iterations_of(scene)
         self._space = self._pm.Space()
         self._base = self._pm.Body(body_type=self._pm.Body.KINEMATIC)
         self._body = self._pm.Body(scene.mass, scene.inertia[1])
-        self._set(scene)
+        self._set(scene, settings.slop_of(scene, dt_s))
         self._space.add(self._base, self._body, *self._shapes(scene))
         self._fault = self._read_back(scene)
 
@@ -130,10 +79,9 @@ class PymunkWorld:
         """Release the engine's memory."""
         self._space.remove(*self._space.shapes, *self._space.bodies)
 
-    def _set(self, scene: Scene) -> None:
+    def _set(self, scene: Scene, slop: float | None) -> None:
         s, begin = self.settings, scene.beginning
         space, body = self._space, self._body
-        slop = s.slop if s.margin is None else 10.0 * self._margin
         for name, value in {
             "iterations": self._iterations,
             "collision_slop": slop,
@@ -209,15 +157,6 @@ def build(scene: Scene, settings: PymunkSettings, dt_s: float) -> PymunkWorld:
     return PymunkWorld(scene, settings, dt_s)
 
 
-TUNED = PymunkSettings(
-    geometry="corners",
-    friction=NO_JAM,
-    sweeps=20.0,
-    bias=0.0,
-    margin=10.0,
-)
-LANDING = replace(TUNED, positions=True, reflection=True)
-
 ENGINE = Engine(
     name="pymunk",
     title="pymunk",
@@ -255,14 +194,7 @@ ENGINE = Engine(
         ),
     ),
     geometries=("box", "corners"),
-    factors=(
-        factor("geometry"),
-        factor("positions", level("moved by the adapter", positions=True), by_default=False),
-        factor("iterations", level("10", iterations=10), level("100", iterations=100)),
-        factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
-        factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
-        factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
-        factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
-        MOVING_BASE,
-    ),
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
 )

@@ -7,12 +7,19 @@ a step of less than some 1e-6/p has the noise of its contact for a velocity.
 import math
 from typing import Any
 
-from engines.adapters.rapier_settings import FACTORS, LANDING, TUNED, RapierSettings
+from engines.adapters.rapier_script import script
+from engines.adapters.rapier_settings import (
+    FACTORS,
+    LANDING,
+    RULES,
+    TUNED,
+    RapierSettings,
+    parameters,
+)
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.settings import given
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
@@ -106,16 +113,9 @@ class RapierWorld:
 
     def _set_parameters(self) -> None:
         s, model = self._s, self._rapier.FrictionModel
-        wanted = {
-            "num_solver_iterations": s.substeps,
-            "num_internal_pgs_iterations": s.iterations,
-            "num_internal_stabilization_iterations": s.stabilization,
-            "contact_recycling": s.recycling,
-            "warmstart_coefficient": s.warm_starting,
-            "friction_model": None if s.coulomb is None else model.COULOMB,
-        }
-        for name, value in given(wanted).items():
-            setattr(self._parameters, name, value)
+        for name, value in parameters(s).items():
+            chosen = getattr(model, value) if isinstance(value, str) else value
+            setattr(self._parameters, name, chosen)
         if s.frequency is not None:
             self._soften(s.frequency, s.damping_ratio)
 
@@ -200,7 +200,9 @@ ENGINE = Engine(
     spatial=True,
     precision=Precision.SINGLE,
     shortest_step=3e-6,
+    script=script,
     factors=FACTORS,
+    rules=RULES,
     remedy={"iterations": 1000},
     own_step="rapier3d:PhysicsWorld.step",
 )

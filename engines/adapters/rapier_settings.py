@@ -1,9 +1,20 @@
 """What Rapier can be set to: its settings, the tuned ones, and what the studies try of them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, Factor, factor, level
-from engines.parts.settings import check, setting
+from engines.factors import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
+from engines.parts.settings import check, given, setting
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +84,20 @@ class RapierSettings:
             raise ValueError("frequency is None; it must be given wherever by_phase is set")
 
 
+def parameters(s: RapierSettings) -> dict[str, Any]:
+    """Return the library's parameters that are set, by their own names; a model by its name."""
+    return given(
+        {
+            "num_solver_iterations": s.substeps,
+            "num_internal_pgs_iterations": s.iterations,
+            "num_internal_stabilization_iterations": s.stabilization,
+            "contact_recycling": s.recycling,
+            "warmstart_coefficient": s.warm_starting,
+            "friction_model": None if s.coulomb is None else "COULOMB",
+        }
+    )
+
+
 TUNED = RapierSettings(
     geometry="corners",
     planar=True,
@@ -120,3 +145,23 @@ FACTORS = (
     MOVING_BASE,
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Leave the translation out of the plane free: locked, with two rotations, no friction acts",
+        *(BEST, "locks", "y locked"),
+    ),
+    Rule(
+        "Switch `contact_recycling` off: what turns slowly slides off an old contact",
+        *(BEST, "contact recycling", BY_DEFAULT),
+    ),
+    Rule(
+        "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
+        *(DEFAULT, "sleeping", "off"),
+    ),
+    Rule(
+        "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",
+        *(BEST, "contact spring", BY_DEFAULT),
+    ),
+)
+"""What its users should know first."""

@@ -14,6 +14,11 @@ FLOOR_HEIGHTS = 100.0
 """Half of the extent of a base that is a box, in heights of the block and in its depths."""
 
 
+def fall(scene: Scene, dt_s: float) -> float:
+    """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot."""
+    return (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
+
+
 def half_size(scene: Scene) -> Point:
     """Return half of the block's size [m] along x, y and z."""
     return (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)

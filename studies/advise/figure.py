@@ -23,7 +23,7 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     lines : DataFrame
         The columns of advice.csv.
     """
-    drawing = Figure(figsize=(8.0, 4.8), layout="constrained")
+    drawing = Figure(figsize=(8.4, 5.2), layout="constrained")
     axes = drawing.subplots()
     engines = list(lines["engine"].unique())
     names = []
@@ -59,12 +59,16 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
         fillstyle=style.fill,
         markersize=6,
     )
+    steps = [_step(value) for value in kept["value"]]
+    name = f"{engine} {preset}"
+    if len(set(steps)) == 1:
+        return Name(f"{name}, {steps[0]}", float(errors[-1]), float(times[-1]), style.colour)
     changed = kept["value"].ne(kept["value"].shift())
     for error, time, value in zip(
         errors[changed], times[changed], kept["value"][changed], strict=True
     ):
         axes.annotate(
-            "its own" if math.isnan(value) else f"{value:g}",
+            _step(value),
             (error, time),
             xytext=(-4, 5) if above else (4, -5),
             textcoords="offset points",
@@ -73,7 +77,11 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
             fontsize=8,
             color=style.colour,
         )
-    return Name(f"{engine} {preset}", float(errors[-1]), float(times[-1]), style.colour)
+    return Name(name, float(errors[-1]), float(times[-1]), style.colour)
+
+
+def _step(value: float) -> str:
+    return "its own" if math.isnan(value) else f"{value:g}"
 
 
 def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:

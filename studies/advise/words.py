@@ -129,18 +129,14 @@ def _at(value: float) -> str:
 
 
 def told(lines: pd.DataFrame) -> str:
-    """Say of every preset which errors it keeps, and from where nothing does."""
-    sentences = []
-    for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
-        kept, lost = group[group["message"] == ""], group[group["message"] != ""]
-        words = [
-            f"{part(float(line['target']))} at {_at(float(line['value']))} "
-            f"({duration(float(line['wall_s']))}, at most {part(float(line['max_error']))} "
-            f"on {line['cases']} cases)"
-            for _, line in kept.iterrows()
-        ]
-        if len(lost):
-            errors = listed([part(float(str(target))) for target in lost["target"]])
-            words.append(f"{errors}: {lost.iloc[0]['message']}")
-        sentences.append(f"{engine} {preset}: {'; '.join(words)}.")
-    return " ".join(sentences)
+    """Say of every error which presets keep it, and which keep none."""
+    names = lines["engine"] + " " + lines["preset"]
+    kept = lines["message"] == ""
+    sentences = [
+        f"An error of {part(float(str(target)))} is kept by {listed(list(names[group.index]))}."
+        for target, group in lines[kept].groupby("target", sort=False)
+    ]
+    none = [name for name in names.unique() if not kept[names == name].any()]
+    return " ".join(
+        [*sentences, f"None of these is kept by {listed(none)}."] if none else sentences
+    )

@@ -1,16 +1,24 @@
 """One factor at a time: from the best setting of an engine, and from its library's defaults."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
-from engines.factors import BEST, BOTH, DEFAULT, Factor
+from engines.factors import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    LEFT_OUT,
+    OWN_STEP,
+    OWN_STEPS,
+    Factor,
+)
 
-AS_BEST, BY_DEFAULT = "as in the best", "default"
-"""Names of the values that the presets take from each other."""
-
-OWN_STEP = "step: the library's own"
+MOVED = f"{OWN_STEP}, the base moving in the world"
+"""The defaults at their own step once more, in the other frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,11 +45,13 @@ def variants(engine: str) -> Iterator[Variant]:
     presets = {preset.name: preset.title for preset in declared.presets}
     for name in [name for name in presets if name not in BOTH]:
         yield Variant(engine=engine, preset=name, factor="", level=presets[name])
+        yield from _left_out(engine, name)
     for name in [name for name in BOTH if name in presets]:
         yield Variant(engine=engine, preset=name, factor="", level=presets[name])
         if name == DEFAULT:
-            factor, _, own = OWN_STEP.partition(": ")
-            yield Variant(engine=engine, preset=name, factor=factor, level=own)
+            own = Variant(engine=engine, preset=name, factor=OWN_STEPS, level=OWN_STEP)
+            yield own
+            yield replace(own, level=MOVED, scene={"frame": "world"})
         for factor_ in declared.factors:
             if set(BOTH) <= presets.keys():
                 yield from _exchanged(engine, name, factor_)
@@ -68,6 +78,16 @@ def _exchanged(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
             settings=wanted,
             trap=factor.traps.get(preset, ""),
         )
+
+
+def _left_out(engine: str, preset: str) -> Iterator[Variant]:
+    """Yield a preset without each of what it is helped by, where that can be left out."""
+    for help_, settings in ENGINES[engine].preset(preset).helped_by.items():
+        if settings is not None:
+            level = help_.name.lower()
+            yield Variant(
+                engine=engine, preset=preset, factor=LEFT_OUT, level=level, settings=settings
+            )
 
 
 def _levels(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:

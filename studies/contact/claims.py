@@ -9,8 +9,9 @@ from typing import Any
 
 import pandas as pd
 
-from engines.factors import BEST, DEFAULT
-from studies.cases.variants import BY_DEFAULT
+from engines import ENGINES
+from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS, Rule
+from studies.cases.variants import MOVED
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
@@ -21,6 +22,8 @@ than the second, both relative, makes no difference worth a sentence."""
 
 SHOWN = 4
 """How many settings a sentence names."""
+
+FRAMES = "Defaults at their own step, largest error with a body force and on a base that moves"
 
 FROM = {BEST: "from the tuned preset", DEFAULT: "from the defaults"}
 """Preset -> where one setting at a time is changed."""
@@ -46,6 +49,20 @@ def errors_of(line: "pd.Series[Any]") -> str:
         return words or "-"
     error = scientific(float(line["max_error"]))
     return f"{error} ({words})" if words else error
+
+
+def error_words(line: "pd.Series[Any]") -> str:
+    """Return the same for a sentence or a table of few words."""
+    if line["failed"] == line["cases"]:
+        return "no result"
+    broken = int(line["failed"]) + int(line["wrong"])
+    return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
+
+
+def both_errors(line: "pd.Series[Any]") -> str:
+    """Return the median and the largest error in few words, and how many cases are wrong."""
+    words = error_words(line)
+    return words if line["failed"] == line["cases"] else f"{part(line['median_error'])}, {words}"
 
 
 def first_claim(lines: pd.DataFrame) -> str:
@@ -114,9 +131,11 @@ def unnoticed(varied: pd.DataFrame) -> pd.DataFrame:
 
 def findings(lines: pd.DataFrame) -> str:
     """Return the findings in sentences, a line each."""
-    return "\n".join(
+    sentences = [
         sentence for engine in lines["engine"].unique() for sentence in of_engine(lines, engine)
-    )
+    ]
+    sentences += [f"{FRAMES}: {frames(lines)}."] if frames(lines) else []
+    return "\n".join(sentences)
 
 
 def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
@@ -127,12 +146,80 @@ def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
         if len(varied):
             sentences += _of_preset(lines, engine, preset, varied)
     mine = lines[lines["engine"] == engine]
+    sentences += _prices(engine, mine)
+    sentences += [
+        f"Rule, {engine}. {rule.words}. Error, median and largest, without it {without}; with it "
+        f"{with_it}."
+        for rule, without, with_it in rules(lines, engine)
+    ]
     for _, line in mine[mine["trap"] != ""].iterrows():
         sentences.append(
             f"Trap: {name_of(line)} ({FROM[line['preset']]}): {line['trap']}; largest error "
             f"{errors_of(line)}{line['message'] and ', ' + line['message']}."
         )
     return sentences
+
+
+def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
+    """Return the largest error of an engine's best preset without each of what it is helped by.
+
+    Returns
+    -------
+    dict
+        Name of a `Help` -> the error and what fails; "" -> the preset as it is; "STEPS" -> that
+        with equal steps.
+    """
+    best = ENGINES[engine].best.name
+    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
+    asked = mine[mine["factor"].isin(["", LEFT_OUT])]
+    found = {line["level"] if line["factor"] else "": line for _, line in asked.iterrows()}
+    words = {name.upper(): error_words(line) for name, line in found.items()}
+    equal = variant_of(lines, engine, BEST)
+    return words | ({} if equal is None else {"STEPS": error_words(equal)})
+
+
+def _prices(engine: str, lines: pd.DataFrame) -> list[str]:
+    words = prices(lines, engine)
+    whole = words.pop("", None)
+    if whole is None:
+        return []
+    left = listed([f"{error} without {name.lower()}" for name, error in words.items()])
+    return [f"{engine}, {ENGINES[engine].best.name} as it is, {whole} at most; {left}."]
+
+
+def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
+    """Return an engine's rules, each with the errors without it and with it."""
+    found = []
+    for rule in ENGINES[engine].rules:
+        plain = variant_of(lines, engine, rule.preset)
+        other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
+        if plain is not None and other is not None:
+            pair = (plain, other) if rule.kept else (other, plain)
+            found.append((rule, both_errors(pair[0]), both_errors(pair[1])))
+    return found
+
+
+def frames(lines: pd.DataFrame) -> str:
+    """Say of each engine what its defaults err by in either frame, at the library's own step."""
+    words = []
+    for engine in lines["engine"].unique():
+        still, moved = (
+            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (OWN_STEP, MOVED)
+        )
+        if still is not None and moved is not None:
+            words.append(f"{engine} {error_words(still)} and {error_words(moved)}")
+    return "; ".join(words)
+
+
+def variant_of(
+    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
+) -> "pd.Series[Any] | None":
+    """Return the line of a preset, or of a variant of it; None where there is none."""
+    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
+    wanted &= lines["factor"] == factor
+    if level:
+        wanted &= lines["level"] == level
+    return lines[wanted].iloc[0] if wanted.any() else None
 
 
 def _of_preset(lines: pd.DataFrame, engine: str, preset: str, varied: pd.DataFrame) -> list[str]:

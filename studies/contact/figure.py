@@ -10,9 +10,14 @@ from matplotlib.lines import Line2D
 
 from engines.factors import BEST, DEFAULT
 
-COLOURS = {"landing": "#009E73", BEST: "#0072B2", DEFAULT: "#D55E00"}
-TITLES = {BEST: "one change from the best fixed-step setting", DEFAULT: "one from the defaults"}
-MATTER = 10
+LANDING = "landing"
+COLOURS = {LANDING: "#009E73", BEST: "#0072B2", DEFAULT: "#D55E00"}
+TITLES = {
+    LANDING: "one help of landing left out",
+    BEST: "one change from the best fixed-step setting",
+    DEFAULT: "one from the defaults",
+}
+MATTER = 6
 """How many variants of a preset are drawn one by one."""
 REST = "the rest"
 LOWEST, BROKEN, HIGHEST = 1e-6, 2.0, 4.0
@@ -29,22 +34,18 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     """
     engines = list(lines["engine"].unique())
     shown = {engine: _ordered(lines[lines["engine"] == engine]) for engine in engines}
-    across = min(len(engines), 2)
-    down = math.ceil(len(engines) / across)
-    most = max(map(len, shown.values()))
-    size = (6.4 * across, 1.5 + down * (0.6 + 0.2 * most))
-    drawing = Figure(figsize=size, layout="constrained")
-    panels = list(drawing.subplots(down, across, squeeze=False).flat)
-    for axes, (engine, ordered) in zip(panels, shown.items(), strict=False):
+    heights = [0.6 + 0.19 * len(ordered) for ordered in shown.values()]
+    drawing = Figure(figsize=(8.6, 1.3 + sum(heights)), layout="constrained")
+    panels = drawing.subplots(len(engines), 1, squeeze=False, sharex=True, height_ratios=heights)
+    for axes, (engine, ordered) in zip(panels[:, 0], shown.items(), strict=True):
         _one_engine(axes, ordered)
-        axes.set_title(engine)
-    for axes in panels[len(engines) :]:
-        axes.set_visible(False)
+        axes.set_title(engine, fontsize=11)
+    panels[-1, 0].set_xlabel("relative error  [–]")
     drawing.suptitle(
         f"The {MATTER} changes of each preset that matter most, from the smallest error down",
         fontsize=11,
     )
-    drawing.legend(handles=_handles(), loc="outside lower center", ncols=4, frameon=False,
+    drawing.legend(handles=_handles(), loc="outside lower center", ncols=3, frameon=False,
                    fontsize=9)  # fmt: skip
     return drawing
 
@@ -54,7 +55,7 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
     axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
     for place, (_, line) in enumerate(ordered.iterrows()):
         _one_variant(axes, place, line)
-    for preset in (BEST, DEFAULT):
+    for preset in COLOURS:
         _baseline(axes, ordered, preset)
     axes.set_yticks(range(len(ordered)), [_label(line) for _, line in ordered.iterrows()])
     for text, (_, line) in zip(axes.get_yticklabels(), ordered.iterrows(), strict=True):
@@ -63,7 +64,6 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
             text.set_fontweight("bold")
         elif line["factor"] == REST:
             text.set_fontstyle("italic")
-    axes.set_xlabel("relative error  [–]")
     axes.grid(axis="x", alpha=0.25)
 
 

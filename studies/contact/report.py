@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import BEST, DEFAULT
-from studies.cases.variants import AS_BEST, BY_DEFAULT, preset_values
-from studies.contact.claims import errors_of, findings, first_claim, name_of, overview
+from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
+from studies.cases.variants import preset_values
+from studies.contact.claims import errors_of, findings, first_claim, name_of, overview, variant_of
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
@@ -26,7 +26,7 @@ def report(folder: Path) -> str:
     """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
     from studies.drawing.figures import save_all
 
-    lines = variant_table(_read(folder / "contact.csv"))
+    lines = variant_table(read(folder / "contact.csv"))
     provenance.write_text(folder / "variants.csv", lines.to_csv(index=False, na_rep="nan"))
     save_all(pictures(folder), folder)
     text = "\n".join(
@@ -49,12 +49,12 @@ def report(folder: Path) -> str:
 
 def headline(folder: Path) -> str:
     """Return, for each engine, the tuned setting that matters most."""
-    return first_claim(_read(folder / "variants.csv"))
+    return first_claim(read(folder / "variants.csv"))
 
 
 def paragraph(folder: Path) -> str:
     """Return, for each engine, the errors of its presets and the settings that matter most."""
-    lines = _read(folder / "variants.csv")
+    lines = read(folder / "variants.csv")
     return " ".join(overview(lines, engine) for engine in lines["engine"].unique())
 
 
@@ -62,10 +62,10 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw the largest error of every variant of a folder from its variants.csv alone."""
     from studies.contact.figure import draw_contact
 
-    return {"contact": draw_contact(_read(folder / "variants.csv"))}
+    return {"contact": draw_contact(read(folder / "variants.csv"))}
 
 
-def _read(path: Path) -> pd.DataFrame:
+def read(path: Path) -> pd.DataFrame:
     """Read a table back with empty words as such."""
     words = dict.fromkeys(("factor", "level", "trap", "message"), str)
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
@@ -138,10 +138,10 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
     """Return what to set, and the errors without it and with nothing else, by importance."""
     table = []
     for engine in lines["engine"].unique():
-        naive = _find(lines, engine, DEFAULT, "")
+        naive = variant_of(lines, engine, DEFAULT, "")
         for factor in ENGINES[engine].factors:
-            left = _find(lines, engine, BEST, factor.name, BY_DEFAULT)
-            alone = _find(lines, engine, DEFAULT, factor.name, AS_BEST)
+            left = variant_of(lines, engine, BEST, factor.name, BY_DEFAULT)
+            alone = variant_of(lines, engine, DEFAULT, factor.name, AS_BEST)
             if naive is None or alone is None:
                 continue
             values = preset_values(engine, BEST, factor.settings)
@@ -160,16 +160,6 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(table).sort_values(
         ["engine", "weight"], ascending=[False, False], ignore_index=True
     )
-
-
-def _find(
-    lines: pd.DataFrame, engine: str, preset: str, factor: str, level: str = ""
-) -> "pd.Series[Any] | None":
-    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
-    wanted &= lines["factor"] == factor
-    if level:
-        wanted &= lines["level"] == level
-    return lines[wanted].iloc[0] if wanted.any() else None
 
 
 def _with_ratio(line: "pd.Series[Any]") -> str:

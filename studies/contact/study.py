@@ -11,9 +11,10 @@ import numpy as np
 from analytic.response import Outcome, Response
 from engines import ENGINES, core_engines
 from engines.declaration import Stepping
+from engines.factors import OWN_STEPS
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.cases.variants import OWN_STEP, Variant, variants
+from studies.cases.variants import Variant, variants
 from studies.contact import STUDY
 from studies.contact.report import headline, paragraph, pictures, report
 from studies.kit.arguments import Place, check_engines, several
@@ -96,7 +97,7 @@ def job_of(variant: Variant, kind: str, case: Case, quick: bool) -> Job:
     """Return the job of a variant and a case."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
-    if stepping is Stepping.FIXED and variant.name != OWN_STEP:
+    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS:
         options["step"] = QUICK_STEP if quick else STEP
     window = free_rocking_window(case.block, case.motion)
     return Job(

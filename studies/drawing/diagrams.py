@@ -66,7 +66,7 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
         Names of the lines by `changed`.
     """
     grids = list(quantiles["grid"].unique())
-    drawing = Figure(figsize=(11.0, 5.6), layout="constrained")
+    drawing = Figure(figsize=(9.4, 5.2), layout="constrained")
     panels = drawing.subplots(1, len(grids), sharex=True, sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, grids, strict=True):
         part = quantiles[quantiles["grid"] == name]
@@ -111,7 +111,7 @@ def draw_free(rows: pd.DataFrame) -> Figure:
     rows : DataFrame
         The columns of free.csv.
     """
-    drawing = Figure(figsize=(12.0, 4.8), layout="constrained")
+    drawing = Figure(figsize=(9.2, 4.2), layout="constrained")
     panels = drawing.subplots(1, 3, sharex=True, sharey=True)
     titles = {
         "period_error": "time between two impacts",
@@ -126,8 +126,9 @@ def draw_free(rows: pd.DataFrame) -> Figure:
             look = {**style.points(), "linestyle": line_of(str(source)), "linewidth": style.width}
             axes.plot(worst.index, worst, **look)
             ends.append(Name(str(source), worst.index[-1], float(worst.iloc[-1]), style.colour))
-        axes.set(yscale="log", title=title)
-        axes.set_xlabel("rotation from which the block falls  θ0/α  [–]")
+        axes.set(yscale="log")
+        axes.set_title(title, fontsize=10)
+        axes.set_xlabel("released from  θ0/α  [–]")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("error, relative but for the drift")
     beside(panels[-1], ends)

@@ -84,6 +84,7 @@ PLACES = (
     *((0, 7, "center", "bottom"), (6, -7, "left", "top"), (-6, -7, "right", "top")),
     *((6, 7, "left", "bottom"), (-6, 7, "right", "bottom"), (0, -18, "center", "top")),
     *((10, -16, "left", "top"), (-10, -16, "right", "top"), (10, 16, "left", "bottom")),
+    *((28, 0, "left", "center"), (24, -12, "left", "top"), (-24, -12, "right", "top")),
 )
 """Where a name may stand from its point [points], and how it is aligned there; best first."""
 LETTER = 0.62
@@ -113,7 +114,7 @@ def around(axes: Axes, names: Sequence[Name], taken: FloatArray, size: float = 8
         found = [_box(anchor, place, LETTER * size * len(name.text), size) for place in PLACES]
         costs = [
             _covered(box, spots)
-            + 20 * sum(_overlap(box, other) for other in boxes)
+            + 100 * sum(_overlap(box, other) for other in boxes)
             + 100 * (box[0] < left or box[1] < foot or box[2] > right or box[3] > top)
             for box in found
         ]

@@ -65,7 +65,7 @@ def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.Da
     """
     sizes = _sizes(stripes)
     others = [name for name in stripes["source"].unique() if name != "exact"]
-    size_in = (3.9 * len(sizes) + 1.0, 4.4 + 0.25 * len(others))
+    size_in = (2.6 * len(sizes) + 1.4, 4.4 + 0.25 * len(others))
     drawing = Figure(figsize=size_in, layout="constrained")
     grid = drawing.subplots(
         2, len(sizes), sharey="row", squeeze=False, height_ratios=(3.2, 0.25 * len(others) + 0.3)
@@ -124,7 +124,7 @@ def _curves(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> None:
         # side by side, or one would hide the other
         nudge = 1.0 + 0.008 * (number - 0.5 * len(sources))
         axes.plot(nudge * stripe["intensity"], stripe["share"], **style.points(4.0))
-    axes.set(xscale="log", xlabel="PGA / (g tan α)  [–]", ylim=(-0.03, 1.03))
+    axes.set(xscale="log", xlabel="peak acceleration / (g tan α)", ylim=(-0.03, 1.03))
     ticks = sorted(stripes["intensity"].unique())
     axes.xaxis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.xaxis.set_ticks([], minor=True)
@@ -158,6 +158,6 @@ def _capacities(axes: Axes, agreement: pd.DataFrame, sources: Sequence[str]) -> 
         axes.plot([line["ratio_low"], line["ratio_high"]], [place, place], color=style.colour)
         axes.plot(line["capacity_ratio"], place, **style.points(6.0))
     axes.axvline(1.0, color="#999999", linewidth=0.8, zorder=0)
-    axes.set(ylim=(len(sources) - 0.4, -0.6), xlabel="capacity over the exact one  [–]")
+    axes.set(ylim=(len(sources) - 0.4, -0.6), xlabel="capacity / exact  [–]")
     axes.set_yticks(range(len(sources)), sources, fontsize=8)
     axes.grid(axis="x", alpha=0.25)

@@ -7,14 +7,12 @@ from typing import Any
 import pandas as pd
 
 from studies.measures.differences import scientific, with_reference
-from studies.measures.halving import BOUNDED, MOST_TRUSTED, estimate
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, estimates_of
 from studies.measures.presets import in_words, preset_of
 from studies.measures.words import listed, out_of, part
 
 RESOLVED = 1e-9
 """Errors below are as good as none: no estimate has to bound them."""
-
-KEY = ["case", "source"]
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
@@ -32,12 +30,7 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
         error over the estimate, 0 where there is no error to speak of; nan unless both rocked.
     """
     whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
-    finer = rows[rows["half"] == 1].set_index(KEY)
-    found = [
-        estimate(row, dict(finer.loc[(row["case"], row["source"])]))
-        for row in whole.to_dict("records")
-    ]
-    whole = whole.assign(estimate=found)
+    whole = whole.assign(estimate=estimates_of(whole, rows[rows["half"] == 1]))
     errors = whole["error"].abs()
     over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
     return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))

@@ -24,7 +24,7 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
     lines = lines[lines["over"].notna() & np.isfinite(lines["estimate"])]
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
-    drawing = Figure(figsize=(4.0 * len(names) + 1.2, 4.6), layout="constrained")
+    drawing = Figure(figsize=(2.9 * len(names) + 0.9, 4.2), layout="constrained")
     panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
     ends = np.array([FLOOR, 10.0])
     for axes, preset in zip(panels, names, strict=True):
@@ -32,15 +32,17 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
         axes.plot(ends, 10.0 * ends, color="#777777", linewidth=0.9, linestyle=":")
         _points(axes, lines[presets == preset])
         axes.set(xscale="log", yscale="log", xlim=(FLOOR / 2, 10.0), ylim=(FLOOR / 2, 10.0))
-        axes.set_title(in_words(preset), fontsize=10)
-        axes.set_xlabel("estimate: difference to half the step  [–]")
+        axes.set_title(in_words(preset), fontsize=9)
+        axes.set_xlabel("difference to half the step  [–]")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("true error of the peak  [–]")
     ten = [
-        Name("error = 10 estimates", 1.0, 10.0, "#777777"),
-        Name("error = estimate", 10.0, 5.0, "#777777"),
+        Name("error = 10 ×", 1.0, 10.0, "#777777"),
+        Name("error = 1 ×", 10.0, 5.0, "#777777"),
     ]
     beside(panels[-1], ten, 8.0)
+    drawing.suptitle("Whether the change by half the step tells the error; "
+                     "counted: above ten times the change", fontsize=11)  # fmt: skip
     return drawing
 
 
@@ -57,7 +59,7 @@ def _points(axes: Axes, lines: pd.DataFrame) -> None:
         axes.text(
             0.97,
             0.1 - 0.06 * place,
-            f"{source}: {above} of {len(rows)} above ten estimates",
+            f"{source}: {above} of {len(rows)} above",
             color=style.colour,
             fontsize=8,
             transform=axes.transAxes,

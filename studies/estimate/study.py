@@ -15,10 +15,11 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
-from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
+from studies.sources.registry import Effort
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,6 +31,7 @@ def command(
     cases: Count = 150,
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
+    effort: EffortOptions = OWN_EFFORT,
     running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
@@ -51,14 +53,16 @@ def command(
     check_sources(sources)
     # at a step and at half of it, which takes twice as long
     everyone = ("exact", *3 * sources)
-    running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes)
-    jobs = pairs(cases, seed, sources)
+    running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)
+    jobs = pairs(cases, seed, sources, effort)
     growing = {"case": range(cases), "source": sources}
-    plan = Plan(jobs=jobs, settings={"seed": seed}, growing=growing)
+    plan = Plan(jobs=jobs, settings={"seed": seed, **asdict(effort)}, growing=growing)
     return carry_out(STUDY, plan, out, running, report)
 
 
-def pairs(cases: int, seed: int, sources: tuple[str, ...]) -> list[Job]:
+def pairs(
+    cases: int, seed: int, sources: tuple[str, ...], effort: Effort = OWN_EFFORT
+) -> list[Job]:
     """Return two jobs for each case and source, the second at half the step.
 
     Raises
@@ -70,7 +74,13 @@ def pairs(cases: int, seed: int, sources: tuple[str, ...]) -> list[Job]:
     for case in islice(draw(seed), cases):
         for source in sources:
             labels = {**asdict(case), "half": 0}
-            job = Job(labels=labels, block=case.block, motion=case.motion, source=source)
+            job = Job(
+                labels=labels,
+                block=case.block,
+                motion=case.motion,
+                source=source,
+                options=effort.options(source),
+            )
             finer = halved(job)
             if finer is None:
                 words = "it must be an engine with steps that can be halved"

@@ -16,9 +16,9 @@ from studies.sources.registry import resolve
 SWINGS = 3
 """Swings after the fall from the tilt that are compared."""
 IMPACTS = 20
-"""Impacts over which the times of a source drift from those of the closed form, ..."""
+"""Impacts, at most, over which the times of a source drift from those of the closed form."""
 LEAST_SWING = 1e-3
-"""... or fewer, as many as are followed by swings to this part of alpha or more."""
+"""Part of alpha that the swing after an impact must reach for its drift to count."""
 
 
 def reduce(job: Job, response: Response) -> Row:

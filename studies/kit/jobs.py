@@ -19,10 +19,10 @@ LONG_S = 1.0
 """Expected time [s] beyond which a job gets a process of its own, where it can be given up."""
 
 STEP_S = {"peer": 1e-6}
-"""About how long a source takes over a step of its kind [s], ..."""
+"""Kind of a source -> about how long it takes over a step [s]; COMPILED_STEP_S if not here."""
 
 COMPILED_STEP_S = 1e-7
-"""... and a compiled one."""
+"""About how long a compiled source takes over a step [s]."""
 
 SLOWEST_RETURN = 40.0
 """Time, in units of 1/p, in which a free block turns or is lost, if it does so at all: so near to

@@ -29,7 +29,7 @@ CASES = {
     "alpha": Column("rad", "atan(B/H), the critical rotation θcr"),
     "tilt": Column("-", "rotation from which the block falls, over θcr"),
     "case": Column("", "number or name of the case"),
-    "set": Column("", "typical, or near overturning"),
+    "set": Column("", "typical, or near overturning; in releases.csv figure 8, or random"),
     "group": Column("", "what is extreme in the case"),
     "grid": Column("", "the paper's grid, or a wider one"),
     "x": Column("-", "abscissa of an overturning map: ω/p, slenderness or size"),
@@ -48,7 +48,7 @@ ANSWERS = {
     "impacts": Column("-", "impacts until the peak was decided"),
     "steps": Column("-", "steps of the integrator or engine"),
     "wall_s": Column("s", "time of the steps alone"),
-    "setup_s": Column("s", "time before the first step"),
+    "setup_s": Column("s", "time before the first step; in releases.csv to make an environment"),
     "step_s": Column("s", "time of one step; in shares.csv the whole of it"),
     "message": Column("", "why a row failed, or what should be known about it"),
     "time_s": Column("s", "time on the ground's clock"),
@@ -85,6 +85,8 @@ SUMMARIES = {
     "failed": Column("-", "cases without a usable result"),
     "wrong": Column("-", "outcomes that are not the exact ones"),
     "right": Column("-", "outcomes that are the exact ones"),
+    "close": Column("-", "of these, peaks within a tenth, and overturnings"),
+    "far": Column("-", "of these, peaks off by more than a tenth"),
     "agree": Column("-", "outcomes that are the exact ones"),
     "false": Column("-", "false overturnings; in differences.csv their part of the map"),
     "missed": Column("-", "missed overturnings; in differences.csv their part of the map"),
@@ -109,6 +111,7 @@ SUMMARIES = {
 ESTIMATES = {
     "half": Column("-", "1 for the run at half the step"),
     "estimate": Column("-", "relative difference of the peak from that at half the step"),
+    "bound": Column("-", "the estimate times its published factor_95"),
     "over": Column("-", "|error| over the estimate; 0 where the error is below 1e-9"),
     "median_estimate": Column("-", "median of the estimates"),
     "factor_50": Column("-", "factor on the estimates that bounds half of the errors"),
@@ -123,7 +126,9 @@ SYMPTOMS = {
     "symptom": Column("", "what a user of an engine sees"),
     "measure": Column("", "column of variants.csv that measures it"),
     "shown_by": Column("", "settings that show it"),
-    "before": Column("-", "the measure with these; inf where there is no result"),
+    "before": Column(
+        "-", "the measure with these; inf where there is no result; in changes.csv a release"
+    ),
     "setting": Column("", "the one setting that helps most; empty where none halves it"),
     "literal": Column("", "what it changes in the library's words, B = 0.5 m, H = 1.5 m"),
     "after": Column("-", "the measure with this setting alone"),
@@ -146,6 +151,16 @@ RESTITUTION = {
     "off_speed": Column("-", "the same at other speeds"),
     "off_radius": Column("-", "the same at other radii"),
     "broken": Column("-", "drops that the library did not survive"),
+}
+
+VERSIONS = {
+    "release": Column("", "version of the engine's package"),
+    "moved_cases": Column("-", "peaks that moved by more than 1e-6 from the release before"),
+    "turned": Column("-", "outcomes that are others than in the release before"),
+    "disk_mib": Column("MiB", "room that the release's environment takes"),
+    "presets": Column("", "presets with an answer that changed"),
+    "note": Column("", "what the release notes say, of each release in between"),
+    "link": Column("", "where they say it"),
 }
 
 ADVICE = {
@@ -184,7 +199,9 @@ METHODS = {
     "factor": Column("", "setting that differs from the preset; in steps.csv between two steps"),
     "level": Column("", "what it is set to"),
     "trap": Column("", "why a setting goes wrong without a word"),
-    "moved": Column("-", "largest relative change of a peak of the preset"),
+    "moved": Column(
+        "-", "largest relative change of a peak of the preset; in releases.csv from the one before"
+    ),
     "ratio_over_eta": Column("-", "velocity ratio at impacts over Housner's η, the median"),
     "ratio_moved": Column("-", "relative change of that from the preset's"),
     "velocity_ratio": Column("-", "velocity after over before an impact, the median"),
@@ -290,6 +307,7 @@ GROUPS = {
     "Estimates": ESTIMATES,
     "Symptoms": SYMPTOMS,
     "Restitution": RESTITUTION,
+    "Versions": VERSIONS,
     "Advice": ADVICE,
     "Methods and settings": METHODS,
     "Maps": MAPS,

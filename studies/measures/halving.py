@@ -66,6 +66,19 @@ def estimate(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
     return abs(float(row["peak_ratio"]) / float(finer["peak_ratio"]) - 1.0)
 
 
+def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame) -> list[float]:
+    """Return the estimate of each row, nan for one without a run at half its step.
+
+    Parameters
+    ----------
+    rows, finer : DataFrame
+        Columns case, source, outcome and peak_ratio; those at half the step in the second.
+    """
+    halves = {(row["case"], row["source"]): row for row in finer.to_dict("records")}
+    pairs = ((row, halves.get((row["case"], row["source"]))) for row in rows.to_dict("records"))
+    return [math.nan if half is None else estimate(row, half) for row, half in pairs]
+
+
 def with_estimates(rows: Sequence[Row], finer: Sequence[Row]) -> list[Row]:
     """Return rows of different sources with their estimates, and with what these bound.
 

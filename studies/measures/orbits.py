@@ -9,9 +9,9 @@ from analytic.motion import FloatArray, SinePulse
 from analytic.response import Response
 
 LAST_PERIODS = 48
-"""Forcing periods at the end of a response that are looked at, ..."""
+"""Forcing periods at the end of a response that are looked at."""
 SAMPLES = 256
-"""... at so many times each."""
+"""Times at which each forcing period is looked at."""
 LONGEST = 16
 """Longest orbit, in forcing periods, that is told from chaos."""
 SAME = 1e-6

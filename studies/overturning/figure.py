@@ -79,7 +79,7 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     drawn += list(parts)[:1] if not any(off.values()) else []
     across = min(len(drawn), 3)
     down = math.ceil(len(drawn) / across)
-    drawing = Figure(figsize=(3.9 * across, 3.4 * down + 0.8), layout="constrained")
+    drawing = Figure(figsize=(3.0 * across, 2.8 * down + 0.9), layout="constrained")
     panels = list(drawing.subplots(down, across, squeeze=False).flat)
     right = picture(areas[areas["model"] == "exact"], window)
     for place, (axes, source) in enumerate(zip(panels, drawn, strict=False)):

@@ -1,4 +1,4 @@
-"""The cases that engines were asked, small enough to be held by a page."""
+"""What engines answer over the plane of pulses, small enough to be held by a page."""
 
 import math
 from pathlib import Path
@@ -7,47 +7,41 @@ from typing import Any
 import pandas as pd
 
 from studies.cases.paper import PULSES
-from studies.measures.presets import in_order, is_engine, preset_of
-from studies.page.facts import PRESETS_FROM
+from studies.defaults.claims import INVALID
+from studies.defaults.study import read
 
-CASE = ["pulse", "aspect", "width_m", "amplitude_g", "omega_over_p"]
-DIGITS = 8
+DIGITS = 5
 OVERTURNED = -1.0
 """What stands in place of a peak; a case that failed has None."""
+AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
+"""Columns of the grid, the last running fastest."""
 
 
 def engine_cases(folder: Path) -> dict[str, Any]:
-    """Return what the exact solution and the engines say of the paper's cases.
+    """Return what the exact solution and the engines answer on the grid of `rocking defaults`.
 
     Returns
     -------
     dict
-        sources: the exact solution and engines, those with the libraries' defaults first; rows: of
-        each case the half cycles, H/B, B [m], amplitude [g], omega/p, and each source's peak.
+        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order, without
+        the study's table of no source; judged: of each case 1, or 0 where the block would slide or
+        lift off.
     """
-    tables = [folder / name / "sweep.csv" for name in PRESETS_FROM]
-    held = [pd.read_csv(path) for path in tables if path.is_file()]
-    if not held:
-        return {"sources": [], "rows": []}
-    rows = pd.concat(held, ignore_index=True)
-    engines = [name for name in rows["source"].unique() if is_engine(name)]
-    order = in_order(map(preset_of, engines))
-    sources = ["exact", *sorted(engines, key=lambda name: order.index(preset_of(name)))]
+    path = folder / "defaults" / "defaults.csv"
+    if not path.is_file():
+        return {"peaks": {}}
+    rows = read(path.parent)
     rows = rows.assign(
-        amplitude_g=1.0 / rows["aspect"] + rows["excess_g"],
+        half_cycles=rows["pulse"].map(PULSES),
         peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
     )
-    wide = rows.drop_duplicates([*CASE, "source"]).pivot(
-        index=CASE, columns="source", values="peak"
-    )
-    found = wide.reindex(columns=sources)
-    return {
-        "sources": sources,
-        "rows": [
-            [PULSES[str(case[0])], *(_short(x) for x in (*case[1:], *peaks))]
-            for case, peaks in zip(found.index, found.to_numpy(float), strict=True)
-        ],
-    }
+    axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
+    order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
+    wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
+    found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
+    slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
+    judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
+    return {**axes, "peaks": found, "judged": judged.tolist()}
 
 
 def _short(value: float) -> float | None:

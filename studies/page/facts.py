@@ -10,6 +10,8 @@ from engines import ENGINES
 from engines.declaration import Help
 from engines.registry import OWN
 from studies.catalogue import CHAPTERS
+from studies.contact.claims import frames, prices, rules
+from studies.contact.report import read as read_variants
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
@@ -23,6 +25,9 @@ from studies.sweep.claims import preset_table, whole
 
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
+
+NINTH = Path("tests", "plugin", "my_engine.py")
+"""An engine of another package, in few lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +81,10 @@ def missing(published: Path) -> list[str]:
 
 
 def presets(published: Path) -> pd.DataFrame:
-    """Return a line for each preset and engine over the paper's cases."""
-    lines = [preset_table(whole(published / name)) for name in PRESETS_FROM]
-    return pd.concat(lines).drop_duplicates("source", ignore_index=True)
+    """Return a line for each preset and engine over the paper's cases, of what a folder holds."""
+    held = [name for name in PRESETS_FROM if (published / name / "summary.csv").is_file()]
+    lines = pd.concat([preset_table(whole(published / name)) for name in held])
+    return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
 def presets_text(lines: pd.DataFrame) -> str:
@@ -186,19 +192,47 @@ def glossary() -> list[tuple[str, str]]:
     ]
 
 
-def helps() -> str:
-    """Return what each engine's adapter does for landing, as the engines declare it."""
-    landing = {
-        ENGINES[name].title: preset.helped_by
-        for name in OWN
-        for preset in ENGINES[name].presets
-        if preset.name == "landing"
-    }
+def helps(published: Path) -> str:
+    """Return what each engine's adapter does for landing, and the largest error without it."""
+    lines = _variants(published)
+    helped = {name: ENGINES[name].best.helped_by for name in OWN}
+    price = {name: prices(lines, name) for name in OWN}
     rows = [
-        (capital(each.value), *("yes" if each in helped else "–" for helped in landing.values()))
+        (
+            capital(each.value),
+            *(price[name].get(each.name, "yes") if each in helped[name] else "–" for name in OWN),
+        )
         for each in Help
     ]
-    return table(("landing", *landing), [row for row in rows if "yes" in row])
+    whole = ("**All of it**", *(f"**{price[name].get('', '-')}**" for name in OWN))
+    heads = ("landing without", *(ENGINES[name].title for name in OWN))
+    return table(heads, [whole, *(row for row in rows if set(row[1:]) != {"–"})])
+
+
+def rules_of_engines(published: Path) -> str:
+    """Return what users of each engine should know first, and what it is worth."""
+    lines = _variants(published)
+    rows = [
+        (ENGINES[name].title if not place else "", rule.words, *errors)
+        for name in OWN
+        for place, (rule, *errors) in enumerate(rules(lines, name))
+    ]
+    return table(("engine", "rule", "error without it", "with it"), rows)
+
+
+def frames_of_engines(published: Path) -> str:
+    """Return what the defaults err by where a body force moves the block, and where the base."""
+    return frames(_variants(published))
+
+
+def _variants(published: Path) -> pd.DataFrame:
+    return read_variants(published / "contact" / "variants.csv")
+
+
+def ninth(root: Path) -> str:
+    """Return an engine as a user adds it: the example that a test scores."""
+    text = (root / NINTH).read_text(encoding="utf-8")
+    return text[text.index("import ") :].rstrip()
 
 
 def random_fixed(published: Path) -> str:

@@ -17,11 +17,14 @@ from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
-from studies.measures.presets import in_words
+from studies.measures.presets import in_order, in_words
 from studies.measures.words import part
 from studies.page.engine_cases import engine_cases
-from studies.page.facts import PRESETS_FROM
-from studies.sweep.claims import preset_table, verdict, whole
+from studies.page.facts import presets
+from studies.sweep.claims import verdict
+
+GOOD, BAD = 1e-3, 0.1
+"""Largest errors below which, and above which, a tile is marked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,22 +49,44 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
 
 
 def first_sight(folder: Path) -> dict[str, Any]:
-    """Return the verdict and a tile for each preset and engine, of what the folder holds."""
-    held = [name for name in PRESETS_FROM if (folder / name / "summary.csv").is_file()]
-    lines = pd.concat([preset_table(whole(folder / name)) for name in held], ignore_index=True)
+    """Return the verdict, and a tile for each engine and preset of what the folder holds.
+
+    Returns
+    -------
+    dict
+        verdict: in words; presets: how they are used, in words; tiles: engine -> a tile for each
+        of these, or None.
+    """
+    lines = presets(folder)
     if lines.empty:
-        return {"verdict": "", "tiles": []}
-    tiles = [
-        {
-            "source": row["source"],
-            "words": in_words(row["preset"]),
-            "right": f"{row['right']} of {row['cases']}",
-            "median": part(row["median"]),
-            "max": part(row["max"]),
-        }
-        for _, row in lines.iterrows()
-    ]
-    return {"verdict": verdict(lines), "tiles": tiles}
+        return {"verdict": "", "presets": [], "tiles": {}}
+    names = in_order(lines["preset"])
+    tiles = {
+        engine: {row["preset"]: _tile(row) for _, row in group.iterrows()}
+        for engine, group in lines.groupby("engine", sort=False)
+    }
+    return {
+        "verdict": verdict(lines),
+        "presets": list(map(in_words, names)),
+        "tiles": {engine: [mine.get(name) for name in names] for engine, mine in tiles.items()},
+    }
+
+
+def _tile(row: "pd.Series[Any]") -> dict[str, str]:
+    """Return a line of presets in words, and whether it is good, bad or neither."""
+    lost = int(row["cases"] - row["right"])
+    good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD
+    return {
+        "kind": "good" if good else "bad" if bad else "",
+        "wrong": f"{lost} wrong" if lost else "none wrong",
+        "median": _unbroken(part(row["median"])),
+        "max": _unbroken(part(row["max"])),
+    }
+
+
+def _unbroken(words: str) -> str:
+    """Return words that a line does not break between."""
+    return words.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:

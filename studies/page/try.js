@@ -118,21 +118,31 @@ function chartOn(now) {
 function drawMap(now) {
   const { pen, wide, high } = sheet("map"), left = 30, foot = high - 22;
   const [w, h] = [(wide - left) / CELLS[0], foot / CELLS[1]];
+  const xOf = ratio => left + ((wide - left) * (ratio - RATIOS[0])) / (RATIOS[1] - RATIOS[0]);
+  const yOf = onsets => foot - (foot * (onsets - 1)) / (MOST_ONSETS - 1);
+  const by = part("by").value, engine = by !== "exact" && firstOf(now) >= 0;
+  part("legend").hidden = engine;
+  part("legend-engine").hidden = !engine;
+  pen.save();
+  pen.beginPath();
+  pen.rect(left, 0, wide - left, foot);
+  pen.clip();
+  if (engine) drawCells(pen, now, by, xOf, yOf);
   const fills = [colour("paper"), "#8CC7EE", "#F5D58A"];
-  for (let n = 0; n < chart.done; n++) {
+  for (let n = 0; n < (engine ? 0 : chart.done); n++) {
     pen.fillStyle = fills[chart.cells[n]];
     const [i, j] = [n % CELLS[0], Math.floor(n / CELLS[0])];
     pen.fillRect(left + i * w, foot - (j + 1) * h, w + 0.6, h + 0.6);
   }
+  pen.restore();
   pen.strokeStyle = colour("line");
   pen.strokeRect(left, 0.5, wide - left - 1, foot);
   pen.fillStyle = colour("soft");
   for (const ratio of [1, 2, 4, 6, 8])
-    pen.fillText(ratio, left + ((wide - left) * (ratio - RATIOS[0])) / (RATIOS[1] - RATIOS[0]) - 8, high - 6);
+    pen.fillText(ratio, xOf(ratio) - 8, high - 6);
   for (const onsets of [1, 4, 7, 10])
-    pen.fillText(onsets, 6, Math.max(foot - (foot * (onsets - 1)) / (MOST_ONSETS - 1) + 3, 10));
-  const x = left + ((wide - left) * (now.omega / now.p - RATIOS[0])) / (RATIOS[1] - RATIOS[0]);
-  const y = foot - (foot * (now.amplitude / Math.tan(now.alpha) - 1)) / (MOST_ONSETS - 1);
+    pen.fillText(onsets, 6, Math.max(yOf(onsets) + 3, 10));
+  const x = xOf(now.omega / now.p), y = yOf(now.amplitude / Math.tan(now.alpha));
   pen.strokeStyle = "#D55E00";
   pen.lineWidth = 2;
   pen.beginPath();
@@ -159,40 +169,66 @@ function say(now, found) {
     + `the pulse: ${digits(now.amplitude / onset)} onsets, ω/p = ${digits(now.omega / now.p)}.`;
 }
 
-// of the cases that engines were asked, the nearest
-const held = JSON.parse(part("cases").textContent);
-function nearest(now) {
-  let best = null, least = Infinity;
-  for (const row of held.rows) {
-    const [halfCycles, aspect, width, amplitude, ratio] = row;
-    if (halfCycles !== now.halfCycles) continue;
-    const off = Math.abs(Math.log((amplitude * aspect * Math.tan(now.alpha)) / now.amplitude)) * 4
-      + Math.abs(Math.log(ratio / (now.omega / now.p))) * 2 + Math.abs(Math.log(aspect / now.aspect)) * 4
-      + Math.abs(Math.log(width / now.width)) * 0.1;
-    if (off < least) [best, least] = [row, off];
-  }
-  return best;
+// what engines answered on a grid, and of that the block and the place that are nearest
+const held = JSON.parse(part("cases").textContent), sources = Object.keys(held.peaks);
+const nearestOf = (values, value, scale = x => x) => values.reduce((best, each, i) =>
+  Math.abs(scale(each) - scale(value)) < Math.abs(scale(values[best]) - scale(value)) ? i : best, 0);
+
+// where in the tables of peaks the nearest block's stand, row by row of an amplitude; -1: no such pulse
+function firstOf(now) {
+  if (!sources.length) return -1;
+  const pulse = held.half_cycles.indexOf(now.halfCycles);
+  const aspect = nearestOf(held.aspect, now.aspect, Math.log), width = nearestOf(held.width_m, now.width, Math.log);
+  const block = (pulse * held.aspect.length + aspect) * held.width_m.length + width;
+  return pulse < 0 ? -1 : block * held.onsets.length * held.omega_over_p.length;
 }
 
+const blockOf = first => {
+  const block = first / (held.onsets.length * held.omega_over_p.length);
+  return { width: held.width_m[block % held.width_m.length],
+    aspect: held.aspect[Math.floor(block / held.width_m.length) % held.aspect.length] };
+};
+
 function sayEngines(now) {
-  const row = nearest(now);
-  part("engines").hidden = !row;
-  if (!row) return;
-  const [, aspect, width, amplitude, ratio, ...peaks] = row;
-  const R = 0.5 * width * Math.hypot(1, aspect), exact = peaks[held.sources.indexOf("exact")];
-  const omega = ratio * Math.sqrt((0.75 * G) / R);
+  const first = firstOf(now);
+  part("engines").hidden = first < 0;
+  if (first < 0) return;
+  const { width, aspect } = blockOf(first), R = 0.5 * width * Math.hypot(1, aspect);
+  const i = nearestOf(held.omega_over_p, now.omega / now.p);
+  const j = nearestOf(held.onsets, now.amplitude / Math.tan(now.alpha));
+  const place = first + j * held.omega_over_p.length + i, exact = held.peaks.exact[place];
+  const amplitude = held.onsets[j] / aspect, omega = held.omega_over_p[i] * Math.sqrt((0.75 * G) / R);
   part("case").textContent = `H/B ${aspect}, B ${width} m, ${digits(amplitude)} g, ${digits(omega)} rad/s`;
-  const words = peak => (peak === null ? "no answer" : peak < 0 ? "overturned" : `${peak.toFixed(4)} θcr`);
-  const off = peak => (peak >= 0 && peak !== null && exact > 0
-    ? `${peak < exact ? "−" : "+"}${digits(100 * Math.abs(peak / exact - 1), 2)} %` : "");
-  part("answers").replaceChildren(...held.sources.map((source, i) => {
-    const line = document.createElement("tr");
-    for (const text of [source, words(peaks[i]), source === "exact" ? "" : off(peaks[i])])
-      line.insertCell().textContent = text;
+  const words = peak => (peak === null ? "no result" : peak < 0 ? "overturns" : `${peak.toFixed(4)} θcr`);
+  const off = peak => (!held.judged[place] ? "should slide or lift off" : peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
+    : exact < 0 ? "wrong" : `${peak < exact ? "−" : "+"}${digits(100 * Math.abs(peak / exact - 1), 2)} %`);
+  part("answers").replaceChildren(...sources.map(source => {
+    const line = document.createElement("tr"), peak = held.peaks[source][place];
+    const head = document.createElement("th");
+    head.scope = "row";
+    head.textContent = source;
+    line.append(head);
+    for (const text of [words(peak), source === "exact" ? "" : off(peak)]) line.insertCell().textContent = text;
     return line;
   }));
   part("go").onclick = () => put({ aspect, width, amplitude, omega });
 }
+
+// an engine's outcomes on the grid, beside the exact ones of the same cells
+function drawCells(pen, now, source, xOf, yOf) {
+  const first = firstOf(now), { omega_over_p: ratios, onsets } = held;
+  const w = xOf(ratios[1]) - xOf(ratios[0]), h = yOf(onsets[0]) - yOf(onsets[1]);
+  for (let n = 0; n < ratios.length * onsets.length; n++) {
+    const [peak, exact] = [held.peaks[source][first + n], held.peaks.exact[first + n]];
+    const [i, j] = [n % ratios.length, Math.floor(n / ratios.length)];
+    pen.fillStyle = !held.judged[first + n] ? colour("line") : peak === null ? colour("ink") : peak < 0 ? (exact < 0 ? "#B9B9B9" : "#D55E00")
+      : exact < 0 ? "#0072B2" : Math.abs(peak / exact - 1) > 0.1 ? "#F0E05A" : colour("paper");
+    pen.fillRect(xOf(ratios[i]) - w / 2, yOf(onsets[j]) - h / 2, w + 0.6, h + 0.6);
+  }
+}
+
+for (const source of sources.filter(name => name !== "exact")) part("by").add(new Option(source, source));
+part("by").closest("label").hidden = sources.length < 2;
 
 function put(values) {
   for (const [name, value] of Object.entries(values)) {
@@ -251,6 +287,7 @@ function fromMap(event) {
 for (const input of inputs) input.addEventListener("input", change);
 part("map").addEventListener("pointerdown", fromMap);
 part("map").addEventListener("pointermove", event => { if (event.buttons) fromMap(event); });
+part("by").addEventListener("input", next);
 part("play").addEventListener("click", () => {
   playing = !playing;
   part("play").textContent = playing ? "Pause" : "Play";

@@ -57,14 +57,15 @@ def draw_precision(table: pd.DataFrame) -> Figure:
     table : DataFrame
         The columns of work-precision.csv.
     """
-    drawing = Figure(figsize=(12.0, 7.0), layout="constrained")
+    drawing = Figure(figsize=(8.8, 12.0), layout="constrained")
     sets = list(table["set"].unique())
-    panels = drawing.subplots(1, len(sets), sharey=True, squeeze=False)[0]
+    panels = list(drawing.subplots(len(sets), 1, sharex=True, sharey=True, squeeze=False).flat)
     for axes, kind in zip(panels, sets, strict=True):
         _one_set(axes, table[table["set"] == kind])
         axes.set_title(f"{kind} cases")
-        axes.set_xlabel("run time of a case, set-up apart  [s]")
-    panels[0].set_ylabel("median relative error of the peak  [–]")
+        axes.set_ylabel("median relative error of the peak  [–]")
+    panels[-1].set_xlabel("run time of a case, set-up apart  [s]")
+    drawing.draw_without_rendering()  # names stand where the panels come to lie
     _name_methods(panels, table)
     return drawing
 

@@ -13,8 +13,12 @@ restitution.png and findings.txt; a minute.""",
     table="restitution.csv",
     products=("restitution.csv", "kept.csv", "restitution.png", "findings.txt"),
     captions={
-        "restitution": "What comes out of a coefficient of restitution: wherever in a step the "
-        "impact falls (band), at other steps (dashed) and speeds (dotted).",
+        "restitution": (
+            "The speed of a dropped sphere after its impact over that before, against the "
+            "coefficient of restitution that was asked for, a panel for each way to ask; on the "
+            "diagonal they are the same. The band is wherever in a step the impact falls, dashed "
+            "lines are other steps, dotted ones other speeds, crosses drops that broke."
+        ),
     },
     chapters=(
         Chapter(

@@ -1,5 +1,8 @@
 """What comes out of a coefficient of restitution against what is wanted."""
 
+import math
+
+import numpy as np
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -9,6 +12,8 @@ from matplotlib.figure import Figure
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import engine_style
 
+ACROSS = 3
+"""Panels in a row."""
 TOP = 1.35
 """Upper end of the scale; what is beyond, or broken, stands there as a cross."""
 
@@ -23,20 +28,24 @@ def draw_restitution(rows: pd.DataFrame) -> Figure:
     """
     engines = list(rows["engine"].unique())
     ways = [list(rows.loc[rows["engine"] == engine, "way"].unique()) for engine in engines]
-    columns = max(map(len, ways))
-    drawing = Figure(figsize=(2.6 * columns + 1.0, 3.0 * len(engines)), layout="constrained")
-    grid = drawing.subplots(len(engines), columns, sharex=True, sharey=True, squeeze=False)
-    for line, engine, mine in zip(grid, engines, ways, strict=True):
-        for axes in line[len(mine) :]:
-            axes.set_axis_off()
-        for axes, way in zip(line, mine, strict=False):
+    downs = [math.ceil(len(mine) / ACROSS) for mine in ways]
+    drawing = Figure(figsize=(8.8, 2.7 * sum(downs) + 0.5), layout="constrained")
+    grid = drawing.subplots(sum(downs), ACROSS, sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat:
+        axes.set_axis_off()
+    for first, engine, mine in zip(np.cumsum([0, *downs[:-1]]), engines, ways, strict=True):
+        panels = list(grid[first:].flat)[: len(mine)]
+        for axes, way in zip(panels, mine, strict=True):
+            axes.set_axis_on()
             group = rows[(rows["engine"] == engine) & (rows["way"] == way)]
             names = _panel(axes, group, engine_style(engine, "").colour)
-            axes.set_title(way, fontsize=8)
-        line[0].set_ylabel(f"{engine}\nspeed after over before", fontsize=8)
-        beside(line[len(mine) - 1], names, 7.5)
-    for axes in grid[-1]:
-        axes.set_xlabel("coefficient that is wanted", fontsize=8)
+            axes.set_title(way, fontsize=9)
+            axes.tick_params(labelbottom=True)
+        for axes in panels[::ACROSS]:
+            axes.set_ylabel(f"{engine}\nspeed after over before")
+        for axes in panels[-ACROSS:]:
+            axes.set_xlabel("coefficient that is wanted")
+        beside(panels[-1], names, 8.5)
     return drawing
 
 

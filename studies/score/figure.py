@@ -36,7 +36,9 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     axes.text(0.01, 0.985, "failed, or a wrong outcome", va="top", fontsize=8, color="#666666",
               transform=axes.transAxes)  # fmt: skip
     axes.set_xlabel("run time of a case, set-up apart  [s]")
-    axes.set_ylabel(f"largest relative error of the peak, {mine['cases'].max()} cases  [–]")
+    counts = dict.fromkeys(f"{lines['cases'].max()}" for lines in (mine, others) if len(lines))
+    axes.set_ylabel(f"largest relative error of the peak, {' (grey: '.join(counts)} cases"
+                    f"{')' * (len(counts) - 1)}  [–]")  # fmt: skip
     axes.set_title("Error against run time along the step; grey: the published engines")
     axes.grid(alpha=0.25)
     beside(axes, names)

@@ -15,13 +15,25 @@ import numpy as np
 from analytic import MODELS
 from analytic.block import RigidBlock
 from analytic.kernels.excursions import BROKEN
-from analytic.kernels.rest import ground, is_finite, next_uplift, side_after, time_to_rest
+from analytic.kernels.rest import after_impact, is_finite, next_uplift
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES, scaled_segments
 from analytic.start import REST, folded
 
 MOST_EXCURSIONS = 2000
+
+FREE_STRETCH = 60.0
+"""Free rocking that is integrated at once [1/p]: longer than any block that a double can hold takes
+to turn or to fall, some -ln(1e-16) = 37, so that one stretch decides."""
+
+FIRST_STEP = 0.2
+"""Longest first step out of an impact, over velocity / acceleration: a tenth of the excursion,
+2 v / y'', that these two let expect. One shorter than the first step would be stepped over."""
+
+LEAST_FALL = 1e-6
+"""Least acceleration, in units of p^2, that an excursion is expected to be ended by: with less the
+half of the stretch bounds its first step, not this estimate."""
 
 
 def solve_ivp_response(
@@ -144,10 +156,10 @@ class _March:
     def _stretch(self, j: int, tau: float, y: float, v: float, side: float) -> Any:
         """Integrate to the next impact, breakpoint or decision."""
         free = j >= len(self.segments)
-        end = min(self.until, tau + 60.0) if free else float(self.segments[j, 1])
+        end = min(self.until, tau + FREE_STRETCH) if free else float(self.segments[j, 1])
         events = [_crossing(0, 0.0, -1), _crossing(1, 0.0, -1), _crossing(0, 0.5 * math.pi, 1)]
         events[1].terminal = free and self.until == math.inf  # type: ignore[attr-defined]
-        fall = max(abs(self._rate(j, side)(tau, (y, v))[1]), 1e-6)
+        fall = max(abs(self._rate(j, side)(tau, (y, v))[1]), LEAST_FALL)
         return self.solve_ivp(
             self._rate(j, side),
             (tau, end),
@@ -157,8 +169,7 @@ class _March:
             atol=1e-3 * self.rtol * self.alpha,
             events=events,
             dense_output=self.recorded,
-            # an excursion shorter than the first step would be stepped over
-            first_step=min(0.2 * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
+            first_step=min(FIRST_STEP * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
         )
 
     def _rate(self, j: int, side: float) -> Callable[[float, Any], tuple[float, float]]:
@@ -179,10 +190,7 @@ class _March:
         after = -self.law.eta * v
         self.impacts.append(Impact(tau / self.p, side * v * self.p, -side * after * self.p))
         j = int(np.searchsorted(self.segments[:, 1], tau, side="right"))
-        a = ground(self.segments, j, tau)
-        wait = time_to_rest(self.law, -side, after, a)
-        later = ground(self.segments, j, tau + wait)
-        onward = side_after(self.law, -side, after, a, later, wait)
+        onward, wait = after_impact(self.law, self.segments, j, tau, -side, after)
         return onward, after if onward else wait
 
     def _sample(self, path: Any, side: float) -> None:

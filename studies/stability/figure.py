@@ -72,7 +72,7 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
     cases = rows[["group", "case"]].drop_duplicates()
     names, sources = list(cases["case"]), list(rows["source"].unique())
     many = len(sources) > MANY
-    each = 0.3 if many else 0.62
+    each = 0.3 if many else 0.5
     width, height = 3.0 + each * len(sources) + 2.2, 0.235 * len(names) + 3.6
     drawing = Figure(figsize=(max(width, 7.5), height), layout="constrained")
     axes = drawing.subplots()

@@ -20,6 +20,11 @@ once: a run that was interrupted goes on where it stopped when the same command 
         "figure-7.png",
         "figure-8.png",
         "figure-9.png",
+        "overview.png",
+        "presets-6.png",
+        "presets-7.png",
+        "presets-8.png",
+        "presets-9.png",
     ),
     chapters=(
         Chapter(
@@ -50,6 +55,10 @@ once: a run that was interrupted goes on where it stopped when the same command 
         ),
     ),
     captions={
+        "overview": (
+            "Error against run time: for each engine and preset a bar from the median to the "
+            "largest error of the peak over all cases, and how many outcomes are wrong."
+        ),
         "figure-6": (
             "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
             "and in the band who overturns; below, the relative error of it; a column for each "
@@ -69,6 +78,26 @@ once: a run that was interrupted goes on where it stopped when the same command 
             "Above, the largest rotation over the frequency of the full-sine pulses of figure 9, "
             "and in the band who overturns; below, the relative error of it; a column for each "
             "H/B."
+        ),
+        "presets-6": (
+            "Relative error of the largest rotation over the frequency of the half-sine pulses of "
+            "figure 6, a row for each preset, a column for each H/B; in the grey bands the "
+            "outcomes that each engine gets wrong."
+        ),
+        "presets-7": (
+            "Relative error of the largest rotation over the frequency of the half-sine pulses of "
+            "figure 7, a row for each preset, a column for each H/B; in the grey bands the "
+            "outcomes that each engine gets wrong."
+        ),
+        "presets-8": (
+            "Relative error of the largest rotation over the frequency of the full-sine pulses of "
+            "figure 8, a row for each preset, a column for each H/B; in the grey bands the "
+            "outcomes that each engine gets wrong."
+        ),
+        "presets-9": (
+            "Relative error of the largest rotation over the frequency of the full-sine pulses of "
+            "figure 9, a row for each preset, a column for each H/B; in the grey bands the "
+            "outcomes that each engine gets wrong."
         ),
     },
 )

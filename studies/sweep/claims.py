@@ -107,7 +107,7 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
 
 
 def verdict(table: pd.DataFrame) -> str:
-    """Say in a sentence what the first and the best of the presets are off by, at worst.
+    """Say in a sentence each what the first and the best of the presets are off by, at worst.
 
     Parameters
     ----------
@@ -116,13 +116,14 @@ def verdict(table: pd.DataFrame) -> str:
     """
     names = in_order(table["preset"])
     parts = [_of_preset(name, table[table["preset"] == name]) for name in (names[0], names[-1])]
-    return f"{capital('; '.join(dict.fromkeys(parts)))}."
+    return " ".join(dict.fromkeys(parts))
 
 
 def _of_preset(name: str, lines: pd.DataFrame) -> str:
     lost = out_of((lines["cases"] - lines["right"]).sum(), lines["cases"].sum())
     medians = dict.fromkeys([part(lines["median"].min()), part(lines["median"].max())])
-    return (
-        f"{in_words(name)} {len(lines)} engines err by {' to '.join(medians)} "
-        f"in the median and by {part(lines['max'].max())} at worst, with {lost} outcomes wrong"
+    return capital(
+        f"{in_words(name)} {len(lines)} engines miss in {lost} cases whether the block falls, "
+        f"and its largest rotation by {' to '.join(medians)} in the median, "
+        f"{part(lines['max'].max())} at worst."
     )

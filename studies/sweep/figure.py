@@ -30,7 +30,7 @@ def draw_sweep(rows: pd.DataFrame, figure: int) -> Figure:
     rows = with_reference(rows[rows["figure"] == figure])
     aspects, widths = sorted(rows["aspect"].unique()), sorted(rows["width_m"].unique())
     sources = list(rows["source"].unique())
-    drawing = Figure(figsize=(11.0, 7.2), layout="constrained")
+    drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
     grid = drawing.subplots(
         2, len(aspects), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
     )

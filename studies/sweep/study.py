@@ -27,7 +27,7 @@ from studies.measures.findings import findings
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
-from studies.sweep.claims import claims, first_claim, whole
+from studies.sweep.claims import claims, first_claim, preset_table, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,11 +111,20 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw every figure of a folder from its sweep.csv alone."""
-    from studies.sweep.figure import draw_sweep
+    """Draw every figure of a folder from its sweep.csv and summary.csv alone.
 
-    rows = read(folder)
-    return {f"figure-{n}": draw_sweep(rows, int(n)) for n in rows["figure"].unique()}
+    Engines with several presets each are drawn preset by preset, and all of them in one figure.
+    """
+    from studies.sweep.figure import draw_sweep
+    from studies.sweep.presets import draw_by_preset, draw_overview
+
+    rows, table = read(folder), preset_table(whole(folder))
+    several = not table.empty and table["preset"].nunique() > 1
+    numbers = [int(n) for n in rows["figure"].unique()]
+    if not several:
+        return {f"figure-{n}": draw_sweep(rows, n) for n in numbers}
+    by_preset = {f"presets-{n}": draw_by_preset(rows, n) for n in numbers}
+    return {"overview": draw_overview(table), **by_preset}
 
 
 def headline(folder: Path) -> str:

@@ -13,7 +13,11 @@ nothing: it reads the published tables of `rocking contact` and `rocking precisi
     table="symptoms.csv",
     products=("symptoms.csv", "symptoms.png", "findings.txt"),
     captions={
-        "symptoms": "Each symptom as it is seen, with one setting, tuned, and landing.",
+        "symptoms": (
+            "What users of an engine see, a panel for each symptom, its size for each engine on a "
+            "logarithmic scale: by the library's defaults, with the one setting that helps most, "
+            "with all of a contact tuned at equal steps, and with steps that land on impacts."
+        ),
     },
     chapters=(
         Chapter(

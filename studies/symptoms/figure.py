@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from studies.drawing.styles import engine_style
 
@@ -31,20 +32,25 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
         The columns of symptoms.csv.
     """
     groups = list(lines.groupby("symptom", sort=False))
-    columns = 4
+    columns = 2
     rows = -(-len(groups) // columns)
-    drawing = Figure(figsize=(12.4, 3.0 * rows), layout="constrained")
+    drawing = Figure(figsize=(8.8, 2.7 * rows + 0.5), layout="constrained")
     panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
     for axes, (symptom, group) in zip(panels, groups, strict=False):
         _panel(axes, group)
-        axes.set_title(_broken(str(symptom)), fontsize=9)
-        axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8)
+        axes.set_title(_broken(str(symptom)), fontsize=10)
+        axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8.5)
+    handles = [
+        Line2D([], [], **{**engine_style(name, "").points(6.0), "linestyle": "-"}, label=name)
+        for name in lines["engine"].unique()
+    ]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
     for axes in panels[len(groups) :]:
         axes.set_axis_off()
     return drawing
 
 
-def _broken(words: str, width: int = 36) -> str:
+def _broken(words: str, width: int = 44) -> str:
     """Return a title in lines that fit above a panel."""
     lines = [""]
     for word in words.split():
@@ -56,7 +62,7 @@ def _broken(words: str, width: int = 36) -> str:
 
 def _panel(axes: Axes, group: pd.DataFrame) -> None:
     places = np.arange(len(STAGES))
-    for number, row in enumerate(group.to_dict("records")):
+    for row in group.to_dict("records"):
         style = engine_style(str(row["engine"]), "")
         sizes = np.abs([float(row[name]) for name in STAGES])
         sizes = np.where(np.isinf(sizes), BROKEN, np.maximum(sizes, FLOOR))
@@ -69,19 +75,9 @@ def _panel(axes: Axes, group: pd.DataFrame) -> None:
             fillstyle=style.fill,
             linewidth=1.2,
         )
-        axes.text(
-            0.97,
-            0.95 - 0.09 * number,
-            str(row["engine"]),
-            color=style.colour,
-            fontsize=8,
-            transform=axes.transAxes,
-            ha="right",
-            va="top",
-        )
     axes.set(yscale="log", xlim=(-0.3, len(STAGES) - 0.7))
-    axes.set_xticks(places, list(STAGES.values()), fontsize=8)
+    axes.set_xticks(places, list(STAGES.values()), fontsize=9)
     if axes.get_ylim()[1] >= BROKEN:
         axes.axhline(BROKEN, color="#999999", linewidth=0.6)
-        axes.annotate("no result", (1.0, BROKEN), fontsize=7, color="#555555", va="bottom")
+        axes.annotate("no result", (1.0, BROKEN), fontsize=8, color="#555555", va="bottom")
     axes.grid(alpha=0.25)

@@ -8,14 +8,16 @@ STUDY = Study(
     help="""Random cases that nothing was tuned on, held against the exact solution.
 
 Outcomes, quantiles of the error, and the condition number κ of each case: how far a small error of
-the pulse moves its peak. And what landing steps lean on: the first cases with false hints. Writes
-validate.csv, errors.csv, hints.csv, leaning.csv and provenance.json; resumable.""",
+the pulse moves its peak. And what landing steps lean on: the first cases with false hints; and
+with --estimate what each engine says of its own error. Writes validate.csv, errors.csv, hints.csv,
+leaning.csv, halves.csv and provenance.json; resumable.""",
     table="validate.csv",
     products=(
         "validate.csv",
         "errors.csv",
         "hints.csv",
         "leaning.csv",
+        "halves.csv",
         "validate.png",
         "findings.txt",
     ),

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from studies.cases.drawn import RandomCase
 
 HINTED = 30
-"""Cases, the first ones, that are asked with false hints, ..."""
+"""Cases, the first ones, that are asked with false hints and with a calm motion."""
 
 CALM = 0.9
-"""... and once more with this part of the acceleration that lifts the block."""
+"""Amplitude of the calm motion, over the acceleration that lifts the block."""
 
 KNOWN = "true"
 """The hint of the rows that the others are held against."""

@@ -28,6 +28,7 @@ from studies.measures.differences import (
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
+from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
 from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
 
@@ -42,6 +43,7 @@ def command(
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
     effort: EffortOptions = OWN_EFFORT,
+    estimate: bool = False,
     running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
@@ -60,18 +62,32 @@ def command(
         Seed of the random numbers, a positive whole number; another one draws other cases.
     sources
         Who is asked.
+    estimate
+        Run every engine at half the step, too: the relative difference of the two peaks, and how
+        many of the errors it bounds, times the published factor (`rocking estimate`).
     yes
         Begin even what takes longer than a day.
     """
     check_sources(sources)
     # the exact solution is asked, too, whether a case is kept
-    everyone = ("exact", *sources)
+    everyone = ("exact", *(3 if estimate else 1) * sources)
     running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)
-    return carry_out(STUDY, plan(cases, seed, sources, effort), out, running, report)
+    asked = plan(cases, seed, sources, effort, estimate=estimate)
+    return carry_out(STUDY, asked, out, running, report)
 
 
-def plan(cases: int, seed: int, sources: Sequence[str], effort: Effort = OWN_EFFORT) -> Plan:
-    """Return the plan that puts random cases to some sources, the first with false hints too."""
+def plan(
+    cases: int,
+    seed: int,
+    sources: Sequence[str],
+    effort: Effort = OWN_EFFORT,
+    *,
+    estimate: bool = False,
+) -> Plan:
+    """Return the plan that puts random cases to some sources, the first with false hints too.
+
+    With `estimate` all of them are asked at half the step, too.
+    """
     drawn = list(islice(draw(seed), cases))
     jobs = [
         Job(
@@ -84,8 +100,9 @@ def plan(cases: int, seed: int, sources: Sequence[str], effort: Effort = OWN_EFF
         for case in drawn
         for source in sources
     ]
+    finer = half_jobs(jobs) if estimate else []
     return Plan(
-        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort)],
+        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort), *finer],
         settings={"seed": seed, **asdict(effort)},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
@@ -94,19 +111,25 @@ def plan(cases: int, seed: int, sources: Sequence[str], effort: Effort = OWN_EFF
 
 
 def without_hints(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of validate.csv: what becomes of a false hint is an answer."""
+    """Return the rows of validate.csv: what becomes of a false hint is an answer.
+
+    A run at half the step that failed leaves a row without an estimate.
+    """
     return [row for row in rows if row["table"] == STUDY.name]
 
 
 def report(folder: Path) -> str:
     """Hold a folder's tables against the exact solution; write two more, return the text.
 
-    errors.csv has, for each row of validate.csv, the exact peak and outcome, the error and κ;
+    errors.csv has, for each row of validate.csv, the exact peak and outcome, the error and κ, and
+    where halves.csv is there the estimate of the error and its bound;
     leaning.csv has a row for each source and hint, where hints.csv is there.
     """
     from studies.drawing.figures import save_all
 
     compared = compare(folder, "validate")
+    if halves := (folder / f"{HALVES}.csv").exists():
+        compared = with_bounds(compared, compare(folder, HALVES))
     write_table(folder / "errors.csv", compared)
     save_all(pictures(folder), folder)
     sensitivity = conditioning_of(compared)
@@ -123,6 +146,7 @@ def report(folder: Path) -> str:
             "\nThe largest errors:",
             worst_text(compared),
             *leaning_lines(folder, compared),
+            *(bounds_lines(compared) if halves else ()),
             "",
             fill(paragraph(folder), 99),
         ]
@@ -148,6 +172,12 @@ def leaning_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
         f"and again at {CALM:g} of what lifts the block, where it must stay:",
         leanings_text(table),
     ]
+
+
+def bounds_lines(compared: pd.DataFrame) -> list[str]:
+    """Say what the estimates bound."""
+    text = "\nOf the errors of the peak the relative difference from that at half the step,"
+    return [text, bounds_text(compared)]
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

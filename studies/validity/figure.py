@@ -27,6 +27,8 @@ HOLDS, ENDS = "#e8f0f5", "#f4d3bd"
 """Colours of where the reference is valid, and of where its pivot would need to be pulled."""
 
 SMALLEST_SLIP = 1e-9
+ACROSS = 2
+"""Panels in a row."""
 
 
 def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
@@ -38,14 +40,16 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
         map.csv and compared.csv.
     """
     aspects, sources = sorted(table["aspect"].unique()), list(beside["source"].unique())
-    drawing = Figure(figsize=(3.1 * len(aspects), 4.6), layout="constrained")
-    panels = drawing.subplots(1, len(aspects), sharey=True, squeeze=False)[0]
+    drawing, panels = _panels(len(aspects), 3.8)
     own = beside[beside["friction_factor"].isna()]
     for axes, aspect in zip(panels, aspects, strict=True):
         _map(axes, table[table["aspect"] == aspect])
         _verdicts(axes, own[own["aspect"] == aspect], sources)
         axes.set_title(f"H/B = {aspect:g}", fontsize=11)
-    panels[0].set_ylabel("amplitude  a_p / (g tan α)  [–]")
+    for axes in panels[-ACROSS:]:
+        axes.set_xlabel("frequency  ω/p  [–]")
+    for axes in panels[::ACROSS]:
+        axes.set_ylabel("amplitude  $a_p$ / (g tan α)  [–]")
     drawing.suptitle(
         "Full-sine pulses: where the reference holds, and what engines do", fontsize=11
     )
@@ -60,9 +64,19 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
             for verdict in seen
         ),
     ]  # fmt: skip
-    drawing.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False,
+    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False,
                    fontsize=9, title=_whose(sources), title_fontsize=9)  # fmt: skip
     return drawing
+
+
+def _panels(count: int, height: float) -> tuple[Figure, list[Axes]]:
+    """Return a figure of some panels in rows of two, each of a height [inches]."""
+    down = math.ceil(count / ACROSS)
+    drawing = Figure(figsize=(8.6, height * down + 1.0), layout="constrained")
+    panels = list(drawing.subplots(down, ACROSS, sharex=True, sharey=True, squeeze=False).flat)
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    return drawing, panels[:count]
 
 
 def _whose(sources: list[str]) -> str:
@@ -81,13 +95,15 @@ def draw_friction(beside: pd.DataFrame) -> Figure:
         compared.csv.
     """
     aspects, sources = sorted(beside["aspect"].unique()), list(beside["source"].unique())
-    drawing = Figure(figsize=(2.8 * len(aspects), 4.2), layout="constrained")
-    panels = drawing.subplots(1, len(aspects), sharey=True, squeeze=False)[0]
+    drawing, panels = _panels(len(aspects), 3.2)
     rows = beside[beside["friction_factor"].notna()]
     for axes, aspect in zip(panels, aspects, strict=True):
         _slips(axes, rows[rows["aspect"] == aspect], sources)
         axes.set_title(f"H/B = {aspect:g}", fontsize=11)
-    panels[0].set_ylabel("slide of the pivot over B  [–]")
+    for axes in panels[-ACROSS:]:
+        axes.set_xlabel("friction / friction needed  [–]")
+    for axes in panels[::ACROSS]:
+        axes.set_ylabel("slide of the pivot over B  [–]")
     drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
     handles = [Line2D([], [], **style_of(name).points(6.0), label=name) for name in sources]
     drawing.legend(handles=handles, loc="outside lower center", ncols=len(sources), frameon=False)
@@ -107,7 +123,7 @@ def _map(axes: Axes, table: pd.DataFrame) -> None:
     axes.contour(
         x, y, overturned.to_numpy(), levels=[0.5], colors="#444444", linewidths=1, linestyles="--"
     )
-    axes.set(xscale="log", yscale="log", xlabel="frequency  ω/p  [–]")
+    axes.set(xscale="log", yscale="log")
     axes.xaxis.set_ticks([0.5, 1, 2, 4, 8], ["0.5", "1", "2", "4", "8"])
     axes.yaxis.set_ticks([1.2, 1.6, 2.4, 3.6, 5.4], ["1.2", "1.6", "2.4", "3.6", "5.4"])
     for scale in (axes.xaxis, axes.yaxis):
@@ -141,7 +157,7 @@ def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
             **style_of(source).points(4.5),
         )
     axes.axvline(1.0, color="#999999", linewidth=1.0)
-    axes.set(yscale="log", xlabel="friction / friction needed  [–]")
+    axes.set(yscale="log")
     axes.set_ylim(0.5 * SMALLEST_SLIP, 0.5)
     ticks = 10.0 ** np.arange(round(math.log10(SMALLEST_SLIP)), -2, 2)
     axes.yaxis.set_ticks([*ticks, 0.2], [f"$10^{{{math.log10(t):.0f}}}$" for t in ticks] + ["away"])

@@ -37,10 +37,11 @@ OMEGAS = (1.0, 2.0, 4.0, 8.0)
 
 FACTORS = (0.5, 0.8, 0.95, 1.05, 1.25)
 QUICK_FACTORS = (0.8, 1.05)
-"""Friction of an engine over the least that the reference needs, ..."""
+"""Friction of an engine over the least that the reference needs."""
 
 MOST_NEEDED = 8.0
-"""... where that is no more: near N = 0 it grows without bound, and an engine takes 10 at most."""
+"""Friction needed by the reference beyond which no FACTORS are tried: near N = 0 it grows without
+bound, and an engine takes 10 at most."""
 
 DEFAULT_SOURCES = core_sources("fixed")
 
@@ -119,11 +120,11 @@ def _job(case: ValidityCase, source: str, factor: float, options: dict[str, floa
 
 LIFTED_WIDTHS = 3e-5
 """A pivot that rises by this part of the width has lifted off; three times what it does where the
-reference needs no pull, ..."""
+reference needs no pull."""
 
 SLID_WIDTHS = 3e-4
-"""... and one that moves along the base by this part has slid, five times the creep of a contact
-that holds."""
+"""A pivot that moves along the base by this part of the width has slid: five times the creep of a
+contact that holds."""
 
 LEFT = {Reason.SLID: "slid away", Reason.THROWN: "flew off"}
 """Reason of a failure that is an answer of the study -> verdict."""

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from analytic import MODELS, Outcome, RigidBlock, peak_ratios
 from analytic.criteria import overturning_amplitude, quarter_period
 from analytic.kernels.closed_form import linear_state
+from analytic.kernels.law import State
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]
 
@@ -37,7 +38,7 @@ def test_closed_form_solves_its_equation(name, alpha, segment, side, v, h):
         return [state[1], -(law.k**2) * (law.saddle - state[0] + side * law.factor * a)]
 
     path = solve_ivp(equation, (0.0, h), [y, v], "DOP853", rtol=1e-12, atol=1e-13)
-    end = linear_state(law, row, side, 0.5, 0, y, v, h)
+    end = linear_state(law, row, State(side, 0.5, 0, y, v), h)
     scale = 1 + np.abs(path.y).max()
     np.testing.assert_allclose(end, path.y[:, -1], atol=1e-10 * scale)
 
@@ -47,7 +48,7 @@ def test_short_steps_out_of_a_rest_lose_no_digits(h):
     law = MODELS["housner"].law(0.3, 0.9)
     psi = math.asin(law.onset / 0.5)
     row = np.array([0.0, 9.0, 0.5, 2.0, psi, 0.0, 0.0])
-    y, _ = linear_state(law, row, -1.0, 0.0, 3, 0.0, 0.0, h)
+    y, _ = linear_state(law, row, State(-1.0, 0.0, 3, 0.0, 0.0), h)
     # y'' = y + f, f = 0.5 (sin(2t + psi) - sin psi): its Taylor series from the recurrence
     f = [0.5 * 2.0**n / math.factorial(n) * math.sin(psi + n * math.pi / 2) for n in range(30)]
     f[0] = 0.0

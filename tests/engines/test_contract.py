@@ -16,6 +16,7 @@ from engines.adapters.bullet import BulletWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
 from engines.drive import build
 from engines.world import Moment, Pose
+from studies.cases.variants import variants
 
 
 def use(monkeypatch: pytest.MonkeyPatch, engine: Engine) -> None:
@@ -67,6 +68,8 @@ def test_a_declaration_is_whole(name: str) -> None:
             assert replace(preset.settings, **left_out) != preset.settings
     for item in engine.factors:
         assert all(hasattr(engine.best.settings, setting) for setting in item.settings)
+    tried = {(it.preset, it.factor, it.level) for it in variants(name)}
+    assert {(rule.preset, rule.factor, rule.level) for rule in engine.rules} <= tried
 
 
 @every_use

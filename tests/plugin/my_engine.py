@@ -10,11 +10,9 @@ class World:
 
     def __init__(self, scene, settings, dt_s):
         block, at = scene.block, scene.beginning
-        self.space = pymunk.Space()
-        self.body = pymunk.Body(scene.mass, scene.inertia[1])
+        self.space, self.body = pymunk.Space(), pymunk.Body(scene.mass, scene.inertia[1])
         self.body.position, self.body.angle = (at.x, at.z), -at.theta
-        self.body.velocity = at.velocity_x, at.velocity_z
-        self.body.angular_velocity = -at.rate
+        self.body.velocity, self.body.angular_velocity = (at.velocity_x, at.velocity_z), -at.rate
         box = pymunk.Poly.create_box(self.body, (block.width, block.height))
         ground = pymunk.Segment(self.space.static_body, (-1e3, 0.0), (1e3, 0.0), 0.0)
         box.friction, ground.friction = settings.friction, 1.0

@@ -17,9 +17,9 @@ from engines.adapters.bullet import BulletWorld
 from engines.adapters.bullet_settings import BulletSettings
 from engines.adapters.mujoco_settings import TUNED, MujocoSettings
 from engines.drive import build
-from engines.factors import BEST, DEFAULT
+from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.stepping.steps import FixedSteps, Stepper
-from studies.cases.variants import OWN_STEP
+from studies.contact.claims import prices, rules
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
 from studies.kit.jobs import ask
@@ -82,7 +82,7 @@ def test_a_variant_differs_from_its_preset():
     """What a variant sets is not what its preset sets already, or it would compare nothing."""
     for variant in VARIANTS:
         plain = ENGINES[variant.engine].preset(variant.preset).settings
-        if variant.factor and not variant.scene and variant.name != OWN_STEP:
+        if variant.factor and not variant.scene and variant.factor != OWN_STEPS:
             assert scene(settings=variant.settings).choose(plain) != plain, variant
 
 
@@ -224,3 +224,48 @@ def test_jobs_survive_json():
         job = job_of(variant, *cases(True)[0], True)
         assert len(job.key) == 24
         assert json.loads(json.dumps(dict(job.labels)))["level"] == variant.level
+
+
+def made_up(preset, factor="", level="", error=1e-5, **broken):
+    counts = {"cases": 12, "failed": 0, "wrong": 0, **broken}
+    words = {"engine": "rapier", "preset": preset, "factor": factor, "level": level}
+    return {**words, **counts, "median_error": error / 2, "max_error": error}
+
+
+def test_what_helps_has_a_price_and_a_rule_its_worth():
+    lines = pd.DataFrame(
+        [
+            made_up("landing"),
+            made_up("landing", LEFT_OUT, "reflection", 2e-2, wrong=1),
+            made_up(BEST, error=3e-2),
+            made_up(BEST, "locks", "y locked", math.nan, failed=12),
+            made_up(DEFAULT, error=0.4),
+            made_up(DEFAULT, "sleeping", "off", 0.05),
+        ]
+    )
+    assert prices(lines, "rapier") == {
+        "": "1.0e-05",
+        "REFLECTION": "2 %, 1 of 12 wrong",
+        "STEPS": "3 %",
+    }
+    worth = {rule.factor: pair for rule, *pair in rules(lines, "rapier")}
+    # without the rule, and with it: what is seen from the best is what happens without
+    assert worth == {"locks": ["no result", "1.5 %, 3 %"], "sleeping": ["20 %, 40 %", "2.5 %, 5 %"]}
+
+
+def test_landing_is_tried_without_each_of_what_helps_it():
+    for name in installed_engines():
+        helped = {key.name.lower() for key, out in ENGINES[name].best.helped_by.items() if out}
+        found = {v.level for v in VARIANTS if v.engine == name and v.factor == LEFT_OUT}
+        assert found == helped
+
+
+def test_the_defaults_are_asked_at_their_own_step_in_both_frames():
+    for name in installed_engines():
+        jobs = [
+            job_of(v, *cases(True)[0], True)
+            for v in VARIANTS
+            if (v.engine, v.preset, v.factor) == (name, DEFAULT, OWN_STEPS)
+        ]
+        assert [job.options.get("frame") for job in jobs] == [None, "world"]
+        assert not any("step" in job.options for job in jobs)

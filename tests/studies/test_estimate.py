@@ -1,6 +1,7 @@
 """Estimates: an answer beside the one at half the step, and what the difference bounds."""
 
 import math
+from itertools import islice
 
 import pandas as pd
 import pytest
@@ -9,6 +10,7 @@ from analytic import RigidBlock, SinePulse
 from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
+from studies.cases.drawn import draw
 from studies.estimate import study
 from studies.estimate.calibration import beside_errors, factors
 from studies.kit.jobs import Job
@@ -122,6 +124,17 @@ def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
     assert study.headline(tmp_path).startswith("The difference from half the step")
     assert "survivors" in study.paragraph(tmp_path)
     assert (tmp_path / "estimate.png").stat().st_size > 20_000
+
+
+def test_pairs_are_asked_at_another_step(tmp_path):
+    few = ["estimate", "--seed", "3", "--sources", "mujoco", "--jobs", "1", "--cases", "2"]
+    assert run([*few, "--step", "0.02", "--out", str(tmp_path)]) == 0
+    rows = pd.read_csv(tmp_path / "estimate.csv").set_index(["case", "half"])
+    (case, *_) = islice(draw(3), 1)
+    for half, step in ((0, 0.02), (1, 0.01)):
+        answer = respond("mujoco", case.block, case.motion, step=step)
+        assert rows.loc[(0, half), "peak_ratio"] == pytest.approx(answer.peak_ratio, rel=1e-12)
+        assert rows.loc[(0, half), "steps"] == answer.steps
 
 
 def test_a_comparison_carries_estimates(capsys):

@@ -29,6 +29,8 @@ def test_the_readme_follows_its_tables(tmp_path):
     """A number and a word change with the table that they come from."""
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
+    (tmp_path / facts.NINTH).parent.mkdir(parents=True)
+    shutil.copy(ROOT / facts.NINTH, tmp_path / facts.NINTH)
     before = readme.pages(tmp_path)[tmp_path / "README.md"]
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
         lines = pd.read_csv(path)
@@ -38,13 +40,21 @@ def test_the_readme_follows_its_tables(tmp_path):
     after = readme.pages(tmp_path)[tmp_path / "README.md"]
     assert "957 of 960" in after and "957 of 960" not in before
     assert "1.2 % |" in after
-    assert "0 and 3 of 960 outcomes are wrong" in after
+    assert "4 of 5760 cases" in after  # one of another engine's besides
 
 
 def test_both_commands_of_ci_are_there_once():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     for name in ("the main job", "the tests"):
         assert len(re.findall(f"<!-- {name} -->\n```sh\npython3.11 -m venv .*\n```\n", text)) == 1
+
+
+def test_the_engine_of_the_readme_is_the_one_that_is_scored():
+    """In at most 30 lines; tests/studies/test_score.py puts it to the cases."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown = re.search("`rocking score my_engine:World.*?```python\n(.*?)\n```", text, re.DOTALL)[1]
+    assert len(shown.splitlines()) <= 30
+    assert (ROOT / facts.NINTH).read_text(encoding="utf-8").rstrip().endswith(shown)
 
 
 def test_every_link_of_a_page_leads_somewhere():

@@ -1,5 +1,6 @@
 """The chapters, and the page that shows them, in a browser where there is one."""
 
+import itertools
 import json
 import re
 import shutil
@@ -15,12 +16,13 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.block import STANDARD_GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
-from studies.page.engine_cases import engine_cases
+from studies.page.engine_cases import AXES, engine_cases
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
     "sweep": ("--figure", "6", "--sources", "exact", "modified"),
+    "defaults": ("--quick", "--sources", "pybullet:naive"),
     "histories": ("--figure", "4"),
 }
 """Chapters that are quickly made, and their arguments here."""
@@ -92,7 +94,7 @@ def test_the_page_says_what_the_tables_say(made):
 def test_a_picture_is_described_and_what_is_weaker_is_said(made):
     text = (made / "report.html").read_text()
     described = re.findall('<img [^>]*alt="([^"]*)"', text)
-    assert len(described) == 2
+    assert len(described) == 4
     assert all(len(words) > 60 for words in described)
     assert f"Weaker than the published form:</strong> {CHAPTERS[0][1].weaker}" in text
 
@@ -113,16 +115,21 @@ def test_prose_is_told_from_tables():
 
 def test_the_engines_answers_are_those_of_the_tables():
     held = engine_cases(PUBLISHED)
-    assert held["sources"][0] == "exact"
-    rows = pd.read_csv(PUBLISHED / "sweep" / "sweep.csv")
-    cases = rows[rows["source"] == "mujoco"].reset_index(drop=True)
-    assert len(held["rows"]) == len(cases) == 960
-    shown = {tuple(row[:5]): row[5 + held["sources"].index("mujoco")] for row in held["rows"]}
+    assert next(iter(held["peaks"])) == "exact"
+    rows = pd.read_csv(PUBLISHED / "defaults" / "defaults.csv")
+    cases = rows[rows["source"] == "mujoco:naive"].reset_index(drop=True)
+    shown = dict(
+        zip(
+            itertools.product(*(held[name] for name in AXES)),
+            held["peaks"]["mujoco:naive"],
+            strict=True,
+        )
+    )
+    assert len(shown) == len(cases) > 1000
     for case in cases.iloc[::97].itertuples():
-        amplitude = float(f"{1 / case.aspect + case.excess_g:.8g}")
         half_cycles = {"half-sine": 1, "full-sine": 2}[case.pulse]
-        peak = shown[half_cycles, case.aspect, case.width_m, amplitude, case.omega_over_p]
-        assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.8g}"))
+        peak = shown[half_cycles, case.aspect, case.width_m, case.onsets, case.omega_over_p]
+        assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.5g}"))
 
 
 @pytest.mark.parametrize("place", CHAPTERS, ids=lambda place: place[1].folder)
@@ -151,12 +158,14 @@ const said = () => document.getElementById("try-outcome").textContent;
 const first = said(), slider = document.getElementById("try-omega");
 slider.value = 12.5;
 slider.dispatchEvent(new Event("input"));
-const then = said(), pulses = document.getElementById("try-pulse");
+const then = said(), answers = document.getElementById("try-answers").rows;
+const engines = [...answers].map(row => [...row.cells].map(cell => cell.textContent));
+const pulses = document.getElementById("try-pulse");
 pulses.value = "1";
 pulses.dispatchEvent(new Event("input"));
-const engines = document.getElementById("try-answers").rows.length;
+const unasked = document.getElementById("try-engines").hidden;
 const wide = before - window.innerWidth;
-document.title = JSON.stringify({wide, column, first, then, engines});
+document.title = JSON.stringify({wide, column, first, then, engines, unasked});
 </script>"""
 
 
@@ -181,4 +190,8 @@ def test_the_page_fits_its_window_and_sorts(made, tmp_path: Path, width):
             BLOCK, SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
         ).peak_ratio
         assert f"{peak:.6f}" in words
-    assert seen["engines"] == 1  # figure 6 is of half-sines, and the exact solution was asked
+    rows = pd.read_csv(made / "defaults" / "defaults.csv").sort_values("source")
+    near = rows[(rows["width_m"] == 0.5) & (rows["omega_over_p"] == 3.5) & (rows["onsets"] == 1.3)]
+    shown = [[line.source, f"{line.peak_ratio:.4f} θcr"] for line in near.itertuples()]
+    assert [line[:2] for line in seen["engines"]] == shown
+    assert seen["unasked"]  # half-sines are not among the quick ones

@@ -10,9 +10,11 @@ import pytest
 from analytic import peak_ratios, simulate
 from studies.cases.drawn import LEAST_NORMAL, draw
 from studies.kit.journal import FolderError
-from studies.kit.options import Running
+from studies.kit.options import EffortOptions, Running
 from studies.kit.plan import fill
 from studies.measures.differences import with_conditioning
+from studies.measures.halving import published_trust
+from studies.measures.words import out_of
 from studies.validate import STUDY
 from studies.validate.hints import FALSE, KNOWN, leanings
 from studies.validate.study import plan, report
@@ -99,6 +101,37 @@ def test_a_wrong_outcome_with_a_false_hint_is_counted():
     assert (true.max_error, true.over_kappa) == pytest.approx((3e-6, 1e-6))
     assert (false.cases, false.right, false.still) == (1, 0, 1)
     assert math.isnan(false.max_error)
+
+
+def test_random_cases_carry_estimates_and_what_these_bound(tmp_path):
+    asked = plan(4, 5, ["exact", "mujoco", "moreau"], EffortOptions(step=0.02), estimate=True)
+    rows = fill(STUDY, asked, tmp_path, ALONE)
+    halves = [row for row in rows if row["table"] == "halves"]
+    assert [(row["case"], row["source"]) for row in halves] == [
+        (case, source) for case in range(4) for source in ("mujoco", "moreau")
+    ]
+    text = report(tmp_path)
+    errors = pd.read_csv(tmp_path / "errors.csv").set_index(["source", "case"])
+    finer = {row["case"]: row["peak_ratio"] for row in halves if row["source"] == "mujoco"}
+    assert errors.loc["exact", ["estimate", "bound"]].isna().all(axis=None)
+    mine = errors.loc["mujoco"]
+    known = mine[mine["outcome"] == "rocked"]
+    assert len(known)
+    for case, row in known.iterrows():
+        assert row["estimate"] == pytest.approx(abs(row["peak_ratio"] / finer[case] - 1), rel=1e-12)
+        bound = row["estimate"] * published_trust("mujoco").factor
+        assert row["bound"] == pytest.approx(bound, rel=1e-12)
+    bounded = (known["error"].abs() <= known["bound"]).sum()
+    assert f"mujoco: times {published_trust('mujoco').factor:.3g} bounds " in text
+    assert out_of(bounded, len(known)) in text
+    assert "moreau: its estimates were never held against errors" in text
+    assert errors.loc["moreau", "bound"].isna().all()
+
+
+def test_without_estimates_there_is_no_table_of_them(tmp_path):
+    fill(STUDY, plan(2, 5, ["exact"], estimate=True), tmp_path, ALONE)
+    assert "half the step" not in report(tmp_path)
+    assert not (tmp_path / "halves.csv").exists()
 
 
 def test_models_have_no_hints(tmp_path):

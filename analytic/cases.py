@@ -1,0 +1,134 @@
+"""Many cases of pulses at once: broadcast, checked, and solved part by part on all cores."""
+
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from analytic.block import housner_restitution
+from analytic.checks import MOST_HALF_CYCLES
+from analytic.kernels.compiled import kernel
+from analytic.kernels.law import FloatArray, Law
+from analytic.models import Model, find_model
+
+PART = 4096
+"""Cases that a core takes at a time: enough that handing them over costs nothing, and few enough
+that no core is left with much to do when the others are done."""
+
+SolvePart = Callable[[slice, bool, FloatArray, FloatArray], None]
+"""Solves a part of the cases, a slice of all: given whether the model is linear, its constants
+(shape (5, n), `Model.constants`) and the cases (shape (5, n)): alpha, amplitude, omega/p, half
+cycles, restitution."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cases:
+    """Cases of a model, each parameter in the broadcast shape; without a restitution Housner's."""
+
+    model: Model
+    columns: tuple[NDArray[Any], ...]
+    restitution: bool
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the cases."""
+        return self.columns[0].shape
+
+    @property
+    def size(self) -> int:
+        """Number of cases."""
+        return self.columns[0].size
+
+    def solve(self, solve: SolvePart, threads: int | None = None) -> None:
+        """Hand all cases to a compiled solver in parts, which needs no more memory than they do.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is outside its range.
+        """
+
+        def one(start: int) -> None:
+            part = slice(start, min(start + PART, self.size))
+            cases = np.array([column.flat[part] for column in self.columns], dtype=np.float64)
+            if not self.restitution:
+                fill_restitution(cases[0], cases[4])
+            check_cases(cases)
+            solve(part, self.model.linear, np.stack(self.model.constants(cases[0])), cases)
+
+        starts = range(0, self.size, PART)
+        if len(starts) <= 1:
+            for start in starts:
+                one(start)
+            return
+        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+            for _ in pool.map(one, starts):
+                pass
+
+
+def pose(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str | Model,
+    restitution: ArrayLike | None,
+) -> Cases:
+    """Return the cases that the arguments of `peak_ratios` name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such model, or the shapes do not broadcast.
+    """
+    declared, eta = find_model(model), 0.0 if restitution is None else restitution
+    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, eta)
+    return Cases(declared, tuple(columns), restitution is not None)
+
+
+compiled_restitution = kernel(housner_restitution)
+
+
+@kernel
+def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
+    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness."""
+    for i in range(alpha.size):
+        eta[i] = max(compiled_restitution(alpha[i]), 0.0)
+
+
+@kernel
+def law_of(linear: bool, constants: FloatArray, eta: float) -> Law:
+    """Return the law of a case from a column of the constants."""
+    k, saddle, factor, alpha, onset = constants
+    return Law(linear, k, saddle, factor, alpha, onset, eta)
+
+
+@kernel
+def write_pulse(case: FloatArray, segment: FloatArray) -> None:
+    """Write the pulse of a case into a row of `motion.SEGMENT_COLUMNS` that is zero elsewhere."""
+    _, amplitude, omega, half_cycles, _ = case
+    segment[1] = half_cycles * math.pi / omega
+    segment[2] = amplitude
+    segment[3] = omega
+
+
+def check_cases(cases: FloatArray) -> None:
+    """Raise ValueError unless every column of (alpha, amplitude, omega, n, eta) is in range."""
+    alpha, _, omega, half_cycles, eta = cases
+    whole = (half_cycles >= 1.0) & (half_cycles == np.floor(half_cycles))
+    whole &= half_cycles <= MOST_HALF_CYCLES
+    rules = {
+        "alpha": (alpha, (alpha > 0.0) & (alpha < 0.5 * math.pi), "in (0, pi/2)"),
+        "amplitude_g": (cases[1], np.isfinite(cases[1]), "finite"),
+        "omega_over_p": (omega, (omega > 0.0) & np.isfinite(omega), "positive and finite"),
+        "half_cycles": (half_cycles, whole, f"a whole number from 1 to {MOST_HALF_CYCLES:g}"),
+        "restitution": (eta, (eta >= 0.0) & (eta <= 1.0), "between 0 and 1"),
+    }
+    for name, (column, allowed, words) in rules.items():
+        if not np.all(allowed):
+            raise ValueError(f"{name} is {column[~allowed][0]}; it must be {words}")

@@ -1,0 +1,97 @@
+"""What Box2D can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+from dataclasses import dataclass, replace
+
+from engines.factors import BEST, BY_DEFAULT, MOVING_BASE, Rule, factor, level
+from engines.parts.settings import check, setting
+from engines.parts.shapes import NO_JAM, fall
+from engines.scene import Scene
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box2DSettings:
+    """Settings of Box2D, by default those of its own first example.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on another, or "corners": circles at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations, position_iterations : int
+        Of the solver, for velocities and for positions.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    skins_below : bool
+        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
+    continuous : bool
+        Whether the library looks for impacts within a step.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, least=0.0)
+    iterations: int = setting(6, least=1)
+    position_iterations: int = setting(2, least=0)
+    units: float | None = setting(None, above=0.0)
+    skins_below: bool = False
+    continuous: bool = True
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def unit_of(self, scene: Scene) -> float:
+        """Return the units of length in a metre."""
+        return 1.0 if self.units is None else self.units / scene.block.height
+
+    def reach_of(self, scene: Scene, dt_s: float) -> float:
+        """Return half of the gap, in units of length, up to which the pivot is kept in contact."""
+        return 0.5 * (self.margin or 0.0) * fall(scene, dt_s) * self.unit_of(scene)
+
+
+TUNED = Box2DSettings(
+    geometry="corners",
+    friction=NO_JAM,
+    iterations=100,
+    position_iterations=0,
+    units=50.0,
+    skins_below=True,
+    continuous=False,
+    margin=10.0,
+)
+LANDING = replace(TUNED, reflection=True)
+
+FACTORS = (
+    factor("geometry"),
+    factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
+    factor("position_iterations", level("2", position_iterations=2)),
+    factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
+    factor("skins_below"),
+    factor("continuous"),
+    factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
+    MOVING_BASE,
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
+        "units, and speed is cut to 2 units a step",
+        *(BEST, "units", BY_DEFAULT),
+    ),
+    Rule(
+        "Lower a floor by that skin, if bodies are to touch it where it is",
+        *(BEST, "skins below", BY_DEFAULT),
+    ),
+)
+"""What its users should know, each with its measured effect."""

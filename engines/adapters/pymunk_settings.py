@@ -1,0 +1,123 @@
+"""What pymunk can be set to: its settings, the tuned ones, and what the studies try of them."""
+
+import math
+from dataclasses import dataclass, replace
+
+from engines.factors import (
+    BEST,
+    BY_DEFAULT,
+    DEFAULT,
+    LEFT_OUT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
+from engines.parts.settings import check, setting
+from engines.parts.shapes import NO_JAM, fall
+from engines.scene import Scene
+
+LEVEL = 1e-9
+"""A block that leans by less [rad] stands on both corners: held to the margin while it falls, the
+free corner would come to rest above the base."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PymunkSettings:
+    """Settings of pymunk; None leaves the library's default.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on one segment, or "corners": points at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations, slop, bias : optional
+        `Space.iterations`, `collision_slop` [m] and `collision_bias`.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), in place of `iterations`: the impulses of the two corners
+        on which a block stands converge the slower, the more slender it is.
+    positions : bool
+        Move the positions after the velocities, by the adapter.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact; slop is then beyond it.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by elasticity and surface
+        velocity.
+    base_velocity : bool
+        Give a moving base its velocity; else it is moved by position alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, least=0.0)
+    iterations: int | None = setting(None, least=1)
+    slop: float | None = setting(None, least=0.0)
+    bias: float | None = setting(None, least=0.0, most=1.0)
+    sweeps: float | None = setting(None, above=0.0)
+    positions: bool = False
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    base_velocity: bool = True
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def iterations_of(self, scene: Scene) -> int | None:
+        """Return how often the solver goes through the contacts; None leaves that to it."""
+        if self.sweeps is None:
+            return self.iterations
+        return math.ceil(self.sweeps / math.sin(scene.block.alpha) ** 2)
+
+    def margin_of(self, scene: Scene, dt_s: float) -> float:
+        """Return the gap [m] up to which the pivot is kept in contact."""
+        return (self.margin or 0.0) * fall(scene, dt_s)
+
+    def slop_of(self, scene: Scene, dt_s: float) -> float | None:
+        """Return the penetration [m] that is left alone; None is the library's own."""
+        return self.slop if self.margin is None else 10.0 * self.margin_of(scene, dt_s)
+
+
+TUNED = PymunkSettings(
+    geometry="corners",
+    friction=NO_JAM,
+    sweeps=20.0,
+    bias=0.0,
+    margin=10.0,
+)
+LANDING = replace(TUNED, positions=True, reflection=True)
+
+FACTORS = (
+    factor("geometry"),
+    factor("positions", level("moved by the adapter", positions=True), by_default=False),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (level("100", iterations=100, sweeps=None),),
+    ),
+    factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
+    factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
+    factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
+    factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
+    MOVING_BASE,
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Keep the step of `space.step` the same: the impulses it starts from are scaled by the "
+        "ratio of two steps",
+        *("landing", LEFT_OUT, "positions"),
+    ),
+    Rule(
+        "Give a slender body more `iterations`, some 20/sin²α: they are 10",
+        *(BEST, "iterations", BY_DEFAULT),
+    ),
+    Rule(
+        "Scale `collision_slop` to what you build: bodies sink by 0.1 units of length",
+        *(DEFAULT, "slop", "1e-4 m"),
+    ),
+)
+"""What its users should know, each with its measured effect."""

@@ -1,0 +1,98 @@
+"""A scene in Rapier's own words, for a script that needs the library alone."""
+
+from engines.adapters.rapier_settings import RapierSettings, parameters
+from engines.parts.shapes import corner_spheres, floor_half_size, half_size
+from engines.scene import Scene
+from engines.script import Script
+
+
+def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of Rapier; see `engines.script`."""
+    rough = f".friction({float(s.friction)!r})"
+    set_ = _parameters(s)
+    locks, shape = _locks(s), _touching(scene, s)
+    x, y, z = floor_half_size(scene)
+    return Script(
+        imports=("import rapier3d as rapier",),
+        settings=(f"parameters.dt = {dt_s!r}", *set_, *locks, *shape, rough),
+        build=(
+            "world = rapier.PhysicsWorld()",
+            "parameters = world.integration_parameters",
+            "parameters.dt = DT",
+            *set_,
+            "",
+            "",
+            "def added(body, colliders):",
+            f"    rough = [collider{rough} for collider in colliders]  # the mean counts",
+            "    return world.rigid_bodies[world.add_body(body, rough)]",
+            "",
+            "",
+            "base = rapier.RigidBody.kinematic_velocity_based()",
+            f"floor = rapier.Collider.cuboid({x!r}, {y!r}, {z!r}).translation({(0.0, 0.0, -z)})",
+            "base = added(base, [floor])",
+            *_beginning(scene),
+            *locks,
+            *shape,
+            "block = added(body, shapes)",
+            "block.recompute_mass_properties_from_colliders(world.colliders)",
+        ),
+        step=("world.gravity = pull_x, 0.0, pull_z", "world.step()"),
+        pose=(
+            "turn = block.rotation",
+            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), block.angvel.y",
+        ),
+    )
+
+
+def _parameters(s: RapierSettings) -> tuple[str, ...]:
+    lines = [f"parameters.{name} = {_value(value)}" for name, value in parameters(s).items()]
+    if s.frequency is not None:
+        lines += [
+            f"spring = rapier.SpringCoefficients({s.frequency!r}, {s.damping_ratio!r})",
+            "parameters.contact_softness = parameters.static_contact_softness = spring",
+        ]
+    return tuple(lines)
+
+
+def _value(value: object) -> str:
+    return f"rapier.FrictionModel.{value}" if isinstance(value, str) else repr(value)
+
+
+def _beginning(scene: Scene) -> tuple[str, ...]:
+    """Return lines that make a body where and as fast as the block sets out."""
+    at = scene.beginning
+    lines = (
+        f"body = rapier.RigidBody.dynamic().translation({(at.x, 0.0, at.z)})",
+        f"body = body.rotation({(0.0, at.theta, 0.0)}).angvel({(0.0, at.rate, 0.0)})",
+        f"body = body.linvel({(at.velocity_x, 0.0, at.velocity_z)})",
+    )
+    return lines[:1] if at.at_rest else lines
+
+
+def _locks(s: RapierSettings) -> tuple[str, ...]:
+    lines: list[str] = []
+    if s.planar:
+        free = (True, not s.locked_aside, True)
+        lines += [
+            "body = body.enabled_rotations((False, True, False))",
+            f"body = body.enabled_translations({free})",
+        ]
+    if s.sleeping is not None:
+        lines += [f"body = body.can_sleep({s.sleeping})"]
+    return tuple(lines)
+
+
+def _touching(scene: Scene, s: RapierSettings) -> tuple[str, ...]:
+    """Return lines that give the block its mass, and what touches the base."""
+    if s.geometry == "box":
+        size = ", ".join(map(repr, half_size(scene)))
+        return (f"shapes = [rapier.Collider.cuboid({size}).density({scene.density!r})]",)
+    radius = s.corner_radius * scene.block.width
+    places = corner_spheres(scene, radius, planar=s.planar)
+    return (
+        f"ball = rapier.Collider.ball({radius!r}).density(0.0)",
+        f"shapes = [ball.translation(at) for at in {places}]",
+        f"inertia = {scene.inertia}",
+        f"mass = rapier.MassProperties((0.0, 0.0, 0.0), {scene.mass!r}, inertia)",
+        "body = body.additional_mass_properties(mass)",
+    )

@@ -1,0 +1,36 @@
+"""Engines as they come, over the plane of pulses and two sizes of a block."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="defaults",
+    module="studies.defaults.study",
+    help="""Engines as they come, over the plane of pulses: where they are right, and where not.
+
+Half and full sines over frequency and amplitude, H/B of 2, 3 and 4, and two widths, which by
+similarity are one. Writes defaults.csv, parts.csv, small.png, large.png and findings.txt;
+resumable. The full study takes some three minutes on two cores, --quick seconds.""",
+    table="defaults.csv",
+    products=("defaults.csv", "parts.csv", "small.png", "large.png", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="defaults",
+            question="Where on the map of pulses do engines go wrong as they come?",
+            tables=("parts.csv",),
+            full=("--sources", "exact", "engines:naive"),
+            minutes=(0.2, 3.5),
+            weaker="One H/B, full sines and fewer pulses.",
+        ),
+    ),
+    captions={
+        "small": (
+            "Frequency and amplitude of full-sine pulses, a map for each engine with its library's "
+            "defaults, of the smaller block: where the outcome is another than the exact one, and "
+            "where the peak is off by more than a tenth."
+        ),
+        "large": (
+            "The same maps of the larger block, which by similarity should look the same as those "
+            "of the smaller one."
+        ),
+    },
+)

@@ -1,0 +1,153 @@
+"""What engines as they come get right of the plane of pulses, and what they make of similarity."""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from analytic import RigidBlock, SinePulse, simulate
+from engines import ENGINES
+from studies.cases.paper import PULSES
+from studies.measures.words import alike, listed, part
+
+CLOSE = 0.1
+"""A peak within this part of the exact one is close."""
+CASE = ["pulse", "aspect", "width_m", "onsets", "omega_over_p"]
+ALIKE = ["pulse", "aspect", "onsets", "omega_over_p", "source"]
+"""Columns that similarity lets answers depend on."""
+
+RIGHT = ("both rock", "both overturn")
+OFF, FALSE, MISSED, FAILED = "peak off", "false overturning", "missed overturning", "failed"
+INVALID = "invalid"
+"""Where the block should slide or lift off, which the reference does not."""
+
+
+def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return rows with the exact peak of each case, the relative error and a verdict."""
+    exact = rows[rows["source"] == "exact"].set_index(CASE)[["outcome", "peak_ratio"]]
+    needed = exact.index.to_frame(index=False).apply(friction_needed, axis=1).to_numpy()
+    right = exact.assign(needed=needed).reindex(pd.MultiIndex.from_frame(rows[CASE]))
+    found, over = rows["outcome"].to_numpy(), right["outcome"].to_numpy() == "overturned"
+    with np.errstate(invalid="ignore"):
+        error = rows["peak_ratio"].to_numpy() / right["peak_ratio"].to_numpy() - 1.0
+    survive = ~over & np.isin(found, ("rocked", "at rest"))
+    verdict = np.select(
+        [
+            right["needed"].to_numpy() > rows["source"].map(friction_of).to_numpy(),
+            found == "failed",
+            over & (found == "overturned"),
+            over,
+            found == "overturned",
+            np.abs(error) > CLOSE,
+        ],
+        [INVALID, FAILED, RIGHT[1], MISSED, FALSE, OFF],
+        RIGHT[0],
+    )
+    return rows.assign(error=np.where(survive, error, np.nan), verdict=verdict)
+
+
+def friction_needed(case: "pd.Series[float]") -> float:
+    """Return the friction without which the block would slide; inf if it would lift off."""
+    block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
+    pulse = SinePulse(
+        amplitude=case["onsets"] * math.tan(block.alpha) * block.gravity,
+        omega=case["omega_over_p"] * block.p,
+        half_cycles=PULSES[str(case["pulse"])],
+    )
+    found = simulate(block, pulse)
+    return found.friction_needed if found.min_normal > 0.0 else math.inf
+
+
+def friction_of(source: str) -> float:
+    """Return the friction of an engine's preset; that of a model is without bound."""
+    engine, _, preset = source.partition(":")
+    if engine not in ENGINES:
+        return math.inf
+    return float(ENGINES[engine].preset(preset or None).settings.friction)
+
+
+def shares(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each engine and width: how many pulses by verdict, and errors.
+
+    Of pulses under which the block neither slides nor lifts off.
+    """
+    asked = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
+    groups = asked.groupby(["source", "width_m"], sort=False)
+    return groups.agg(
+        cases=("verdict", "size"),
+        close=("verdict", lambda found: int(found.isin(RIGHT).sum())),
+        far=("verdict", lambda found: int((found == OFF).sum())),
+        false_overturnings=("verdict", lambda found: int((found == FALSE).sum())),
+        missed_overturnings=("verdict", lambda found: int((found == MISSED).sum())),
+        failed=("verdict", lambda found: int((found == FAILED).sum())),
+        median_error=("error", lambda error: error.abs().median()),
+        p90_error=("error", lambda error: error.abs().quantile(0.9)),
+        wall_s=("wall_s", "sum"),
+    ).reset_index()
+
+
+def first_claim(table: pd.DataFrame) -> str:
+    """Say what part of all pulses each engine gets right."""
+    sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
+    words = [
+        f"{str(name).partition(':')[0]} {_whole(row['close'] / row['cases'])}"
+        for name, row in sums.iterrows()
+    ]
+    return (
+        f"Outcome right and peak within {part(CLOSE)}, as the libraries come: {listed(words)} of "
+        f"{int(sums['cases'].iloc[0])} pulses under which a block neither slides nor lifts off."
+    )
+
+
+def _whole(value: float) -> str:
+    """Return a part in whole per cent, and all of it only where it is all."""
+    return "all" if value == 1.0 else f"{min(value, 0.99):.0%}".replace("%", " %")
+
+
+def claims(table: pd.DataFrame, rows: pd.DataFrame) -> str:
+    """Say what each engine gets wrong, and how two blocks differ that are alike."""
+    sums = table.groupby("source", sort=False).sum(numeric_only=True)
+    words = []
+    for name, row in sums.iterrows():
+        wrong = [
+            f"{row[column] / row['cases']:.1%} {what}".replace("%", " %")
+            for column, what in (
+                ("far", "peaks off by more"),
+                ("false_overturnings", "overturned falsely"),
+                ("missed_overturnings", "overturnings missed"),
+                ("failed", "failed"),
+            )
+            if row[column]
+        ]
+        words.append(f"{str(name).partition(':')[0]} {listed(wrong)}")
+    return f"{first_claim(table)} Of the rest: {'; '.join(words)}. {similarity(rows)}"
+
+
+def similarity(rows: pd.DataFrame) -> str:
+    """Say in what part of the pulses the smallest and the largest block answer differently."""
+    rows = rows[rows["verdict"] != INVALID]
+    widths = sorted(rows["width_m"].unique())
+    pair = [
+        rows[rows["width_m"] == width].set_index(ALIKE)["peak_ratio"]
+        for width in (widths[0], widths[-1])
+    ]
+    small, large = pair[0].align(pair[1], join="inner")
+    both = np.isfinite(small) & np.isfinite(large)
+    differ = (small != large) & ~(both & ((small - large).abs() <= CLOSE * small.abs()))
+    differ &= ~(small.isna() & large.isna())
+    of = differ.groupby(level="source", sort=False).mean()
+    engines = of[of.index != "exact"]
+    words = alike([f"{name.partition(':')[0]} {value:.0%}" for name, value in engines.items()])
+    return (
+        f"By similarity a block of {widths[-1]:g} m answers as one of {widths[0]:g} m: the exact "
+        f"solution does; with the defaults an outcome differs, or a peak by more than "
+        f"{part(CLOSE)}, in {words} of the pulses.".replace("%", " %").replace("  %", " %")
+    )
+
+
+def findings(table: pd.DataFrame, rows: pd.DataFrame) -> str:
+    """Return the claims and the table as text."""
+    shown = table.assign(
+        median_error=table["median_error"].map(part), p90_error=table["p90_error"].map(part)
+    )
+    return f"{claims(table, rows)}\n\n{shown.to_string(index=False)}"

@@ -1,0 +1,105 @@
+"""A map of pulses for each engine: where it is right as it comes, and in what it is wrong."""
+
+import math
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from studies.defaults.claims import CLOSE, FAILED, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.measures.words import part
+
+# the palette of Okabe and Ito, lightened where most of an area is filled
+COLOURS = {
+    RIGHT[0]: "#FFFFFF",
+    RIGHT[1]: "#CCCCCC",
+    OFF: "#F7EE8A",
+    FALSE: "#D55E00",
+    MISSED: "#0072B2",
+    FAILED: "#000000",
+    INVALID: "#E6DCF0",
+}
+WORDS = {
+    RIGHT[0]: f"survives, peak within {part(CLOSE)}",
+    RIGHT[1]: "overturns, as it should",
+    OFF: f"survives, peak off by more than {part(CLOSE)}",
+    FALSE: "overturns falsely",
+    MISSED: "overturning missed",
+    FAILED: "slid or slept: no result",
+    INVALID: "not judged: it should slide or lift off",
+}
+ACROSS = 3
+SHOWN_PULSE, SHOWN_ASPECT = "full-sine", 3.0
+
+
+def draw_maps(rows: pd.DataFrame) -> Figure:
+    """Draw the verdicts on full sines of one width at H/B 3, a map for each engine.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of defaults.csv, with verdicts.
+    """
+    shown = (rows["pulse"] == SHOWN_PULSE) & (rows["aspect"] == SHOWN_ASPECT)
+    rows = rows[shown & (rows["source"] != "exact")]
+    sources = list(rows["source"].unique())
+    across = min(ACROSS, len(sources))
+    down = math.ceil(len(sources) / across)
+    drawing = Figure(figsize=(2.9 * across + 0.3, 2.7 * down + 1.2), layout="constrained")
+    panels = list(drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat)
+    for place, (axes, source) in enumerate(zip(panels, sources, strict=False)):
+        _map(axes, rows[rows["source"] == source])
+        if place % across == 0:
+            axes.set_ylabel("amplitude  $a_p$ / (g tan α)")
+        if place + across >= len(sources):
+            axes.set_xlabel("frequency  ω/p")
+            axes.tick_params(labelbottom=True)
+    for axes in panels[len(sources) :]:
+        axes.set_visible(False)
+    width = rows["width_m"].iloc[0]
+    drawing.suptitle(
+        f"As the libraries come: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m",
+        fontsize=11,
+    )
+    drawing.legend(
+        handles=[
+            Patch(facecolor=colour, edgecolor="#888888", label=WORDS[name])
+            for name, colour in COLOURS.items()
+            if name in set(rows["verdict"])
+        ],
+        loc="outside lower center",
+        ncols=2,
+        frameon=False,
+        fontsize=9,
+    )
+    return drawing
+
+
+def _map(axes: Axes, rows: pd.DataFrame) -> None:
+    names = list(COLOURS)
+    codes = rows.assign(code=rows["verdict"].map(names.index)).pivot(
+        index="onsets", columns="omega_over_p", values="code"
+    )
+    (left, right), (low, high) = (_ends(codes.columns), _ends(codes.index))
+    axes.imshow(
+        codes.to_numpy(),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        extent=(left, right, low, high),
+        cmap=ListedColormap(list(COLOURS.values())),
+        norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
+    )
+    right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
+    name = str(rows["source"].iloc[0]).partition(":")[0]
+    axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
+
+
+def _ends(centres: pd.Index) -> tuple[float, float]:
+    """Return the ends of an axis of cells with these centres, which are equally far apart."""
+    values = centres.to_numpy(float)
+    half = 0.5 * (values[1] - values[0])
+    return float(values[0] - half), float(values[-1] + half)

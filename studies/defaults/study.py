@@ -1,0 +1,148 @@
+"""Engines as they come, asked over the plane of pulses, of blocks that similarity makes alike."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from studies.cases.paper import PULSES
+from studies.defaults import STUDY
+from studies.defaults.claims import claims, findings, first_claim, shares, with_verdicts
+from studies.kit import provenance
+from studies.kit.arguments import Place, check_sources
+from studies.kit.jobs import Job
+from studies.kit.naming import several_sources
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import write_table
+from studies.sources.groups import core_sources
+from studies.sources.registry import resolve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
+RATIOS = tuple(0.5 * np.arange(1, 17))
+"""ω/p."""
+ONSETS = tuple(1.0 + 0.6 * (np.arange(15) + 0.5))
+"""Amplitudes over g tan α."""
+QUICK_ASPECTS, QUICK_PULSES, QUICK_EVERY = (3.0,), ("full-sine",), 3
+DEFAULT_SOURCES = ("exact", *core_sources("naive"))
+
+
+def command(
+    *,
+    out: Place,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    frame: Literal["base", "world"] = "base",
+    quick: bool = False,
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Ask engines as they come over frequency and amplitude of a pulse, and two sizes of a block.
+
+    A case that fails is an answer, which the maps show: the exit code is 1 only where an engine
+    has no result at all.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    sources
+        Who is asked; the exact solution always is.
+    frame
+        base: the motion of the base is a body force; world: the engines move the base.
+    quick
+        Full sines at H/B 3 alone, and every third frequency and amplitude.
+    """
+    check_sources(sources)
+    return carry_out(STUDY, plan(sources, frame, quick), out, running, report)
+
+
+def plan(sources: Sequence[str], frame: str, quick: bool) -> Plan:
+    """Return the plan that puts the pulses to some sources, and to the exact solution."""
+    asked = tuple(dict.fromkeys(("exact", *sources)))
+    return Plan(
+        jobs=grid_jobs(asked, frame, quick),
+        settings={"frame": frame, "quick": quick},
+        growing={"source": asked},
+        needed=lambda rows: [row for row in rows if row["source"] == "exact"],
+    )
+
+
+def grid_jobs(sources: Sequence[str], frame: str, quick: bool) -> list[Job]:
+    """Return a job for each pulse, block and source."""
+    every = QUICK_EVERY if quick else 1
+    return [
+        _job(pulse, aspect, width_m, onsets, ratio, source, frame)
+        for pulse in (QUICK_PULSES if quick else PULSES)
+        for aspect in (QUICK_ASPECTS if quick else ASPECTS)
+        for width_m in WIDTHS_M
+        for onsets in ONSETS[::every]
+        for ratio in RATIOS[::every]
+        for source in sources
+    ]
+
+
+def _job(
+    pulse: str, aspect: float, width_m: float, onsets: float, ratio: float, source: str, frame: str
+) -> Job:
+    block = RigidBlock(width=width_m, height=aspect * width_m)
+    amplitude_g = float(onsets) * math.tan(block.alpha)
+    labels = {
+        "pulse": pulse,
+        "aspect": aspect,
+        "width_m": width_m,
+        "amplitude_g": amplitude_g,
+        "onsets": float(onsets),
+        "omega_over_p": float(ratio),
+    }
+    motion = SinePulse(
+        amplitude=amplitude_g * block.gravity,
+        omega=float(ratio) * block.p,
+        half_cycles=PULSES[pulse],
+    )
+    engine = resolve(source).kind == "engine"
+    options = {"frame": frame} if engine and frame != "base" else {}
+    return Job(labels=labels, block=block, motion=motion, source=source, options=options)
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's defaults.csv; return the findings as text."""
+    from studies.drawing.figures import save_all
+
+    rows = read(folder)
+    write_table(folder / "parts.csv", shares(rows))
+    text = findings(shares(rows), rows)
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    save_all(pictures(folder), folder)
+    return text
+
+
+def read(folder: Path) -> pd.DataFrame:
+    """Read a defaults.csv back, with a verdict on every row."""
+    rows = pd.read_csv(folder / "defaults.csv", dtype={"message": str})
+    return with_verdicts(rows.fillna({"message": ""}))
+
+
+def headline(folder: Path) -> str:
+    """Say what part of the pulses each engine gets right."""
+    return first_claim(pd.read_csv(folder / "parts.csv"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say what each engine gets wrong, and what its defaults make of similarity."""
+    return claims(pd.read_csv(folder / "parts.csv"), read(folder))
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the maps of the smallest and of the largest block from a folder's defaults.csv."""
+    from studies.defaults.figure import draw_maps
+
+    rows = read(folder)
+    widths = {"small": rows["width_m"].min(), "large": rows["width_m"].max()}
+    return {name: draw_maps(rows[rows["width_m"] == width]) for name, width in widths.items()}

@@ -1,0 +1,116 @@
+"""The presets of the engines beside each other: all cases at once, and along the frequency."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from studies.drawing.labels import Name, around
+from studies.drawing.styles import Style, style_of
+from studies.measures.differences import with_reference
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.words import capital
+
+LEAST, MOST = 1e-8, 1e1
+"""Ends of the scale of errors along the frequency."""
+ROW = 0.045
+"""Height of a row of wrong outcomes over that of a panel."""
+
+
+def draw_overview(table: pd.DataFrame) -> Figure:
+    """Draw error against run time: a bar from the median to the largest error, for each source.
+
+    Parameters
+    ----------
+    table : DataFrame
+        From `studies.sweep.claims.preset_table`.
+    """
+    drawing = Figure(figsize=(8.6, 5.4), layout="constrained")
+    axes = drawing.subplots()
+    axes.set(xscale="log", yscale="log")
+    names, taken = [], []
+    for _, line in table.iterrows():
+        style = style_of(str(line["source"]))
+        ends = [(line["ms"], line["median"]), (line["ms"], line["max"])]
+        axes.plot(*zip(*ends, strict=True), color=style.colour, linewidth=1.6, alpha=0.55)
+        axes.plot(*ends[1], **style.points(7.0))
+        axes.plot(*ends[0], "_", color=style.colour, markersize=8)
+        lost = int(line["cases"] - line["right"])
+        words = f"{line['engine']}, {lost} wrong" if lost else str(line["engine"])
+        names.append(Name(words, *ends[1], style.colour))
+        taken += [(x, y * (ends[1][1] / y) ** (k / 8)) for x, y in ends[:1] for k in range(9)]
+    axes.margins(x=0.12, y=0.12)
+    axes.set_xlabel("run time of a case  [ms]")
+    axes.set_ylabel("relative error of the peak, median to largest  [–]")
+    axes.set_title(f"What each engine errs by on {int(table['cases'].max())} cases, and how many "
+                   "outcomes it gets wrong", fontsize=11)  # fmt: skip
+    axes.grid(alpha=0.25)
+    around(axes, names, pd.DataFrame(taken).to_numpy(float), 8.5)
+    shown = [style_of(str(table.loc[table["preset"] == name, "source"].iloc[0]))
+             for name in in_order(table["preset"])]  # fmt: skip
+    grey = [Style("#555555", marker="o", fill=style.fill) for style in shown]
+    handles = [
+        Line2D([], [], **style.points(7.0), label=in_words(name))
+        for style, name in zip(grey, in_order(table["preset"]), strict=True)
+    ]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    return drawing
+
+
+def draw_by_preset(rows: pd.DataFrame, figure: int) -> Figure:
+    """Draw the errors of one of figures 6 to 9: a row for each preset, a column for each H/B.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of sweep.csv.
+    figure : int
+    """
+    rows = with_reference(rows[(rows["figure"] == figure) & rows["source"].map(is_engine)])
+    rows = rows.assign(preset=rows["source"].map(preset_of))
+    aspects, presets = sorted(rows["aspect"].unique()), in_order(rows["preset"])
+    engines = list(dict.fromkeys(source.partition(":")[0] for source in rows["source"]))
+    drawing = Figure(figsize=(9.0, 2.4 * len(presets) + 1.2), layout="constrained")
+    grid = drawing.subplots(len(presets), len(aspects), sharex=True, sharey=True, squeeze=False)
+    for line, preset in zip(grid, presets, strict=True):
+        for axes, aspect in zip(line, aspects, strict=True):
+            mine = rows[(rows["preset"] == preset) & (rows["aspect"] == aspect)]
+            _panel(axes, mine, engines)
+        line[0].set_ylabel(f"{_broken(in_words(preset))}\nrelative error  [–]", fontsize=8.5)
+    for axes, aspect in zip(grid[0], aspects, strict=True):
+        axes.set_title(f"H/B = {aspect:g}", fontsize=10)
+    for axes in grid[-1]:
+        axes.set_xlabel("frequency  ω/p  [–]")
+    drawing.suptitle(f"Figure {figure}: errors of the peak; in the grey band outcomes that are "
+                     "wrong", fontsize=11)  # fmt: skip
+    handles = [Line2D([], [], **style_of(name).points(5.0), label=name) for name in engines]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    return drawing
+
+
+def _broken(words: str) -> str:
+    """Return what a preset is in two lines."""
+    first, _, second = capital(words).partition(" and ")
+    return f"{first}\nand {second}" if second else first
+
+
+def _panel(axes: Axes, rows: pd.DataFrame, engines: list[str]) -> None:
+    """Draw the errors of some engines, and above them where their outcomes are wrong."""
+    top = 1.0 + ROW * (len(engines) + 1)
+    reach = (MOST / LEAST) ** top * LEAST
+    axes.set(yscale="log", ylim=(LEAST, reach), xlim=(0.0, 4.1))
+    axes.axhspan(MOST, reach, color="#eeeeee", zorder=0)
+    narrowest = rows["width_m"].min()
+    for (source, width_m), points in rows.groupby(["source", "width_m"], sort=False):
+        look = {**style_of(str(source)).points(3.0), "linestyle": "-", "linewidth": 0.7}
+        pale = width_m != narrowest
+        known = points[points["error"].notna()].sort_values("omega_over_p")
+        error = known["error"].abs().clip(LEAST, MOST)
+        axes.plot(known["omega_over_p"], error, **look, alpha=0.3 if pale else 1.0)
+        row = engines.index(str(source).partition(":")[0])
+        level = (MOST / LEAST) ** (1.0 + ROW * (row + 1)) * LEAST
+        wrong = points.loc[~points["agrees"], "omega_over_p"]
+        axes.plot(wrong, [level] * len(wrong), "s", color=look["color"], markersize=2.6)
+    axes.set_yticks([1e-8, 1e-6, 1e-4, 1e-2, 1.0])
+    axes.set_yticks([], minor=True)
+    axes.grid(alpha=0.25)

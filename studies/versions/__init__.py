@@ -1,0 +1,34 @@
+"""What each engine answered in the releases before the one that is pinned."""
+
+from studies.kit.study import Chapter, Study
+
+STUDY = Study(
+    name="versions",
+    module="studies.versions.study",
+    help="""What each engine answers in its other releases, and what changed between them.
+
+The 240 cases of the paper's figure 8 and the first 50 random ones, by every preset, in each release
+that runs on this Python; changes of a peak above 1e-6 are marked, beside what the release notes say
+of them. Each release gets an environment of its own, with the engine alone in it (some 5 s and 10
+to 100 MB; numpy and all else are shared), and a folder of its own for its rows, one to four
+minutes; what is there is not made again. Writes releases.csv, changes.csv and versions.png.""",
+    table="releases.csv",
+    products=("answers.csv", "releases.csv", "changes.csv", "versions.png", "findings.txt"),
+    captions={
+        "versions": (
+            "Median (line) and largest error (points) of each preset by release, a panel for each "
+            "engine; a grey line stands where an answer moved by more than 1e-6."
+        ),
+    },
+    chapters=(
+        Chapter(
+            folder="versions",
+            question="Does the release of an engine matter?",
+            tables=("changes.csv",),
+            quick=("--releases", "installed", "--quick"),
+            full=("--quick",),
+            minutes=(1.0, 20.0),
+            weaker="The releases that are installed, and no others.",
+        ),
+    ),
+)

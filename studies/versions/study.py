@@ -1,0 +1,141 @@
+"""The releases of each engine, one after the other: how far off, and what changed."""
+
+import sys
+from collections.abc import Sequence
+from functools import partial
+from typing import Annotated
+
+import pandas as pd
+from tqdm import tqdm
+
+from engines import installed_engines
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Place,
+    Positive,
+    check_engines,
+    refuse_repeats,
+    several,
+)
+from studies.kit.journal import Row
+from studies.kit.options import Running
+from studies.kit.plan import Plan, Tables, carry_out
+from studies.versions import STUDY
+from studies.versions.asked import Asked, Asking, ask
+from studies.versions.cases import jobs_of
+from studies.versions.releases import (
+    INSTALLED,
+    MINOR,
+    Release,
+    UnlistedError,
+    check_releases,
+    chosen,
+    installed,
+    listed,
+)
+from studies.versions.report import headline, paragraph, pictures, report
+from studies.versions.tables import releases_table
+
+__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+
+
+def command(
+    *,
+    out: Place,
+    engines: Annotated[tuple[str, ...], several] = installed_engines(),
+    releases: Annotated[tuple[str, ...], several] = (MINOR,),
+    quick: bool = False,
+    environments: Place | None = None,
+    jobs: Count | None = None,
+    time_limit: Positive = 60.0,
+) -> int:
+    """Ask the releases of each engine the same cases, each in an environment of its own.
+
+    The release that is installed is always among them. Without a network those of which there is
+    an environment can still be named.
+
+    Parameters
+    ----------
+    out
+        Folder for the results, with one inside for each release; made if there is none.
+    engines
+        Names of engines, without a preset.
+    releases
+        "minor": the last one of each minor number; "all"; "installed"; or some by name, as in
+        mujoco==3.2.7.
+    quick
+        A tenth of the cases.
+    environments
+        Folder for the environments, 10 to 100 MB each; by default one inside the results'.
+    jobs
+        Processes for the engines; by default the number of cores.
+    time_limit
+        Wall-clock time [s] after which a case is given up.
+    """
+    check_engines(engines)
+    check_here(engines)
+    refuse_repeats("--releases", releases)
+    check_releases(releases, engines)
+    running = Running(jobs=jobs, time_limit=time_limit)
+    if releases == (INSTALLED,):
+        return carry_out(STUDY, plan_here(engines, quick), out, running, report)
+    limits = ("--time-limit", repr(time_limit), *(("--jobs", str(jobs)) if jobs else ()))
+    how = Asking(
+        out=out,
+        environments=environments or out / "environments",
+        options=(*limits, *(("--quick",) if quick else ())),
+    )
+    unlisted: list[str] = []
+
+    def tabulate(_: object) -> Tables:
+        asked = [ask(one, how) for one in _progress(_all(engines, releases, unlisted))]
+        return {"releases": releases_table(asked)}
+
+    code = carry_out(
+        STUDY, Plan(settings={"quick": quick}, tabulate=tabulate), out, running, report
+    )
+    for problem in unlisted:
+        print(f"{problem}; the releases that were not named are missing", file=sys.stderr)
+    return 1 if unlisted else code
+
+
+def check_here(engines: Sequence[str]) -> None:
+    """Raise BadInputError if an engine is not installed."""
+    if missing := [name for name in engines if name not in installed_engines()]:
+        raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
+
+
+def plan_here(engines: Sequence[str], quick: bool) -> Plan:
+    """Return the plan that asks the releases that are installed, in this Python."""
+    here = [installed(engine) for engine in engines]
+    jobs = [job for release in here for job in jobs_of(release, quick)]
+    return Plan(
+        jobs=jobs,
+        settings={"quick": quick},
+        growing={"engine": engines},
+        tabulate=partial(_tables_here, here),
+        needed=lambda _: (),
+    )
+
+
+def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
+    answers = pd.DataFrame(rows)
+    asked = [Asked(release, answers[answers["engine"] == release.engine]) for release in here]
+    return {"answers": answers, "releases": releases_table(asked)}
+
+
+def _all(engines: Sequence[str], asked: Sequence[str], unlisted: list[str]) -> list[Release]:
+    """Return what is asked, engine by engine; note of whom the releases cannot be learnt."""
+    known: dict[str, list[Release]] = {}
+    for engine in engines:
+        if any("==" not in word and word != INSTALLED for word in asked):
+            try:
+                known[engine] = listed(engine)
+            except UnlistedError as error:
+                unlisted.append(str(error))
+    return [release for engine in engines for release in chosen(engine, asked, known)]
+
+
+def _progress(releases: Sequence[Release]) -> "tqdm[Release]":
+    return tqdm(releases, disable=None, unit="release")

@@ -1,0 +1,98 @@
+"""What was found of the releases, in words and as tables."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from studies.kit.tables import left_aligned
+from studies.measures.differences import scientific
+from studies.measures.words import listed, out_of, part
+from studies.versions.tables import CHANGED
+
+
+def releases_text(lines: pd.DataFrame) -> str:
+    """Return the table of releases: errors of the peak, and moves from the release before."""
+    answered = lines["source"] != ""
+    shown = pd.DataFrame(
+        {
+            "release": lines["engine"] + " " + lines["release"],
+            "preset": lines["source"].str.partition(":")[2],
+            "set": lines["set"],
+            "right": [_right(line) if line["source"] else "" for _, line in lines.iterrows()],
+            "median": lines["median_error"].map(scientific),
+            "p90": lines["p90_error"].map(scientific),
+            "max": lines["max_error"].map(scientific),
+            "moved": lines["moved"].map(scientific),
+            "": lines["message"].where(~answered | (lines["failed"] > 0), ""),
+        }
+    )
+    shown["release"] = shown["release"].mask(shown["release"].eq(shown["release"].shift()), "")
+    head = (
+        "Errors of the peak are relative to the exact one, over cases that both survive; moved is\n"
+        "the largest relative difference of a peak from that in the release before:"
+    )
+    return f"{head}\n{left_aligned(shown.astype(str))}"
+
+
+def _right(line: "pd.Series[float]") -> str:
+    return f"{line['right']:.0f}/{line['cases']:.0f}"
+
+
+def changes_text(changes: pd.DataFrame) -> str:
+    """Return what changed between releases, with what their notes say."""
+    if changes.empty:
+        return f"No answer moved by more than {CHANGED:g} between two of these releases."
+    lines = [f"Answers that moved by more than {CHANGED:g}, or turned into another outcome:"]
+    for row in changes.to_dict("records"):
+        lines.append(
+            f"{row['engine']} {row['before']} -> {row['release']} ({row['presets']}): {_moved(row)}"
+        )
+        if row["note"]:
+            lines.append(f"    {row['note']}\n    {row['link']}")
+    return "\n".join(lines)
+
+
+def _moved(row: Mapping[Any, Any]) -> str:
+    counted = out_of(row["moved_cases"], row["cases"])
+    words = [f"{counted} peaks by up to {part(float(row['moved']))}"]
+    if row["turned"]:
+        words.append(f"{row['turned']} outcomes turned")
+    return listed(words)
+
+
+def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
+    """Say of each engine between how many of its releases an answer changed."""
+    words = [
+        f"{engine} at {len(changes[changes['engine'] == engine])} of "
+        f"{mine['release'].nunique() - 1} steps from {mine['release'].iloc[0]} to "
+        f"{mine['release'].iloc[-1]}"
+        for engine, mine in _answered(lines).groupby("engine", sort=False)
+        if mine["release"].nunique() > 1
+    ]
+    if not words:
+        return "Of each engine one release was asked."
+    return f"From a release to the next an answer moves by more than {CHANGED:g}: {listed(words)}."
+
+
+def _answered(lines: pd.DataFrame) -> pd.DataFrame:
+    return lines[lines["failed"] < lines["cases"]]
+
+
+def told(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
+    """Say of each engine what changed, what its notes say, and which releases had no answer."""
+    sentences = []
+    for engine, mine in lines.groupby("engine", sort=False):
+        moves = [
+            f"from {row['before']} to {row['release']} {_moved(row)} ({row['presets']})"
+            + (f"; its notes: {row['note']}" if row["note"] else "; no note says why")
+            for row in changes[changes["engine"] == engine].to_dict("records")
+        ]
+        answered = _answered(mine)
+        if answered["release"].nunique() > 1:
+            sentences.append(f"{engine}: {'. '.join(moves) or 'nothing moved'}.")
+        lost = mine[~mine["release"].isin(answered["release"])].drop_duplicates("release")
+        if len(lost):
+            names = listed(list(lost["release"]))
+            sentences.append(f"Not asked: {engine} {names} ({lost.iloc[0]['message']}).")
+    return " ".join(sentences) or "Of each engine one release was asked."

@@ -1,0 +1,136 @@
+"""Engines as they come over the plane of pulses: verdicts, similarity, maps."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import simulate
+from studies.__main__ import run
+from studies.defaults import study
+from studies.defaults.claims import (
+    FAILED,
+    FALSE,
+    INVALID,
+    MISSED,
+    OFF,
+    RIGHT,
+    friction_needed,
+    friction_of,
+    shares,
+    similarity,
+    with_verdicts,
+)
+from studies.defaults.figure import draw_maps
+
+
+def exact_rows(width_m):
+    """Return the rows of the exact solution on the quick grid of one width."""
+    rows = []
+    for job in study.grid_jobs(("exact",), "base", True):
+        if job.labels["width_m"] == width_m:
+            found = simulate(job.block, job.motion)
+            answer = {"outcome": found.outcome.value, "peak_ratio": found.peak_ratio}
+            rows.append({**job.labels, "source": "exact", **answer, "wall_s": 1e-5})
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return pd.concat([exact_rows(width) for width in study.WIDTHS_M], ignore_index=True)
+
+
+def made_up(exact, **changes):
+    """Return exact rows as if an engine had answered them."""
+    return exact.assign(source="mujoco:naive", **changes)
+
+
+def verdicts(exact, engine):
+    rows = with_verdicts(pd.concat([exact, engine], ignore_index=True))
+    return rows[rows["source"] == "mujoco:naive"].reset_index(drop=True)
+
+
+def test_an_engine_that_is_exact_is_right_where_it_is_judged(exact):
+    rows = verdicts(exact, made_up(exact))
+    judged = rows[rows["verdict"] != INVALID]
+    assert 10 < len(judged) < len(rows)
+    assert set(judged["verdict"]) == set(RIGHT)
+    assert (rows["error"].dropna().abs() < 1e-12).all()
+
+
+def test_each_kind_of_wrong_answer_is_told(exact):
+    holds = (exact.apply(friction_needed, axis=1) <= friction_of("mujoco:naive")).to_numpy()
+    over, rocks = (
+        holds & (exact["outcome"] == name).to_numpy() for name in ("overturned", "rocked")
+    )
+    first = {
+        name: int(np.flatnonzero(mask)[0]) for name, mask in (("over", over), ("rocks", rocks))
+    }
+    last = int(np.flatnonzero(rocks)[-1])
+    engine = made_up(exact)
+    engine.loc[first["over"], ["outcome", "peak_ratio"]] = ["rocked", 0.5]
+    engine.loc[first["rocks"], ["outcome", "peak_ratio"]] = ["overturned", math.inf]
+    engine.loc[last, "peak_ratio"] *= 1.2
+    rows = verdicts(exact, engine)
+    assert rows["verdict"][first["over"]] == MISSED
+    assert rows["verdict"][first["rocks"]] == FALSE
+    assert rows["verdict"][last] == OFF
+    assert rows["error"][last] == pytest.approx(0.2)
+    failed = verdicts(exact, made_up(exact, outcome="failed", peak_ratio=math.nan))
+    assert set(failed["verdict"]) == {FAILED, INVALID}
+    line = shares(pd.concat([rows, failed]).assign(wall_s=0.0)).iloc[0]
+    counted = ["close", "far", "false_overturnings", "missed_overturnings", "failed"]
+    assert line[counted].sum() == line["cases"]
+
+
+def test_a_block_that_slides_or_lifts_off_is_not_judged(exact):
+    for _, case in exact.iloc[::7].iterrows():
+        needed = friction_needed(case)
+        job = next(
+            job
+            for job in study.grid_jobs(("exact",), "base", True)
+            if all(job.labels[name] == case[name] for name in ("width_m", "onsets", "omega_over_p"))
+        )
+        found = simulate(job.block, job.motion)
+        assert needed == (found.friction_needed if found.min_normal > 0.0 else math.inf)
+    assert friction_of("exact") == math.inf
+    assert friction_of("pybullet:naive") == 1.0
+
+
+def test_similarity_is_seen_to_be_kept_and_to_be_broken(exact):
+    def said(engine):
+        return similarity(with_verdicts(pd.concat([exact, engine], ignore_index=True)))
+
+    assert "in mujoco 0 % of the pulses" in said(made_up(exact))
+    large = (exact["width_m"] == study.WIDTHS_M[-1]) & (exact["outcome"] == "rocked")
+    grown = exact["peak_ratio"].where(~large, 2.0 * exact["peak_ratio"])
+    assert "in mujoco 0 % of the pulses" not in said(made_up(exact, peak_ratio=grown))
+
+
+def test_a_map_shows_every_case_of_a_width(exact):
+    rows = with_verdicts(pd.concat([exact, made_up(exact)], ignore_index=True))
+    rows = rows[rows["width_m"] == study.WIDTHS_M[0]]
+    drawing = draw_maps(rows)
+    image = drawing.axes[0].get_images()[0].get_array()
+    assert image.size == (rows["source"] == "mujoco:naive").sum()
+    assert drawing.axes[0].get_title() == "mujoco: 100 % right"
+
+
+def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(study, "QUICK_EVERY", 8)
+    out = tmp_path / "defaults"
+    code = run(["defaults", "--quick", "--sources", "pybullet:naive", "--out", str(out)])
+    assert code == 0
+    rows = pd.read_csv(out / "defaults.csv")
+    assert list(rows["source"].unique()) == ["exact", "pybullet:naive"]
+    assert "as the libraries come: pybullet" in capsys.readouterr().out
+    assert study.headline(out).startswith("Outcome right and peak within 10 %")
+    assert study.headline(out) in study.paragraph(out)
+    assert set(study.pictures(out)) == {"small", "large"}
+
+
+def test_a_moving_base_is_asked_of_engines_alone():
+    jobs = study.grid_jobs(("exact", "pybullet:naive"), "world", True)
+    frames = {job.source: job.options.get("frame", "base") for job in jobs}
+    assert frames == {"exact": "base", "pybullet:naive": "world"}

@@ -1,0 +1,262 @@
+"""Releases of an engine: which there are, what each answers, and what changed between them."""
+
+import json
+import math
+import subprocess
+import sys
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from engines import registry
+from studies.__main__ import run
+from studies.kit.arguments import BadInputError
+from studies.measures.published import PUBLISHED
+from studies.versions import releases, study
+from studies.versions.asked import Asked
+from studies.versions.cases import posed
+from studies.versions.changes import changes_table
+from studies.versions.notes import NOTES, notes_between
+from studies.versions.releases import Release, check_releases, chosen, last_of_minors, listed
+from studies.versions.report import read
+from studies.versions.tables import CHANGED, releases_table
+
+ENGINE = """
+from dataclasses import replace
+from pretender_moreau import ENGINE as MOREAU
+
+(naive, *_) = MOREAU.presets
+settings = replace(naive.settings, friction={friction})
+ENGINE = replace(
+    MOREAU, name="pretender", library="pretender", packages=("pretender",),
+    presets=(replace(naive, settings=settings, step_s=0.02),),
+)
+"""
+"""A package of an engine, two releases of which differ in a friction."""
+
+PLUGIN = Path(__file__).parents[1] / "plugin" / "rocking_moreau.py"
+RELEASES = {"1.0": 2.0, "1.1": 2.0, "2.0": 0.2}
+"""Release -> friction, by which a block slides in the last one."""
+
+
+def wheel(folder, version, friction):
+    """Write a release of the package as a wheel, which installs without a network."""
+    about = f"pretender-{version}.dist-info"
+    files = {
+        "pretender.py": ENGINE.format(friction=friction),
+        "pretender_moreau.py": PLUGIN.read_text(),
+        f"{about}/METADATA": f"Metadata-Version: 2.1\nName: pretender\nVersion: {version}\n",
+        f"{about}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+        f"{about}/entry_points.txt": "[rocking.engines]\npretender = pretender:ENGINE\n",
+    }
+    path = folder / f"pretender-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w") as packed:
+        for name, text in files.items():
+            packed.writestr(name, text)
+        packed.writestr(f"{about}/RECORD", "".join(f"{name},,\n" for name in files))
+    return path
+
+
+@pytest.fixture
+def pretender(tmp_path, monkeypatch):
+    """An engine whose first release is installed, and whose others lie in a folder."""
+    wheels = tmp_path / "wheels"
+    wheels.mkdir()
+    for version, friction in RELEASES.items():
+        wheel(wheels, version, friction)
+    with zipfile.ZipFile(wheels / "pretender-1.0-py3-none-any.whl") as packed:
+        packed.extractall(tmp_path / "here")
+    monkeypatch.syspath_prepend(tmp_path / "here")
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    monkeypatch.setenv("PIP_FIND_LINKS", str(wheels))
+    monkeypatch.setenv("PIP_CONFIG_FILE", "/dev/null")
+    registry._places.cache_clear()
+    yield wheels
+    for name in ("pretender", "pretender_moreau"):
+        sys.modules.pop(name, None)
+    registry._places.cache_clear()
+
+
+def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path, capsys):
+    """And what one says that errs is seen, and what is there is not made again."""
+    out = tmp_path / "out"
+    words = ["versions", "--engines", "pretender", "--quick", "--jobs", "1", "--out", str(out)]
+    before = {name: metadata.version(name) for name in ("numpy", "pretender")}
+    assert run([*words, "--releases", "all"]) == 0
+    told = capsys.readouterr().out
+    lines = pd.read_csv(out / "releases.csv", dtype={"release": str}).set_index(["release", "set"])
+    assert list(lines.index.unique("release")) == list(RELEASES)
+    assert (lines["failed"] < lines["cases"])[["1.0", "1.1"]].all()
+    assert (lines.loc["1.1", "moved"] == 0.0).all()
+    (change,) = read(out, "changes").to_dict("records")
+    assert (change["before"], change["release"], change["presets"]) == ("1.1", "2.0", "naive")
+    assert "pretender 1.1 -> 2.0 (naive): " in told
+    # nothing was done to what is installed here
+    assert {name: metadata.version(name) for name in before} == before
+    made = {path: path.stat().st_mtime_ns for path in out.glob("*/*/made.json")}
+    assert [path.parent.name for path in sorted(made)] == ["pretender-1.1", "pretender-2.0"]
+    assert all(json.loads(path.read_text())["disk_mib"] < 5.0 for path in made)
+    # without their wheels, what was made goes on
+    for path in pretender.iterdir():
+        path.unlink()
+    named = ["--releases", "pretender==1.1", "pretender==3.0"]
+    assert run([*words, *named]) == 0
+    again = read(out, "releases")
+    assert list(again["release"].unique()) == ["1.0", "1.1", "3.0"]
+    assert "cannot be installed" in again.iloc[-1]["message"]
+    assert {path: path.stat().st_mtime_ns for path in made} == made
+    assert "pretender 3.0 (cannot be installed" in study.paragraph(out)
+
+
+def test_without_a_network_there_is_one_line(pretender, tmp_path, capsys):
+    for path in pretender.iterdir():
+        path.unlink()
+    words = ["versions", "--engines", "pretender", "--quick", "--jobs", "1"]
+    assert run([*words, "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr()
+    assert told.err.count("\n") == 1
+    assert "the releases of pretender cannot be asked for: ERROR: No matching" in told.err
+    assert list(read(tmp_path / "out", "releases")["release"].unique()) == ["1.0"]
+
+
+def test_the_releases_here_are_asked_in_this_process(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("studies.versions.cases.EVERY", 60)
+    words = ["versions", "--engines", "box2d", "--releases", "installed", "--quick"]
+    assert run([*words, "--jobs", "1", "--out", str(tmp_path)]) == 0
+    assert "No answer moved by more than 1e-06" in capsys.readouterr().out
+    assert study.headline(tmp_path) == "Of each engine one release was asked."
+    answers = pd.read_csv(tmp_path / "answers.csv")
+    assert len(answers) == 3 * 5
+    assert (tmp_path / "versions.png").stat().st_size > 10_000
+    assert run([*words, "--jobs", "1", "--out", str(tmp_path)]) == 0
+
+
+def test_the_cases_are_those_of_the_figure_and_the_first_random_ones():
+    asked = posed(quick=False)
+    assert [labels["set"] for labels, *_ in asked] == ["figure 8"] * 240 + ["random"] * 50
+    kept = pd.read_csv(PUBLISHED / "validate" / "errors.csv")
+    (mine,) = [labels for labels, *_ in asked if labels["set"] == "random" and labels["case"] == 7]
+    theirs = kept[kept["case"] == 7].iloc[0]
+    assert all(mine[name] == theirs[name] for name in ("aspect", "width_m", "amplitude_g"))
+
+
+def said(stdout="", stderr=""):
+    return lambda *_, **__: subprocess.CompletedProcess([], 0, stdout, stderr)
+
+
+def test_releases_are_what_pip_names_trials_apart(monkeypatch):
+    text = "mujoco (4.0.1)\nAvailable versions: 4.0.1, 4.0.0, 3.10.0, 3.9.1, 3.9.0, 3.9.0rc1\n"
+    monkeypatch.setattr(releases.subprocess, "run", said(text))
+    found = listed("mujoco")
+    assert [one.version for one in found] == ["3.9.0", "3.9.1", "3.10.0", "4.0.0", "4.0.1"]
+    assert [one.version for one in last_of_minors(found)] == ["3.9.1", "3.10.0", "4.0.1"]
+    here = metadata.version("mujoco")
+    words = [one.version for one in chosen("mujoco", ("minor",), {"mujoco": found})]
+    assert words == sorted({"3.9.1", "3.10.0", "4.0.1", here}, key=lambda v: Release("", v).order)
+    named = chosen("mujoco", ("mujoco==3.2.7", "pymunk==6.0.0"), {})
+    assert [one.version for one in named] == ["3.2.7", here]
+
+
+def test_pip_that_names_nothing_is_one_line(monkeypatch):
+    monkeypatch.setattr(releases.subprocess, "run", said(stderr="WARNING: a\nERROR: no network\n"))
+    with pytest.raises(releases.UnlistedError, match=r"^the releases of Box2D .*: ERROR: no netw"):
+        listed("box2d")
+
+
+@pytest.mark.parametrize("word", ["newest", "mujoco", "mujoco==", "mujoco==x", "pymunk==7.0.0"])
+def test_what_names_no_release_is_refused(word):
+    with pytest.raises(BadInputError, match=r"--releases is .*; it must be installed, minor, all"):
+        check_releases([word], ["mujoco"])
+
+
+def answers(peaks, outcomes=None):
+    """Return answers to two cases of which the first is the paper's figure 5-b."""
+    rows = [
+        {
+            **{"engine": "mujoco", "source": "mujoco:naive", "set": "random", "case": case},
+            **{"aspect": 3.0, "width_m": 0.5, "half_cycles": 2, "amplitude_g": 0.4},
+            **{"omega_over_p": 2.9, "peak_ratio": peak, "message": "", "release": ""},
+            "outcome": "rocked",
+        }
+        for case, peak in enumerate(peaks)
+    ]
+    return pd.DataFrame(rows).assign(**({} if outcomes is None else {"outcome": outcomes}))
+
+
+def test_a_change_is_what_moves_by_more_than_a_millionth_or_turns():
+    asked = [
+        Asked(Release("mujoco", "3.0.0"), answers([0.3, 0.4])),
+        Asked(Release("mujoco", "3.1.0"), answers([0.3 * (1 + 0.5 * CHANGED), 0.4])),
+        Asked(Release("mujoco", "3.2.0"), None, problem="cannot be installed: no wheel"),
+        Asked(Release("mujoco", "3.3.0"), answers([0.3, 0.4 * (1 + 3 * CHANGED)])),
+        Asked(Release("mujoco", "3.4.0"), answers([0.3, 0.4], ["rocked", "failed"])),
+    ]
+    lines = releases_table(asked)
+    assert lines["moved"].to_list() == pytest.approx(
+        [math.nan, 0.5e-6, math.nan, 3e-6, 0.0], rel=1e-6, abs=1e-9, nan_ok=True
+    )
+    changes = changes_table(lines)
+    assert changes[["before", "release"]].to_numpy().tolist() == [
+        ["3.1.0", "3.3.0"],
+        ["3.3.0", "3.4.0"],
+    ]
+    assert changes["moved_cases"].to_list() == [1, 0]
+    assert changes["turned"].to_list() == [0, 1]
+
+
+def test_a_release_that_answers_nothing_is_passed_over():
+    """Its row says why, and its neighbours are held against each other."""
+    lost = answers([math.nan, math.nan], ["failed", "failed"]).assign(message="AttributeError: x")
+    asked = [
+        Asked(Release("mujoco", "3.0.0"), answers([0.3, 0.4])),
+        Asked(Release("mujoco", "3.1.0"), lost),
+        Asked(Release("mujoco", "3.2.0"), answers([0.3, 0.5])),
+    ]
+    lines = releases_table(asked)
+    assert lines["message"].to_list() == ["", "AttributeError: x", ""]
+    found = changes_table(lines)[["before", "release"]]
+    assert found.to_numpy().tolist() == [["3.0.0", "3.2.0"]]
+
+
+def test_notes_are_of_the_releases_after_one_up_to_another():
+    for engine, notes in NOTES.items():
+        orders = [Release(engine, note.release).order for note in notes]
+        assert orders == sorted(orders)
+        assert all(note.text and note.link.startswith("https://") for note in notes)
+        first, last = (Release(engine, notes[place].release) for place in (0, -1))
+        assert notes_between(first, last) == list(notes[1:])
+
+
+@pytest.mark.parametrize("name", ["figure 8", "random"])
+def test_the_published_lines_of_the_pinned_releases_are_those_of_other_studies(name):
+    """The same cases stand in the tables of the sweep and of the random cases."""
+    lines = read(PUBLISHED / "versions", "releases")
+    sweep = pd.read_csv(PUBLISHED / "presets" / "sweep.csv")
+    figure = sweep[sweep["figure"] == 8]
+    random = pd.read_csv(PUBLISHED / "validate" / "errors.csv").query("case < 50")
+    rows = figure if name == "figure 8" else random
+    found = 0
+    for line in lines[lines["set"] == name].to_dict("records"):
+        pinned = releases.installed(line["engine"]).version == line["release"]
+        plain = line["source"].removesuffix(":landing")
+        mine = rows[rows["source"] == plain]
+        if not pinned or mine.empty:
+            continue
+        found += 1
+        if name == "random":
+            assert line["right"] == mine["agrees"].sum()
+            assert line["max_error"] == pytest.approx(mine["error"].abs().max(), rel=1e-4)
+        else:
+            overturned = (mine["outcome"] == "overturned").sum()
+            assert line["cases"] == len(mine) and overturned > 0
+    assert found > 1
+
+
+def test_the_published_changes_follow_from_the_published_releases():
+    folder = PUBLISHED / "versions"
+    changes = changes_table(read(folder, "releases"))
+    kept = read(folder, "changes")
+    pd.testing.assert_frame_equal(changes, kept, check_dtype=False, rtol=1e-12)
