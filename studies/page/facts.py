@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Help
+from engines.declaration import Help, Stepping
 from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
@@ -195,17 +195,21 @@ def glossary() -> list[tuple[str, str]]:
 def helps(published: Path) -> str:
     """Return what each engine's adapter does for landing, and the largest error without it."""
     lines = _variants(published)
-    helped = {name: ENGINES[name].best.helped_by for name in OWN}
-    price = {name: prices(lines, name) for name in OWN}
+    landing = [name for name in OWN if ENGINES[name].best.stepping is Stepping.LANDING]
+    helped = {name: ENGINES[name].best.helped_by for name in landing}
+    price = {name: prices(lines, name) for name in landing}
     rows = [
         (
             capital(each.value),
-            *(price[name].get(each.name, "yes") if each in helped[name] else "–" for name in OWN),
+            *(
+                price[name].get(each.name, "yes") if each in helped[name] else "–"
+                for name in landing
+            ),
         )
         for each in Help
     ]
-    whole = ("**All of it**", *(f"**{price[name].get('', '-')}**" for name in OWN))
-    heads = ("landing without", *(ENGINES[name].title for name in OWN))
+    whole = ("**All of it**", *(f"**{price[name].get('', '-')}**" for name in landing))
+    heads = ("landing without", *(ENGINES[name].title for name in landing))
     return table(heads, [whole, *(row for row in rows if set(row[1:]) != {"–"})])
 
 
