@@ -159,6 +159,9 @@ class Engine:
         The setting of its solver that is worth a try where a tuned preset fails.
     own_step : str
         "module:function" that does nothing but the engine's own step.
+    compiles : bool
+        Whether its library compiles itself when it is first used on a machine, for minutes: that is
+        then done once before a study's cases, and their time limit does not count it.
     """
 
     name: str
@@ -181,6 +184,7 @@ class Engine:
     rules: tuple[Rule, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)
     own_step: str = ""
+    compiles: bool = False
 
     @property
     def best(self) -> Preset:

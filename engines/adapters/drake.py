@@ -16,6 +16,7 @@ from engines.adapters.drake_settings import (
     CENIC,
     CONTROLLED,
     FACTORS,
+    RULES,
     TUNED,
     DrakeSettings,
 )
@@ -285,5 +286,6 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     factors=FACTORS,
+    rules=RULES,
     own_step="pydrake.systems.analysis:Simulator.AdvanceTo",
 )

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import BOTH, DEFAULT, Factor, factor, level
+from engines.factors import BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM
 
@@ -107,3 +107,19 @@ FACTORS = (
     factor("friction", level("10", friction=10.0)),
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Give each contact a `point_stiffness` of m/dt²: its own is 1e6 N/m, whatever the mass",
+        *(BEST, "stiffness", BY_DEFAULT),
+    ),
+    Rule(
+        "Put spheres at the corners: of a box a half-space sees one point, the deepest",
+        *(BEST, "geometry", "planar box"),
+    ),
+    Rule(
+        "Keep `dissipation` below 1e3/(p R): friction goes by the last step's normal force",
+        *(BEST, "dissipation", "1e4"),
+    ),
+)
+"""What its users should know first."""

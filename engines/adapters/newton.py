@@ -29,6 +29,7 @@ class NewtonWorld:
         self._s, self._dt = settings, dt_s
         self._mass, self._gravity = scene.mass, scene.block.gravity
         self._newton, self._warp = imported("newton"), imported("warp")
+        self._warp.config.log_level = self._warp.LOG_ERROR
         with silence():
             self._build(scene)
             self._graph = self._record()
@@ -164,4 +165,5 @@ ENGINE = Engine(
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     factors=FACTORS,
+    compiles=True,
 )

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from engines.factors import BOTH, DEFAULT, Factor, factor, level
 from engines.parts.settings import check, setting
+from engines.parts.shapes import NO_JAM
 
 XPBD = "xpbd"
 """The solver by positions; the other ones are Kamino's, by impulses."""
@@ -24,7 +25,7 @@ class NewtonSettings:
     solver : str
         "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
     iterations : int
-        Of the solver.
+        Of "xpbd" and "padmm".
     relaxation : float or None
         Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
     weighting : bool or None
@@ -54,7 +55,9 @@ class NewtonSettings:
         check(self)
 
 
-TUNED = NewtonSettings(solver="padmm", iterations=200, friction=1.3)
+TUNED = NewtonSettings(solver="dvi", friction=NO_JAM)
+
+OVERDONE = "both corners correct all of a penetration that they share"
 
 FACTORS = (
     Factor(
@@ -62,11 +65,11 @@ FACTORS = (
         ("solver", "iterations"),
         (
             level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
-            level("Kamino by DVI", BOTH, solver="dvi", iterations=200),
+            level("Kamino by PADMM", BOTH, solver="padmm", iterations=200),
         ),
     ),
     factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),
-    factor("weighting", level("no", (DEFAULT,), weighting=False), by_default=False),
+    factor("weighting", level("no", (DEFAULT,), OVERDONE, weighting=False), by_default=False),
     factor("baumgarte", level("0", baumgarte=0.0), level("0.1", baumgarte=0.1)),
     factor("geometry", level("corners", BOTH, geometry="corners")),
     factor("friction"),

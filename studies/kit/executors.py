@@ -1,8 +1,9 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Protocol
@@ -12,10 +13,13 @@ from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.cluster import Cluster
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
-from studies.kit.jobs import Job, ask
+from studies.kit.jobs import Job, ask, short
 from studies.kit.processes import ask_loaded, outcome_of
 from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
+
+COMPILING_S = 1800.0
+"""No library compiles itself for longer [s]."""
 
 
 class Executor(Protocol):
@@ -70,6 +74,7 @@ class Local:
         # engines hold state of their own: no fork of a process that has loaded them
         pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
         try:
+            self._compile(pool, jobs.values())
             with left_to_this_process():
                 # the source travels with the job, so that a worker needs no registry of its own
                 tasks: dict[Future[Response], int] = {
@@ -88,6 +93,16 @@ class Local:
         finally:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
+
+    def _compile(self, pool: ProcessPool, jobs: Iterable[Job]) -> None:
+        """Let libraries that compile themselves on a machine do so, before any time limit holds."""
+        for name in dict.fromkeys(job.source for job in jobs):
+            source = resolve(name)
+            if source.engine and source.declared.compiles and source.declared.installed:
+                job = short(next(job for job in jobs if job.source == name))
+                arguments = (self.ask, job, source)
+                with suppress(Exception):  # the cases will say what is wrong
+                    pool.schedule(ask_loaded, args=arguments, timeout=COMPILING_S).result()
 
 
 def choose(

@@ -1,0 +1,95 @@
+"""Newton: how near single precision comes on the CPU, and the traps that it sets without a word."""
+
+import time
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from test_landing import errors_of_sweep
+from uses import BLOCK, HERE, pulse, scene
+
+from analytic import simulate
+from analytic.response import Outcome, Response
+from engines import ENGINES, run
+from engines.drive import build
+from engines.stepping.steps import FixedSteps, Stepper
+from studies.kit.executors import Local
+from studies.kit.jobs import Job
+from studies.sources.registry import Source
+
+installed = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
+
+MOTION = pulse(1.3, 3.0, 2)
+
+
+def error(preset: str = "fixed", step: float | None = None, **settings: Any) -> float:
+    peak = run("newton", scene(MOTION, preset=preset, step=step, settings=settings)).peak_ratio
+    return abs(peak / simulate(BLOCK, MOTION).peak_ratio - 1.0)
+
+
+@installed
+def test_some_of_the_sweep() -> None:
+    """Kamino corrects a hundredth of a penetration in a step, by a velocity that it leaves."""
+    errors = errors_of_sweep("newton", every=118)
+    assert np.median(errors) < 1e-2
+    assert max(errors) < 3e-2
+
+
+@installed
+@pytest.mark.parametrize("solver", ["xpbd", "padmm", "dvi"])
+def test_the_base_is_felt_by_each_solver(solver: str) -> None:
+    """Below g tan(alpha) nothing lifts, and above it something does."""
+    options = {"preset": "fixed", "settings": {"solver": solver, "iterations": 50}}
+    for ratio, outcome in ((0.95, Outcome.AT_REST), (1.05, Outcome.ROCKED)):
+        assert run("newton", scene(pulse(ratio, 1.0), **options)).outcome is outcome
+
+
+@installed
+def test_corrections_without_weights_are_made_by_each_corner() -> None:
+    """Two corners then correct twice what one would: weighting is what the library does itself."""
+    assert error("naive", weighting=False) > 5.0 * error("naive")
+
+
+@installed
+def test_a_recorded_step_has_its_length_for_good() -> None:
+    """Another one would be taken as if it were as long as the one that was recorded."""
+    motion = scene(MOTION)
+    world: Any = build(HERE["newton"], motion)
+    step = Stepper(FixedSteps(world._dt), motion).next(world.pose(), False)
+    world.step(step)
+    assert not world.fault()
+    world.step(step._replace(dt_s=2.0 * step.dt_s))
+    assert world.fault() == "its steps are recorded, and all of one length"
+    world.close()
+
+
+@installed
+def test_a_trial_step_leaves_no_trace() -> None:
+    """A step is tried so that it compiles: the block then sets out from where it should."""
+    start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
+    asked = scene(MOTION, start=start)
+    world = build(HERE["newton"], asked)
+    begin = asked.beginning
+    assert world.pose() == pytest.approx((begin.x, begin.z, begin.theta, begin.rate), rel=1e-6)
+    world.close()
+
+
+def slow_at_first(marker: Path, job: Job, source: Source) -> Response:
+    """Take longer than the time limit where nothing was compiled yet."""
+    if not marker.exists():
+        time.sleep(4.0)
+        marker.touch()
+    return Response.failure("compiled")
+
+
+def test_what_compiles_itself_does_so_outside_the_time_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = Job(labels={}, block=BLOCK, motion=MOTION, source="newton")
+    ask = partial(slow_at_first, tmp_path / "compiled")
+    engine = replace(ENGINES["newton"], library="numpy")
+    monkeypatch.setattr("engines.registry._declared", lambda name, place: engine)
+    assert [r.message for _, r in Local(1, 3.0, ask)([job])] == ["compiled"]
