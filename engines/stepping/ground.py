@@ -20,7 +20,7 @@ START, END, AMPLITUDE, OMEGA, PHASE, OFFSET, SLOPE, SPEED = range(8)
 def mean_velocity_of(segments: Iterable[Iterable[float]]) -> Callable[[float, float], float]:
     """Return the base's mean velocity [m/s] between two times [s], as a function of both."""
     rows = rows_of(segments)
-    return lambda begin, finish: mean_velocity(rows, begin, finish)
+    return lambda begin, finish: mean_velocity_over(rows, begin, finish)
 
 
 def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
@@ -43,7 +43,7 @@ def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
     return [*rows, (rows[-1][END], math.inf, 0.0, 1.0, 0.0, 0.0, 0.0, speed)]
 
 
-def mean_velocity(rows: Ground, begin: float, finish: float) -> float:
+def mean_velocity_over(rows: Ground, begin: float, finish: float) -> float:
     """Return the base's mean velocity [m/s] between two times [s], over rows of `rows_of`."""
     first = last = segment_at(rows, begin)
     while finish > rows[last][END]:

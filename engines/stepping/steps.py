@@ -6,7 +6,7 @@ from engines.compiled import FloatArray, State, fill, shared
 from engines.declaration import Stepping
 from engines.scene import Scene
 from engines.stepping import ground as plain
-from engines.stepping.ground import Ground, mean_velocity
+from engines.stepping.ground import Ground, mean_velocity_over
 from engines.stepping.landing import Landing, begin_landing, choose
 from engines.stepping.timetable import Times, begin_times, even, pass_to
 from engines.world import UNLIMITED, Choice, Grip, Moment, Pose, Resolution, Step
@@ -16,7 +16,7 @@ for function in (
     plain.gained,
     plain.within,
     plain.segment_at,
-    plain.mean_velocity,
+    plain.mean_velocity_over,
 ):
     shared(function)  # they stay Python, for scripts that have nothing else
 
@@ -108,7 +108,7 @@ def next_step(
     begin, end = pace.time, pace.time + dt
     # from the moment of the last velocity to that of this one
     kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
-    mean = mean_velocity(ground, begin, end)
+    mean = mean_velocity_over(ground, begin, end)
     velocity = mean if pace.part == MIDDLE else velocity_at(pace, ground, end, dt)
     base_kick, pace.velocity = velocity - pace.velocity, velocity
     pace.place += dt * mean
@@ -122,7 +122,7 @@ def next_step(
 @shared
 def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
     """Return the base velocity [m/s] to which the block's velocity after a step belongs."""
-    return mean_velocity(ground, end, end if pace.part == END else end + dt)
+    return mean_velocity_over(ground, end, end if pace.part == END else end + dt)
 
 
 @shared
