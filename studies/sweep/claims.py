@@ -12,7 +12,11 @@ from studies.sources.registry import resolve
 
 def whole(folder: Path) -> pd.DataFrame:
     """Return the lines of a folder's summary.csv that are about all its figures."""
-    summary = pd.read_csv(folder / "summary.csv")
+    return over_all(pd.read_csv(folder / "summary.csv"))
+
+
+def over_all(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of a summary that are about all its figures."""
     lines: pd.DataFrame = summary[summary["figure"] == summary["figure"].iloc[-1]]
     return lines.reset_index(drop=True)
 

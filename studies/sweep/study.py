@@ -27,7 +27,7 @@ from studies.measures.findings import findings
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
-from studies.sweep.claims import claims, first_claim, preset_table, whole
+from studies.sweep.claims import claims, first_claim, over_all, preset_table, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -96,7 +96,7 @@ def report(folder: Path) -> str:
     write_findings(folder, found)
     conclusions = findings_text(found)
     provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    save_all(drawn(compared, preset_table(whole(folder))), folder)
+    save_all(drawn(compared, table), folder)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
@@ -111,18 +111,20 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw every figure of a folder from its sweep.csv and summary.csv alone."""
-    return drawn(with_reference(read(folder)), preset_table(whole(folder)))
+    """Draw every figure of a folder from its sweep.csv alone."""
+    compared = with_reference(read(folder))
+    return drawn(compared, summarize(compared))
 
 
-def drawn(compared: pd.DataFrame, table: pd.DataFrame) -> dict[str, "Figure"]:
-    """Draw every figure of the rows beside the exact solution, and of the table of presets.
+def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
+    """Draw every figure of the rows beside the exact solution, and of their summary.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.
     """
     from studies.sweep.figure import draw_sweep
     from studies.sweep.presets import draw_by_preset, draw_overview
 
+    table = preset_table(over_all(summary))
     each = {str(n): rows for n, rows in compared.groupby("figure", sort=False)}
     if table.empty or table["preset"].nunique() < 2:
         return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
