@@ -24,6 +24,7 @@ from studies.measures.differences import (
     worst_text,
 )
 from studies.measures.findings import findings
+from studies.measures.presets import is_engine, preset_of
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
@@ -111,18 +112,20 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw every figure of a folder from its sweep.csv and summary.csv alone.
+    """Draw every figure of a folder from its sweep.csv alone.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.
     """
     from studies.sweep.figure import draw_sweep
     from studies.sweep.presets import draw_by_preset, draw_overview
 
-    rows, table = read(folder), preset_table(whole(folder))
-    several = not table.empty and table["preset"].nunique() > 1
+    rows = read(folder)
+    several = len({preset_of(name) for name in rows["source"].unique() if is_engine(name)}) > 1
     numbers = [int(n) for n in rows["figure"].unique()]
     if not several:
         return {f"figure-{n}": draw_sweep(rows, n) for n in numbers}
+    lines = summarize(with_reference(rows))
+    table = preset_table(lines[lines["figure"] == lines["figure"].iloc[-1]])
     by_preset = {f"presets-{n}": draw_by_preset(rows, n) for n in numbers}
     return {"overview": draw_overview(table), **by_preset}
 
