@@ -51,7 +51,8 @@ def variants(engine: str) -> Iterator[Variant]:
         if name == DEFAULT:
             own = Variant(engine=engine, preset=name, factor=OWN_STEPS, level=OWN_STEP)
             yield own
-            yield replace(own, level=MOVED, scene={"frame": "world"})
+            if "world" in declared.frames:
+                yield replace(own, level=MOVED, scene={"frame": "world"})
         for factor_ in declared.factors:
             if set(BOTH) <= presets.keys():
                 yield from _exchanged(engine, name, factor_)

@@ -6,7 +6,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from analytic.response import Response
 from studies.kit import provenance
@@ -17,6 +17,9 @@ from studies.kit.jobs import Job, ask, short
 from studies.kit.processes import ask_loaded, outcome_of
 from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
+
+if TYPE_CHECKING:
+    from pebble import ProcessPool
 
 COMPILING_S = 1800.0
 """No library compiles itself for longer [s]."""
@@ -94,7 +97,7 @@ class Local:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
 
-    def _compile(self, pool: ProcessPool, jobs: Iterable[Job]) -> None:
+    def _compile(self, pool: "ProcessPool", jobs: Iterable[Job]) -> None:
         """Let libraries that compile themselves on a machine do so, before any time limit holds."""
         for name in dict.fromkeys(job.source for job in jobs):
             source = resolve(name)

@@ -129,7 +129,8 @@ def test_the_engines_answers_are_those_of_the_tables():
     for case in cases.iloc[::97].itertuples():
         half_cycles = {"half-sine": 1, "full-sine": 2}[case.pulse]
         peak = shown[half_cycles, case.aspect, case.width_m, case.onsets, case.omega_over_p]
-        assert peak == (-1.0 if case.outcome == "overturned" else float(f"{case.peak_ratio:.5g}"))
+        known = {"overturned": -1.0, "failed": None}
+        assert peak == known.get(case.outcome, float(f"{case.peak_ratio:.5g}"))
 
 
 @pytest.mark.parametrize("place", CHAPTERS, ids=lambda place: place[1].folder)
