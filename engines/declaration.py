@@ -160,8 +160,8 @@ class Engine:
     own_step : str
         "module:function" that does nothing but the engine's own step.
     compiles : bool
-        Whether its library compiles itself when it is first used on a machine, for minutes: that is
-        then done once before a study's cases, and their time limit does not count it.
+        Whether its library, or its adapter's loop, is compiled when it is first used on a machine:
+        that is then done once before a study's cases, and their time limit does not count it.
     """
 
     name: str

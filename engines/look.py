@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
 from analytic.response import Problem, Response
 from engines.compiled import FloatArray, State, kernel, shared
 from engines.declaration import Stepping
@@ -173,6 +175,16 @@ class Look:
         if self._times is not None:
             history = sample(rows[: watch.rows], self._times)
         return response_of(watch, events, history, steps=steps, wall_s=wall_s)
+
+
+def compile_look() -> None:
+    """Compile what looks at a run, if that has not been done on this machine."""
+    scene = Scene(
+        block=RigidBlock(width=0.5, height=1.5), motion=SinePulse(amplitude=1.0, omega=1.0)
+    )
+    look = Look(scene, dt_s=1e-3)
+    look.make_room(1)
+    look.next(Pose(*(getattr(scene.beginning, name) for name in Pose._fields)))
 
 
 def roomy(table: FloatArray, used: int, more: int) -> FloatArray:

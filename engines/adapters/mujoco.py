@@ -174,4 +174,5 @@ ENGINE = Engine(
     rules=RULES,
     remedy={"impratio": 100.0},
     own_step="mujoco:mj_step",
+    compiles=True,
 )

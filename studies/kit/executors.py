@@ -6,9 +6,10 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from analytic.response import Response
+from engines.look import compile_look
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.cluster import Cluster
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from pebble import ProcessPool
 
 COMPILING_S = 1800.0
-"""No library compiles itself for longer [s]."""
+"""Nothing takes longer to compile [s]."""
 
 
 class Executor(Protocol):
@@ -98,14 +99,22 @@ class Local:
             pool.join()
 
     def _compile(self, pool: "ProcessPool", jobs: Iterable[Job]) -> None:
-        """Let libraries that compile themselves on a machine do so, before any time limit holds."""
+        """Compile what engines need on a machine, before any time limit holds."""
+        tasks: list[Future[Any]] = []
         for name in dict.fromkeys(job.source for job in jobs):
             source = resolve(name)
-            if source.engine and source.declared.compiles and source.declared.installed:
+            if not source.engine or not source.declared.installed:
+                continue
+            if not tasks:
+                tasks.append(pool.schedule(compile_look, timeout=COMPILING_S))
+            if source.declared.compiles:
                 job = short(next(job for job in jobs if job.source == name))
-                arguments = (self.ask, job, source)
-                with suppress(Exception):  # the cases will say what is wrong
-                    pool.schedule(ask_loaded, args=arguments, timeout=COMPILING_S).result()
+                tasks.append(
+                    pool.schedule(ask_loaded, args=(self.ask, job, source), timeout=COMPILING_S)
+                )
+        for task in tasks:
+            with suppress(Exception):  # the cases will say what is wrong
+                task.result()
 
 
 def choose(
