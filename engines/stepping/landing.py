@@ -14,13 +14,14 @@ from engines.stepping.timetable import Times, even
 from engines.world import Choice, Grip, Moment, Pose, Resolution
 
 SWING_PART = 8.0
-"""A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps, ..."""
+"""A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps."""
 
 LOAD_PART = 4.0
-"""... and a load, during which the base can lift a block at rest, as 1/p over this, ..."""
+"""A load, during which the base can lift a block at rest, is resolved as finely as the time 1/p
+over this by ordinary steps."""
 
 COARSEST = 1.0 / 6.0
-"""... each in steps no longer than this part of it."""
+"""A swing or a load is taken in steps no longer than this part of it."""
 
 LEAST_LOAD = 0.02
 """A load is not resolved more finely than by this part of the ordinary step."""
@@ -33,20 +34,20 @@ REMAINDER = 0.5
 
 NEAR = 1e-6
 """An impact is near when less than this part of the ordinary step is left, or than the shortest
-time that the engine resolves, or ..."""
+time that the engine resolves, or the time that `MOST_ACCELERATION` leaves."""
 
 MOST_ACCELERATION = 3e9
-"""... the time in which this angular acceleration [rad/s2] would stop the block; engines
+"""An impact is near when this angular acceleration [rad/s2] would stop the block in a step; engines
 take what is much larger for a failure."""
 
 UPLIFT_NEAR = 2e-3
 """An uplift is near when less than this part of the ordinary step is left."""
 
 STRIKES = 4
-"""Steps at least through an impact, in which the contact takes its effect, ..."""
+"""Steps at least through an impact, in which the contact takes its effect."""
 
 MOST_STRIKES = 12
-"""... and at most."""
+"""Steps at most through an impact."""
 
 SETTLED = 1e-6
 """An impact is over when a step changes the angular velocity by less than this part of it."""

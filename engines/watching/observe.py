@@ -31,27 +31,27 @@ from engines.world import Moment, Pose, Resolution
 LIFT_WIDTHS = 1e-8
 """A block has lifted when its free corner is higher above the base than this part of its width,
 above the noise of a tuned contact at rest and below the smallest lift of interest, or than the
-length that the engine's numbers tell apart, ..."""
+length that the engine's numbers tell apart, and by what `LIFT_FALL` says."""
 
 LIFT_FALL = 1e-3
-"""... plus this part of g dt^2, twice the way fallen in one step, which no engine resolves,
-plus the depth to which the contact was seen to give way under the resting block, and twice
+"""It has lifted when that corner is higher by this part of g dt^2, twice the way fallen in one step,
+which no engine resolves, by the depth to which the contact was seen to give way under the resting block, and by twice
 the height to which the pivot of the last swing hopped, by the curvature of its steps."""
 
 REST_TIME = 0.05
-"""A block that has not lifted for this time, in units of 1/p, ..."""
+"""A block at rest has not lifted for this time, in units of 1/p."""
 
 REST_RATE = 0.01
-"""... and turns no faster than this, in units of p alpha, is at rest."""
+"""A block at rest turns no faster than this, in units of p alpha."""
 
 SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
 SINK_WIDTHS = 0.05
-"""A pivot deeper in the base than this part of the width has fallen through it, ..."""
+"""A pivot deeper in the base than this part of the width has fallen through it."""
 
 THROWN_WIDTHS = 1.0
-"""... and one higher above the base than this has been thrown off."""
+"""A pivot higher above the base than this part of the width has been thrown off."""
 
 LYING = 0.5 * math.pi
 """Rotation [rad] at which the block lies on its side."""
