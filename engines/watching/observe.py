@@ -34,9 +34,10 @@ above the noise of a tuned contact at rest and below the smallest lift of intere
 length that the engine's numbers tell apart, and by what `LIFT_FALL` says."""
 
 LIFT_FALL = 1e-3
-"""It has lifted when that corner is higher by this part of g dt^2, twice the way fallen in one step,
-which no engine resolves, by the depth to which the contact was seen to give way under the resting block, and by twice
-the height to which the pivot of the last swing hopped, by the curvature of its steps."""
+"""The free corner of a block that has lifted is higher by this part of g dt^2, twice the way fallen
+in one step, which no engine resolves; by the depth to which the contact was seen to give way under
+the resting block; and by twice the height to which the pivot of the last swing hopped, by the
+curvature of its steps."""
 
 REST_TIME = 0.05
 """A block at rest has not lifted for this time, in units of 1/p."""
