@@ -19,7 +19,7 @@ def is_engine(source: str) -> bool:
 
 
 def preset_of(source: str) -> str:
-    """Return the preset that an engine's name stands for."""
+    """Return the preset that an engine's name stands for; none of other sources."""
     return str(resolve(source).preset)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import alike, capital, each_out_of, listed, out_of, part
 from studies.sources.registry import resolve
 
@@ -23,8 +23,8 @@ def over_all(summary: pd.DataFrame) -> pd.DataFrame:
 
 def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return the engines' lines of a summary, by preset, in the order in which these get better."""
-    rows = lines[lines["source"].map(is_engine)]
-    rows = rows.assign(preset=rows["source"].map(preset_of))
+    rows = lines.assign(preset=lines["source"].map(preset_of))
+    rows = rows[rows["preset"] != ""]
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
 
 

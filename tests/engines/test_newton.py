@@ -14,8 +14,9 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic import simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES, run
+from engines.declaration import Stepping
 from engines.drive import build
-from engines.stepping.steps import FixedSteps, Stepper
+from engines.look import Look
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
 from studies.sources.registry import Source
@@ -58,7 +59,9 @@ def test_a_recorded_step_has_its_length_for_good() -> None:
     """Another one would be taken as if it were as long as the one that was recorded."""
     motion = scene(MOTION)
     world: Any = build(HERE["newton"], motion)
-    step = Stepper(FixedSteps(world._dt), motion).next(world.pose(), False)
+    look = Look(motion, world._dt, Stepping.FIXED)
+    look.make_room(1)
+    step = look.next(world.pose())
     world.step(step)
     assert not world.fault()
     world.step(step._replace(dt_s=2.0 * step.dt_s))

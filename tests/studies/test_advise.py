@@ -114,7 +114,7 @@ def test_the_command_says_what_to_set_and_from_which_tables(capsys):
     [
         (["--error", "0"], "--error is '0'; it must be a positive finite number"),
         (["--error", "0.1", "0.1"], "--error names 0.1 twice"),
-        (["--engine", "newton"], "--engines is 'newton'; it must be among"),
+        (["--engine", "havok"], "--engines is 'havok'; it must be among"),
         (["--published", "tests"], "--published is 'tests'; it must hold precision/work-precision"),
     ],
 )

@@ -23,6 +23,7 @@ ARGUMENTS = {
     "precision": ("--quick", "--engines", "moreau"),
     "cost": ("--quick", "--engines", "moreau"),
     "contact": ("--quick", "--engines", "moreau"),
+    "defaults": ("--quick", "--sources", "exact", "moreau:naive"),
     "stability": ("--quick", "--sources", "exact", "moreau", "moreau:fixed", "moreau:naive"),
     "overturning": ("--quick", "--sources", "exact", "moreau"),
     "validity": ("--quick", "--sources", "moreau:fixed"),
