@@ -115,7 +115,6 @@ LANDING = replace(TUNED, by_phase=True, reflection=True)
 
 RECYCLED = "a contact of an earlier step: the block slides off its pivot"
 FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
-ASLEEP = "gravity that changes wakes nothing: the block sleeps through it"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
 FACTORS = (

@@ -101,17 +101,18 @@ class Local:
     def _compile(self, pool: "ProcessPool", jobs: Iterable[Job]) -> None:
         """Compile what engines need on a machine, before any time limit holds."""
         tasks: list[Future[Any]] = []
-        for name in dict.fromkeys(job.source for job in jobs):
-            source = resolve(name)
-            if not source.engine or not source.declared.installed:
-                continue
-            if not tasks:
-                tasks.append(pool.schedule(compile_look, timeout=COMPILING_S))
-            if source.declared.compiles:
-                job = short(next(job for job in jobs if job.source == name))
-                tasks.append(
-                    pool.schedule(ask_loaded, args=(self.ask, job, source), timeout=COMPILING_S)
-                )
+        with left_to_this_process():
+            for name in dict.fromkeys(job.source for job in jobs):
+                source = resolve(name)
+                if not source.engine or not source.declared.installed:
+                    continue
+                if not tasks:
+                    tasks.append(pool.schedule(compile_look, timeout=COMPILING_S))
+                if source.declared.compiles:
+                    job = short(next(job for job in jobs if job.source == name))
+                    tasks.append(
+                        pool.schedule(ask_loaded, args=(self.ask, job, source), timeout=COMPILING_S)
+                    )
         for task in tasks:
             with suppress(Exception):  # the cases will say what is wrong
                 task.result()

@@ -52,7 +52,7 @@ def command(
     engines
         Names of engines, without a preset.
     quick
-        Fewer cases and settings: less than a minute on 2 cores.
+        Fewer cases and settings: some two minutes.
     time_limit
         Wall-clock time [s] after which one case with one setting is given up.
     """

@@ -138,3 +138,15 @@ def test_a_short_question_loads_the_kernels_of_the_long_one():
     command = [sys.executable, "-c", KERNELS]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def keeps_from_the_terminal(job, source):
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    return Response.failure(str({signal.SIGINT, signal.SIGHUP} <= blocked))
+
+
+def test_the_terminal_interrupts_no_process_that_compiled_first():
+    """What an engine needs compiled is so before its cases, by the processes that then run them."""
+    local = Local(1, PATIENCE_S, keeps_from_the_terminal)
+    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source="pybullet")]
+    assert [response.message for _, response in local(jobs)] == ["True"]
