@@ -69,6 +69,7 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
+        loops = scene.compiled and loop_agrees()
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
@@ -85,6 +86,7 @@ class BulletWorld:
         self._held = self._holds[0]
         begin_hold(self._held, scene, settings, dt_s)
         self._held.block, self._held.base = self._body, self._base
+        self._lent = self.lent() if loops else None
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
@@ -101,7 +103,7 @@ class BulletWorld:
     @property
     def drive(self) -> Driver | None:
         """What takes many steps at once; see `engines.world.DrivenWorld`."""
-        return partial(drive, *self.lent()) if loop_agrees() else None
+        return None if self._lent is None else partial(drive, *self._lent)
 
     def lent(self) -> tuple[Sequence[Hold], Client]:
         """Return what a compiled loop steps by."""
@@ -207,14 +209,15 @@ class BulletWorld:
 @cache
 def loop_agrees() -> bool:
     """Return whether a loop can step a block on a moving base, and as Python does."""
-    return bool(len(clients(imported("pybullet")))) and _trial(_by_loop) == _trial(_by_calls)
+    known = clients(imported("pybullet"))
+    return bool(known.size) and _trial(_by_loop) == _trial(_by_calls)
 
 
 def _trial(after: Callable[[BulletWorld, Step], Pose]) -> list[Pose]:
     """Return the poses after each step of the trial."""
     block = RigidBlock(width=0.5, height=1.5)
     motion = SinePulse(amplitude=1.0, omega=1.0)
-    scene = Scene(block=block, motion=motion, start=(0.1, 0.5), frame="world")
+    scene = Scene(block=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
     world = BulletWorld(scene, LANDING, TRIAL[0].dt_s)
     try:
         return [after(world, step) for step in TRIAL]
