@@ -49,9 +49,10 @@ from engines.scene import GEOMETRIES, Scene
 from engines.world import Driver, Grip, Moment, Pose, Step
 
 TRIAL = (
-    Step(1e-3, 1e-3, 1e-3, 0.0, -9.81, 0.2, 0.2, 2e-4, Grip.SWING, 1.0),
-    Step(5e-4, 1.5e-3, 7.5e-4, 0.0, -14.7, 0.1, 0.3, 3.5e-4, Grip.APPROACH, 1.0),
-    Step(2e-3, 3.5e-3, 1.2e-3, 0.0, -6.1, 0.1, 0.4, 1.15e-3, Grip.SWING, 1.0),
+    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, Grip.SWING, 1.0),
+    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, Grip.SWING, 1.0),
+    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, Grip.SWING, 1.0),
+    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, Grip.APPROACH, 1.0),
 )
 """Steps by which a compiled loop is held against Python."""
 

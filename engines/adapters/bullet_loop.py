@@ -5,6 +5,7 @@ What Python sets by two calls a step is one command here, and what it reads by t
 
 import ctypes
 import math
+import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cache
@@ -29,24 +30,27 @@ from engines.world import Grip, Pose, Step
 HANDLE, NUMBER, REAL = types.intp, types.intc, types.float64
 
 
-def _c(name: str, result: Any, *arguments: Any) -> Any:
+def c_function(name: str, result: Any, *arguments: Any) -> Any:
+    """Return a function of the library's as compiled code calls it."""
     return types.ExternalFunction(name, result(*arguments))
 
 
-submit = _c("b3SubmitClientCommandAndWaitStatus", HANDLE, HANDLE, HANDLE)
-parameters = _c("b3InitPhysicsParamCommand", HANDLE, HANDLE)
-put_time_step = _c("b3PhysicsParamSetTimeStep", NUMBER, HANDLE, REAL)
-put_gravity = _c("b3PhysicsParamSetGravity", NUMBER, HANDLE, REAL, REAL, REAL)
-put_contact_erp = _c("b3PhysicsParamSetDefaultContactERP", NUMBER, HANDLE, REAL)
-put_friction_erp = _c("b3PhysicsParamSetDefaultFrictionERP", NUMBER, HANDLE, REAL)
-put_kept_gap = _c("b3PhysicsParamSetContactBreakingThreshold", NUMBER, HANDLE, REAL)
-pose = _c("b3CreatePoseCommandInit", HANDLE, HANDLE, NUMBER)
-put_place = _c("b3CreatePoseCommandSetBasePosition", NUMBER, HANDLE, REAL, REAL, REAL)
-put_turn = _c("b3CreatePoseCommandSetBaseOrientation", NUMBER, HANDLE, REAL, REAL, REAL, REAL)
-put_velocity = _c("b3CreatePoseCommandSetBaseLinearVelocity", NUMBER, HANDLE, HANDLE)
-advance = _c("b3InitStepSimulationCommand", HANDLE, HANDLE)
-state = _c("b3RequestActualStateCommandInit", HANDLE, HANDLE, NUMBER)
-state_in = _c("b3GetStatusActualState", NUMBER, HANDLE, *7 * (HANDLE,))
+submit = c_function("b3SubmitClientCommandAndWaitStatus", HANDLE, HANDLE, HANDLE)
+parameters = c_function("b3InitPhysicsParamCommand", HANDLE, HANDLE)
+put_time_step = c_function("b3PhysicsParamSetTimeStep", NUMBER, HANDLE, REAL)
+put_gravity = c_function("b3PhysicsParamSetGravity", NUMBER, HANDLE, REAL, REAL, REAL)
+put_contact_erp = c_function("b3PhysicsParamSetDefaultContactERP", NUMBER, HANDLE, REAL)
+put_friction_erp = c_function("b3PhysicsParamSetDefaultFrictionERP", NUMBER, HANDLE, REAL)
+put_kept_gap = c_function("b3PhysicsParamSetContactBreakingThreshold", NUMBER, HANDLE, REAL)
+pose = c_function("b3CreatePoseCommandInit", HANDLE, HANDLE, NUMBER)
+put_place = c_function("b3CreatePoseCommandSetBasePosition", NUMBER, HANDLE, REAL, REAL, REAL)
+put_turn = c_function(
+    "b3CreatePoseCommandSetBaseOrientation", NUMBER, HANDLE, REAL, REAL, REAL, REAL
+)
+put_velocity = c_function("b3CreatePoseCommandSetBaseLinearVelocity", NUMBER, HANDLE, HANDLE)
+advance = c_function("b3InitStepSimulationCommand", HANDLE, HANDLE)
+state = c_function("b3RequestActualStateCommandInit", HANDLE, HANDLE, NUMBER)
+state_in = c_function("b3GetStatusActualState", NUMBER, HANDLE, *7 * (HANDLE,))
 
 FUNCTIONS = (
     *(submit, parameters, put_time_step, put_gravity, put_contact_erp, put_friction_erp),
@@ -57,8 +61,8 @@ EXPORTED, CLIENTS, DIRECT = "b3ConnectPhysicsDirect", "sPhysicsClients1", "_ZTV1
 """A function, by whose address the others are known: of the clients that Python has connected, and
 of what all clients without a server begin with."""
 
-VIRTUAL = 16
-"""Bytes of that before the part to which a client points."""
+WORD, VIRTUAL = 8, 16
+"""Bytes of an address, and of what stands there before the part to which a client points."""
 
 
 class Hold(State):
@@ -254,26 +258,38 @@ def clients(p: Any) -> NDArray[np.int64]:
     compiled: Any = numba.config
     with suppress(Exception):  # whatever is different about another build
         llvmlite.binding.load_library_permanently(p.__file__)
-        if not compiled.DISABLE_JIT and all(_address(function.symbol) for function in FUNCTIONS):
+        if not compiled.DISABLE_JIT and all(address_of(function.symbol) for function in FUNCTIONS):
             exported, table, kind = spans(Path(p.__file__), EXPORTED, CLIENTS, DIRECT)
-            loaded = _address(EXPORTED) - exported[0]
-            found = _memory(loaded + table[0], table[1] // 8, np.int64)
-            if _is_one(p, found, loaded + kind[0] + VIRTUAL):
-                return found
+            loaded = address_of(EXPORTED) - exported[0]
+            if _is_one(p, loaded + table[0], loaded + kind[0] + VIRTUAL):
+                return _memory(loaded + table[0], table[1] // WORD, np.int64)
     return np.zeros(0, np.int64)
 
 
-def _is_one(p: Any, found: NDArray[np.int64], kind: int) -> bool:
-    """Return whether a client stands where Python's are, and is of a kind."""
+def _is_one(p: Any, table: int, kind: int) -> bool:
+    """Return whether a table leads to a client of a kind, where one is connected."""
     number = taken(p)
     try:
-        handle = int(found[number])
-        return handle != 0 and int(_memory(handle, 1, np.int64)[0]) == kind
+        return word_at(word_at(table + WORD * number)) == kind
     finally:
         given_back(p, number)
 
 
-def _address(symbol: str) -> Any:
+def word_at(address: int) -> int:
+    """Return what stands in this process's memory.
+
+    Raises
+    ------
+    OSError
+        If it has none there, or the system does not let it be read with this care.
+    """
+    with Path("/proc/self/mem").open("rb", buffering=0) as memory:
+        memory.seek(address)
+        return int.from_bytes(memory.read(WORD), sys.byteorder)
+
+
+def address_of(symbol: str) -> Any:
+    """Return where a function of the library's is; None where there is none."""
     return llvmlite.binding.address_of_symbol(symbol)
 
 
