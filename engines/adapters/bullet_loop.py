@@ -217,7 +217,7 @@ def ask(client: Client, body: int) -> None:
 
 @shared
 def locate(handle: int, body: int, answer: NDArray[np.int64]) -> None:
-    """Let a client say where it says that."""
+    """Let a client write down at which addresses it says so."""
     status = submit(handle, state(handle, body))
     at = answer.ctypes.data
     if state_in(status, 0, 0, 0, 0, at, at + answer.itemsize, 0) == 0:
@@ -226,7 +226,7 @@ def locate(handle: int, body: int, answer: NDArray[np.int64]) -> None:
 
 @exclusive
 def located(handle: int, body: int, answer: NDArray[np.int64]) -> None:
-    """Let a client say where it answers; for Python."""
+    """Let a client write down where it answers; for Python."""
     locate(handle, body, answer)
 
 
