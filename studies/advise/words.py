@@ -11,7 +11,7 @@ from analytic.motion import SinePulse
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset
 from studies.kit.tables import left_aligned
-from studies.measures.words import duration, listed, part
+from studies.measures.words import duration, listed, part, per_cent
 
 ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
 """Settings depend on no motion."""
@@ -114,11 +114,11 @@ def claim(lines: pd.DataFrame) -> str:
     for target, group in lines.groupby("target", sort=False):
         found = group[group["cheapest"]].sort_values("wall_s")
         if found.empty:
-            words.append(f"{part(float(str(target)))} by nothing")
+            words.append(f"{per_cent(float(str(target)))} by nothing")
             continue
         best = found.iloc[0]
         words.append(
-            f"{part(float(str(target)))} by {best['engine']} {best['preset']} at "
+            f"{per_cent(float(str(target)))} by {best['engine']} {best['preset']} at "
             f"{_at(float(best['value']))} ({duration(float(best['wall_s']))} a case)"
         )
     return f"Errors are kept cheapest: {'; '.join(words)}."
@@ -133,7 +133,7 @@ def told(lines: pd.DataFrame) -> str:
     names = lines["engine"] + " " + lines["preset"]
     kept = lines["message"] == ""
     sentences = [
-        f"An error of {part(float(str(target)))} is kept by {listed(list(names[group.index]))}."
+        f"An error of {per_cent(float(str(target)))} is kept by {listed(list(names[group.index]))}."
         for target, group in lines[kept].groupby("target", sort=False)
     ]
     none = [name for name in names.unique() if not kept[names == name].any()]

@@ -19,7 +19,7 @@ from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import capital, duration, listed, out_of, part
+from studies.measures.words import capital, duration, listed, out_of, part, per_cent
 from studies.page import hero
 from studies.page.markdown import table
 from studies.precision.choices import NEAR, TYPICAL, Choice, choices
@@ -144,7 +144,7 @@ def choices_short(lines: pd.DataFrame) -> str:
     """
     heads = ("largest error", "typical cases", "a case", "also near overturning", "a case")
     rows = [
-        (f"{100.0 * chosen.target:g} %", *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
+        (per_cent(chosen.target), *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
         for chosen in choices(lines)
     ]
     return table(heads, rows)
@@ -167,7 +167,7 @@ def choices_text(lines: pd.DataFrame) -> str:
         *("near overturning", "cheapest on all cases", "a case"),
     )
     rows = [
-        (f"{100.0 * chosen.target:g} %", *_typical(chosen.typical), *_cheapest(chosen.everywhere))
+        (per_cent(chosen.target), *_typical(chosen.typical), *_cheapest(chosen.everywhere))
         for chosen in choices(lines)
     ]
     return table(heads, rows)
