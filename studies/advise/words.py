@@ -110,17 +110,18 @@ def _step(value: float, dt_s: float) -> str:
 
 def claim(lines: pd.DataFrame) -> str:
     """Say which engine keeps which error at what cost, and where nothing does."""
-    words = []
+    alike: dict[str, list[str]] = {}
     for target, group in lines.groupby("target", sort=False):
         found = group[group["cheapest"]].sort_values("wall_s")
-        if found.empty:
-            words.append(f"{per_cent(float(str(target)))} by nothing")
-            continue
-        best = found.iloc[0]
-        words.append(
-            f"{per_cent(float(str(target)))} by {best['engine']} {best['preset']} at "
-            f"{_at(float(best['value']))} ({duration(float(best['wall_s']))} a case)"
-        )
+        by = "nothing"
+        if not found.empty:
+            best = found.iloc[0]
+            by = (
+                f"{best['engine']} {best['preset']} at {_at(float(best['value']))} "
+                f"({duration(float(best['wall_s']))} a case)"
+            )
+        alike.setdefault(by, []).append(per_cent(float(str(target))))
+    words = [f"{listed(targets)} by {by}" for by, targets in alike.items()]
     return f"Errors are kept cheapest: {'; '.join(words)}."
 
 

@@ -28,6 +28,8 @@ from studies.sweep.claims import linearized, preset_table, whole
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
 
+MANY = 15
+"""Statements of a chapter up to which they are shown; more are folded."""
 NINTH = Path("tests", "plugin", "my_engine.py")
 """An engine of another package, in few lines."""
 
@@ -63,8 +65,15 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
             for path in sorted(folder.glob("*.png"))
         ),
         texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
-        statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
+        statements=told_of(folder),
     )
+
+
+def told_of(folder: Path) -> tuple[Finding, ...]:
+    """Return the statements that a study tested; what it could not test is no finding."""
+    if not (folder / TABLE).is_file():
+        return ()
+    return tuple(item for item in read_findings(folder) if item.holds is not None)
 
 
 def chapters(published: Path) -> list[Told]:
