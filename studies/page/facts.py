@@ -98,16 +98,28 @@ def presets(published: Path) -> pd.DataFrame:
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
+def shared(lines: pd.DataFrame) -> list[str]:
+    """Return the presets that several engines have, in order; all, where there is none such."""
+    counts = lines["preset"].value_counts()
+    return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
+
+
 def presets_short(lines: pd.DataFrame) -> str:
-    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset."""
-    names = in_order(lines["preset"])
-    heads = ("", *(f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names))
+    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
+
+    A preset of one engine alone has no column: it is named in its cell in the last.
+    """
+    names = shared(lines)
+    heads = [f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names]
     rows = []
     for engine, mine in lines.groupby("engine", sort=False):
-        by_preset = {row["preset"]: row for _, row in mine.iterrows()}
-        cells = (_short(by_preset[name]) if name in by_preset else "–" for name in names)
-        rows.append((f"**{ENGINES[str(engine)].title}**", *cells))
-    return table(heads, rows)
+        cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
+        alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
+        shown = [cells.get(name, "–") for name in names]
+        if alone and shown[-1] == "–":
+            shown[-1] = "<br>".join(alone)
+        rows.append((f"**{ENGINES[str(engine)].title}**", *shown))
+    return table(("", *heads), rows)
 
 
 def _short(row: "pd.Series[Any]") -> str:

@@ -17,10 +17,10 @@ from engines import ENGINES
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
-from studies.measures.presets import in_order, in_words
+from studies.measures.presets import in_words
 from studies.measures.words import part
 from studies.page.engine_cases import engine_cases
-from studies.page.facts import MANY, presets, told_of
+from studies.page.facts import MANY, presets, shared, told_of
 from studies.sweep.claims import verdict
 
 GOOD, BAD = 1e-3, 0.1
@@ -61,18 +61,17 @@ def first_sight(folder: Path) -> dict[str, Any]:
     lines = presets(folder)
     if lines.empty:
         return {"verdict": "", "presets": [], "tiles": {}}
-    names = in_order(lines["preset"])
-    tiles = {
-        engine: {row["preset"]: _tile(row) for _, row in group.iterrows()}
-        for engine, group in lines.groupby("engine", sort=False)
-    }
+    names = shared(lines)
+    tiles = {}
+    for engine, group in lines.groupby("engine", sort=False):
+        mine = {row["preset"]: _tile(row) for _, row in group.iterrows()}
+        row = [mine.get(name) for name in names]
+        alone = [{**tile, "preset": name} for name, tile in mine.items() if name not in names]
+        tiles[ENGINES[str(engine)].title] = [*row[:-1], row[-1] or next(iter(alone), None)]
     return {
         "verdict": verdict(lines),
         "presets": list(map(in_words, names)),
-        "tiles": {
-            ENGINES[str(engine)].title: [mine.get(name) for name in names]
-            for engine, mine in tiles.items()
-        },
+        "tiles": tiles,
     }
 
 
@@ -84,7 +83,7 @@ def _tile(row: "pd.Series[Any]") -> dict[str, str]:
         "kind": "good" if good else "bad" if bad else "",
         "wrong": f"{lost} wrong" if lost else "none wrong",
         "median": _unbroken(part(row["median"])),
-        "max": _unbroken(f"max {part(row['max'])}"),
+        "max": f"max {_unbroken(part(row['max']))}",
     }
 
 
