@@ -79,12 +79,12 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     for axes in grid.flat[len(ways) :]:
         axes.set_axis_off()
     for axes, ((engine, way), group) in zip(grid.flat, ways, strict=False):
-        _panel(axes, group, shown, engine_style(engine, "").colour)
+        _panel(axes, group, shown, engine_style(str(engine), "").colour)
         axes.set_title("\n".join(wrap(f"{engine}: {way}", LETTERS)), fontsize=8)
         axes.tick_params(labelbottom=True, labelsize=8)
     handles, labels = grid.flat[0].get_legend_handles_labels()
-    place = "outside upper center"
-    drawing.legend(handles, labels, loc=place, ncols=len(labels), fontsize=8, frameon=False)
+    across = {"ncols": len(labels), "fontsize": 8, "frameon": False}
+    drawing.legend(handles, labels, loc="outside upper center", **across)
     drawing.supylabel(shown.label, fontsize=9)
     drawing.supxlabel("coefficient of restitution that is wanted", fontsize=9)
     return drawing
