@@ -232,8 +232,6 @@ METHODS = {
     "pose_s": Column("s", "of a step, reading the pose"),
     "driver": Column("-", "who takes one step after the other: Python, or a compiled loop"),
     "look_s": Column("s", "of a step, seeing the pose and choosing the next step"),
-    "policy_s": Column("s", "of a step, choosing the next"),
-    "observer_s": Column("s", "of a step, watching"),
     "threads": Column("-", "threads"),
     "seconds": Column("s", "time of all cases"),
     "cases_a_second": Column("1/s", "cases a second"),

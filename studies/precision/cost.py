@@ -26,13 +26,14 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.signals import left_to_this_process
 from studies.precision import COST
 from studies.precision.cost_report import headline, paragraph, pictures, report
-from studies.precision.shares import best_of, pose_case, share_table
+from studies.precision.repeats import best_of
+from studies.precision.shares import pose_case, share_table
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
 
 BUDGET_S, QUICK_BUDGET_S = 1.0, 0.15
-"""Time [s] spent on timing one scene."""
+"""Time [s] spent at most on timing one scene."""
 
 SCENES = 20
 """Scenes built at once to see what memory one takes."""

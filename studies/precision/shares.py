@@ -21,22 +21,13 @@ from engines.drive import build
 from engines.look import Look
 from engines.world import World
 from studies.cases.paper import HISTORIES
+from studies.precision.repeats import best_of, enough
 
 
 def pose_case() -> tuple[RigidBlock, SinePulse]:
     """Return the block and pulse of figure 5-b: one impact before the peak, κ about 5."""
     case = HISTORIES[5][1]
     return case.block, case.motion
-
-
-def best_of(action: Callable[[], Response], budget_s: float) -> tuple[Response, float]:
-    """Return the response with the shortest run time, and the shortest set-up time [s]."""
-    began = time.perf_counter()
-    responses = [action()]
-    while time.perf_counter() - began < budget_s:
-        responses.append(action())
-    best = min(responses, key=lambda response: response.wall_s)
-    return best, min(response.setup_s for response in responses)
 
 
 def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
@@ -78,9 +69,11 @@ def least_clocked(engine: str, scene: Scene, budget_s: float) -> tuple[Response,
     """Run with clocks around the parts; return the run that was disturbed least, and its sums."""
     began = time.perf_counter()
     found: list[tuple[Response, dict[str, float]]] = []
-    while not found or time.perf_counter() - began < budget_s:
+    times: list[float] = []
+    while not times or not enough(times, time.perf_counter() - began, budget_s):
         with clocks(engine) as spent:
             found.append((run(engine, scene), spent))
+        times.append(found[-1][0].wall_s)
     return min(found, key=lambda pair: pair[0].wall_s)
 
 
