@@ -177,7 +177,7 @@ VERSIONS = {
 
 ADVICE = {
     "target": Column("-", "error of the peak that is to be kept"),
-    "dt_s": Column("s", "step for the block of the advice"),
+    "dt_s": Column("s", "step for the block of the advice; nan where an engine chooses its own"),
     "random_cases": Column("-", "random cases on which the preset was published as it is"),
     "random_off": Column("-", "of these, other outcomes, or errors above the target"),
     "extreme_cases": Column("-", "extreme cases, where the reference holds"),
