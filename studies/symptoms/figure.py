@@ -15,6 +15,7 @@ MEASURES = {
     "slip_widths": "slide of the pivot over B  [–]",
     "sink_widths": "depth of a corner over B  [–]",
     "energy_growth": "rise of energy  [–]",
+    "off": "what comes out less what is wanted  [–]",
 }
 """Column -> what it is called at an axis."""
 FLOOR = 1e-12
