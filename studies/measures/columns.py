@@ -152,7 +152,7 @@ RESTITUTION = {
     "rate_ratio": Column("-", "angular rate after over before the impact"),
     "corner_ratio": Column("-", "upward speed of the striking corner over that of its approach"),
     "slide_ratio": Column("-", "its speed along the base over that of its approach"),
-    "off": Column("-", "largest |speed_ratio - wanted|, for a block |rate_ratio - kept_ratio|"),
+    "off": Column("-", "largest difference of a ratio after over before from what it should be"),
     "off_dt_s": Column("-", "the same at other steps"),
     "off_speed": Column("-", "the same at other speeds"),
     "off_radius": Column("-", "the same at other radii"),

@@ -196,14 +196,14 @@ def _bouncing(bounces: pd.DataFrame, engine: str) -> Iterator[Row]:
     """Yield how far off a dropped sphere is, asked in the first way and in the best."""
     mine = bounces[bounces["engine"] == engine]
     if len(mine):
-        first, best = mine.iloc[0], mine.loc[mine["off"].idxmin()]
+        first, best = mine.iloc[0], mine.iloc[int(mine["off"].argmin())]
         yield _row(
             BOUNCE,
             engine,
             "off",
-            shown_by=str(first["way"]),
+            shown_by=f'"{first["way"]}"',
             before=float(first["off"]),
-            setting=str(best["way"]),
+            setting=f'"{best["way"]}"',
             literal=f"for 0.6: {best['literal']}",
             after=float(best["off"]),
         )
