@@ -161,7 +161,6 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=Box2DSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
@@ -169,14 +168,12 @@ ENGINE = Engine(
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=1e-3,
             helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={

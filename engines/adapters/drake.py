@@ -265,12 +265,11 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=DrakeSettings(),
             step_s=1e-3,
             step_source="MultibodyPlantConfig's own time_step, 0.001 s",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="error-controlled",
             title="steps of its own, by its own estimate of the error",

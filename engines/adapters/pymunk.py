@@ -168,7 +168,6 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=PymunkSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=README,
@@ -176,14 +175,12 @@ ENGINE = Engine(
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=2.5e-4,
             helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={

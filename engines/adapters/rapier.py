@@ -178,16 +178,14 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=RapierSettings(),
             step_s=1.0 / 60.0,
             step_source="the library's own time step, 1/60 s",
             misses=(Miss.MIRROR, Miss.RECORD),
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
