@@ -16,6 +16,7 @@ MEASURES = {
     "slip_widths": "slide of the pivot over B  [–]",
     "sink_widths": "depth of a corner over B  [–]",
     "energy_growth": "rise of energy  [–]",
+    "off": "off by  [–]",
 }
 """Column -> what it is called at an axis."""
 FLOOR = 1e-12
@@ -34,9 +35,9 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
     """
     groups = list(lines.groupby("symptom", sort=False))
     engines = list(lines["engine"].unique())
-    columns = 2
+    columns = 3
     rows = -(-len(groups) // columns)
-    drawing = Figure(figsize=(8.8, 2.7 * rows + 0.5), layout="constrained")
+    drawing = Figure(figsize=(12.4, 2.7 * rows + 0.5), layout="constrained")
     panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
     for axes, (symptom, group) in zip(panels, groups, strict=False):
         _panel(axes, group)

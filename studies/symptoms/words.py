@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from textwrap import fill
 from typing import Any
 
 import pandas as pd
@@ -19,6 +20,12 @@ SCENE_STEP = 1e-3
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 """The block for which they are."""
+
+LINES: dict[str, Any] = {
+    **{"width": 99, "initial_indent": "  ", "subsequent_indent": "    "},
+    **{"break_long_words": False, "break_on_hyphens": False},
+}
+"""How a line of the page is broken: no number in two."""
 
 SHORT = 60
 """Letters up to which a sentence quotes what a setting is in the library's words."""
@@ -69,18 +76,19 @@ def _measure(column: str) -> str:
 
 def _line(row: Mapping[Any, Any]) -> str:
     number = {name: float(str(row[name])) for name in ("before", "after", "tuned", "landing")}
-    words = f"  {row['engine']}: {_number(number['before'])} with {row['shown_by']}"
+    words = f"{row['engine']}: {_number(number['before'])} with {row['shown_by']}"
     if row["setting"]:
         words += f"; {_number(number['after'])} with {row['setting']}"
         words += f" ({row['literal']})" if row["literal"] else ""
-    else:
+    elif number["before"]:
         words += "; no single setting halves it"
     rest = [
         f"{_number(number[name])} {how}"
         for name, how in (("tuned", "tuned"), ("landing", "landing"))
         if number[name] == number[name]
     ]
-    return f"{words}; {listed(rest)}\n    {row['command']}"
+    lines = fill("; ".join([words, listed(rest)] if rest else [words]), **LINES)
+    return f"{lines}\n    {row['command']}"
 
 
 def _number(value: float) -> str:
@@ -124,4 +132,6 @@ def _short(row: Mapping[Any, Any]) -> str:
     words = f"{row['engine']} {_number(number['before'])}"
     if row["setting"]:
         words += f", {_number(number['after'])} with {row['setting']}"
-    return f"{words}, {_number(number['tuned'])} tuned"
+    return words + (
+        f", {_number(number['tuned'])} tuned" if number["tuned"] == number["tuned"] else ""
+    )
