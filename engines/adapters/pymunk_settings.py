@@ -49,6 +49,8 @@ class PymunkSettings:
         velocity.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float
+        Coefficient of the corners, the product of two `elasticity`; a box has none.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -61,6 +63,7 @@ class PymunkSettings:
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

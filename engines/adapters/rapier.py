@@ -7,6 +7,7 @@ a step of less than some 1e-6/p has the noise of its contact for a velocity.
 import math
 from typing import Any
 
+from engines.adapters.rapier_drop import BOUNCING
 from engines.adapters.rapier_script import script
 from engines.adapters.rapier_settings import (
     FACTORS,
@@ -150,7 +151,7 @@ class RapierWorld:
         return self._add(body.additional_mass_properties(inertia), corners)
 
     def _add(self, body: Any, colliders: list[Any]) -> Any:
-        rough = [collider.friction(self._s.friction) for collider in colliders]
+        rough = [it.friction(self._s.friction).restitution(self._s.restitution) for it in colliders]
         return self._world.rigid_bodies[self._world.add_body(body, rough)]
 
     def _read_back(self, scene: Scene) -> str:
@@ -177,16 +178,14 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=RapierSettings(),
             step_s=1.0 / 60.0,
             step_source="the library's own time step, 1/60 s",
             misses=(Miss.MIRROR, Miss.RECORD),
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -201,6 +200,7 @@ ENGINE = Engine(
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     remedy={"iterations": 1000},

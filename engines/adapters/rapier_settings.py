@@ -58,6 +58,8 @@ class RapierSettings:
         velocity of the base; not in the steps of an impact.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float
+        Coefficient of block and base; the library takes their mean.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -77,6 +79,7 @@ class RapierSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)
