@@ -38,7 +38,7 @@ class Modes(NamedTuple):
 
     Attributes
     ----------
-    mode : ndarray of int16
+    mode : ndarray of int32
         The number of impacts before the block overturns, or SURVIVES, NOT_LIFTED, FAILED.
     margin : ndarray
         The distance from overturning, positive when overturned; -1 at rest. When the pulse ends
@@ -50,7 +50,7 @@ class Modes(NamedTuple):
         Taylor steps of the exact model, evaluations of the closed form of a linear one.
     """
 
-    mode: NDArray[np.int16]
+    mode: NDArray[np.int32]
     margin: FloatArray
     steps: NDArray[np.int32]
 
@@ -160,7 +160,7 @@ def solve_modes(
     linear: bool,
     constants: FloatArray,
     cases: FloatArray,
-    modes: NDArray[np.int16],
+    modes: NDArray[np.int32],
     margins: FloatArray,
     steps: NDArray[np.int32],
 ) -> None:
@@ -207,7 +207,7 @@ def overturning_modes(
     """
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     size = cases.size
-    mode, margin, steps = np.empty(size, np.int16), np.empty(size), np.empty(size, np.int32)
+    mode, margin, steps = np.empty(size, np.int32), np.empty(size), np.empty(size, np.int32)
 
     def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
         solve_modes(linear, constants, given, mode[part], margin[part], steps[part])

@@ -24,10 +24,10 @@ LEAST_ONSETS = 1.0
 """A map begins at g tan(alpha), below which the exact block stays at rest."""
 LIMITS = {
     "frequency": (1e-3, 1e3),
-    "slenderness": (1e-3, 1.5),
+    "slenderness": (1e-2, 1.5),
     "size": (1e-3, 1e3),
     "onsets": (1.001, 1e3),
-    "aspect": (0.1, 1e3),
+    "aspect": (0.1, 100.0),
 }
 """Between which values the edges of every model are found, and in little time."""
 LEAST_SPAN = 1.001

@@ -50,7 +50,7 @@ class Points(NamedTuple):
 
     column: IntArray
     amplitude: FloatArray
-    mode: NDArray[np.int16]
+    mode: NDArray[np.int32]
 
 
 def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
@@ -194,13 +194,13 @@ def mode_changes(solve: Solve, points: Points) -> Points:
             Points(column[ended], high[ended], above[ended]),
         ]
         search = search[~done]
-    none = Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int16))
+    none = Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32))
     for part in found:
         none = join(none, part)
     return none
 
 
-def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int16], margin: FloatArray) -> Points:
+def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int32], margin: FloatArray) -> Points:
     """Follow every local extremum of the margin towards zero; return the points beyond zero."""
     over = mode >= 0
     alike = (over[:, 1:-1] == over[:, :-2]) & (over[:, 1:-1] == over[:, 2:])
@@ -214,7 +214,7 @@ def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int16], margin: Flo
     best, side = distance[column, row].copy(), over[column, row]
     middle = middle.copy()
     search = np.arange(len(column))
-    beyond: list[Points] = [Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int16))]
+    beyond: list[Points] = [Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32))]
     while len(search):
         right = high[search] - middle[search] > middle[search] - low[search]
         end = np.where(right, high[search], low[search])
@@ -250,7 +250,7 @@ def _shrink(
 
 
 def intervals(
-    edges: pd.DataFrame, first: NDArray[np.int16], low: float, high: float
+    edges: pd.DataFrame, first: NDArray[np.int32], low: float, high: float
 ) -> pd.DataFrame:
     """Return the intervals between the edges of each column: column, low, high, mode.
 

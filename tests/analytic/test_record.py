@@ -271,11 +271,11 @@ def test_loads_are_where_the_acceleration_exceeds_the_onset():
 
 
 RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
-BANDS = {"naive": 0.6, "fixed": 0.1, "landing": 2e-4, "": 1e-3}
+BANDS = {"naive": 0.6, "fixed": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
 """Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
-fixed step of p dt = 5e-4 is of first order in each of the five impacts, landing steps of 1/200
-are of second order, or add up the engine's roundings; the paper's solvers end an excursion up to
-1e-6 rad late."""
+fixed step of p dt = 5e-4 is of first order in each of the five impacts, an engine that controls
+its error keeps some 4e-4 of a peak at κ = 1, landing steps of 1/200 are of second order, or add up
+the engine's roundings; the paper's solvers end an excursion up to 1e-6 rad late."""
 
 
 NAMES = [
@@ -320,7 +320,7 @@ def test_frames_agree(engine):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [name for name in NAMES if not getattr(name, "marks", ())])
 def test_a_long_record_through_every_source(name):
     """40 s at 0.005 s, 192 impacts, three times at rest and lifted again twice, κ = 9."""
     record = noise(5, 8001, 0.005, 1.3 * ONSET)
