@@ -22,7 +22,6 @@ REFERENCE = "exact"
 
 ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
 
-
 NAMED = 2
 """Engines up to which a headline names each; more are counted together."""
 
