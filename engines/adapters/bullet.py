@@ -161,6 +161,7 @@ class BulletWorld:
             "mass": (scene.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
             "friction of the base": (1.0, base[1]),
+            "restitution": (s.restitution, block[5]),
             "numSolverIterations": (s.iterations, engine["numSolverIterations"]),
         }
         if s.exact_inertia:
