@@ -161,13 +161,13 @@ class BulletWorld:
             "mass": (scene.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
             "friction of the base": (1.0, base[1]),
-            "restitution": (s.restitution, block[5]),
             "numSolverIterations": (s.iterations, engine["numSolverIterations"]),
         }
         if s.exact_inertia:
             pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}
         if s.multibody:
             # a body in maximal coordinates takes them, too, but reads zeros
+            pairs["restitution"] = (s.restitution, block[5])
             pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
             pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
         return disagreement(pairs)
