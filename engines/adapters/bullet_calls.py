@@ -7,7 +7,7 @@ from typing import Any
 
 from engines.adapters.bullet_settings import SOLVERS, BulletSettings
 from engines.parts.settings import given
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
+from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
 
 KEPT_GAP = 4.0
@@ -32,16 +32,13 @@ class Call:
 
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
-    block, threshold = scene.block, s.breaking_threshold
-    if s.gap_by_step:
-        threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * dt_s) ** 2
     wanted = {
         "numSolverIterations": s.iterations,
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,
         "contactSlop": s.contact_slop,
-        "contactBreakingThreshold": threshold,
+        "contactBreakingThreshold": kept_gap(scene, s, dt_s),
         "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),
         "warmStartingFactor": s.warm_starting,
         "useSplitImpulse": s.split_impulse,
@@ -50,6 +47,13 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
         "restitutionVelocityThreshold": s.restitution_threshold,
     }
     return Call("setPhysicsEngineParameter", given(wanted))
+
+
+def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the gap, over a body's size, up to which a contact is kept."""
+    if not s.gap_by_step:
+        return s.breaking_threshold
+    return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
 
 
 def base_shape(scene: Scene, s: BulletSettings) -> Call:
@@ -77,6 +81,11 @@ def block_shape(scene: Scene, s: BulletSettings) -> Call:
 
 def _shape(kind: str, **shape: Any) -> Call:
     return Call("createCollisionShape", {"shapeType": Constant(kind), **shape})
+
+
+def base_place(scene: Scene, s: BulletSettings) -> Point:
+    """Return where the centre of the base is [m]."""
+    return (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
 
 
 def base_body(shape: Any, place: tuple[float, ...]) -> Call:

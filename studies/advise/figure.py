@@ -12,7 +12,7 @@ from engines import ENGINES
 from studies.advise.evidence import in_words
 from studies.drawing.labels import Name, around, beside
 from studies.drawing.styles import PRESET_LINES, engine_style
-from studies.measures.words import listed, part
+from studies.measures.words import listed, per_cent
 
 WORDS = {
     "naive": "the libraries' defaults",
@@ -21,7 +21,7 @@ WORDS = {
     "error-controlled": "an engine's own steps",
 }
 """Preset -> what it is called in the title."""
-LETTERS = 92
+LETTERS = 88
 """In a line of the title."""
 
 
@@ -45,7 +45,7 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     targets = sorted(lines["target"].unique(), reverse=True)
     axes.set(xscale="log", yscale="log", xticks=targets)
     axes.set_xticks([], minor=True)
-    axes.set_xticklabels([part(float(target)) for target in targets])
+    axes.set_xticklabels([per_cent(float(error)) for error in targets])
     axes.set_xlim(2.0 * targets[0], targets[-1] / 2.0)
     axes.margins(y=0.15)
     axes.set_xlabel("largest error of a peak, kept on every published case")
@@ -93,9 +93,9 @@ def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
     kept = lines[lines["message"] == ""]
     best = list(kept.loc[kept["target"] == targets[-1], "preset"].unique())
     none = [name for name in lines["preset"].unique() if name not in set(kept["preset"])]
-    words = f"{part(targets[-1])} is kept by {_named(best)} alone"
+    words = f"{per_cent(targets[-1])} is kept by {_named(best)} alone"
     if none:
-        words += f", and {part(targets[0])} not even by {_named(none)}"
+        words += f", and {per_cent(targets[0])} not even by {_named(none)}"
     return "\n".join([*wrap(words, LETTERS), "(numbers: p dt)"])
 
 

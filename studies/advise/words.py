@@ -14,7 +14,7 @@ from engines.declaration import Engine, Preset
 from engines.parts.settings import given
 from studies.advise.evidence import in_words
 from studies.kit.tables import left_aligned
-from studies.measures.words import duration, listed, part
+from studies.measures.words import duration, listed, part, per_cent
 
 ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
 """Settings depend on no motion."""
@@ -117,18 +117,19 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
 
 def claim(lines: pd.DataFrame) -> str:
     """Say which engine keeps which error at what cost, and where nothing does."""
-    words = []
+    alike: dict[str, list[str]] = {}
     for target, group in lines.groupby("target", sort=False):
         found = group[group["cheapest"]].sort_values("wall_s")
-        if found.empty:
-            words.append(f"{part(float(str(target)))} by nothing")
-            continue
-        best = found.iloc[0]
-        words.append(
-            f"{part(float(str(target)))} by {best['engine']} {best['preset']} at "
-            f"{in_words(preset_of(best), float(best['value']))} "
-            f"({duration(float(best['wall_s']))} a case)"
-        )
+        by = "nothing"
+        if not found.empty:
+            best = found.iloc[0]
+            by = (
+                f"{best['engine']} {best['preset']} at "
+                f"{in_words(preset_of(best), float(best['value']))} "
+                f"({duration(float(best['wall_s']))} a case)"
+            )
+        alike.setdefault(by, []).append(per_cent(float(str(target))))
+    words = [f"{listed(targets)} by {by}" for by, targets in alike.items()]
     return f"Errors are kept cheapest: {'; '.join(words)}."
 
 
@@ -137,7 +138,7 @@ def told(lines: pd.DataFrame) -> str:
     names = lines["engine"] + " " + lines["preset"]
     kept = lines["message"] == ""
     sentences = [
-        f"An error of {part(float(str(target)))} is kept by {listed(list(names[group.index]))}."
+        f"An error of {per_cent(float(str(target)))} is kept by {listed(list(names[group.index]))}."
         for target, group in lines[kept].groupby("target", sort=False)
     ]
     none = [name for name in names.unique() if not kept[names == name].any()]

@@ -236,6 +236,7 @@ METHODS = {
     "seconds": Column("s", "time of all cases"),
     "cases_a_second": Column("1/s", "cases a second"),
     "us_a_case_and_core": Column("µs", "time of a case on one core"),
+    "busy": Column("-", "part of the time that the cores of all threads worked"),
     "times_exact": Column("-", "time over that of the exact solution on one thread"),
 }
 

@@ -78,18 +78,27 @@ def best_of(lines: pd.DataFrame, by: str = "off") -> pd.DataFrame:
 
 
 def first_claim(lines: pd.DataFrame) -> str:
-    """Say with which setting each engine keeps a coefficient best, and how many ways do not."""
-    words = [
-        f"{_off(row['off'])} in {row['engine']} ({row['literal']})"
-        for row in best_of(lines).to_dict("records")
-    ]
+    """Say how well the engines keep a coefficient at best, and who does not as first asked."""
+    best = best_of(lines).sort_values("off")
+    ends = dict.fromkeys(
+        f"{_off(row['off'])} in {row['engine']}" for row in best.iloc[[0, -1]].to_dict("records")
+    )
     first = lines.drop_duplicates("engine")
     lost = list(first.loc[first["off"] > 10.0 * GOOD, "engine"])
     beside = f"; asked in the first way that comes to mind, {listed(lost)} miss it" if lost else ""
     return (
-        "Of a coefficient of restitution from 0 to 1 a dropped sphere keeps all but "
-        f"{'; '.join(words)}: set for 0.6{beside}."
+        "Of a coefficient of restitution from 0 to 1 a dropped sphere keeps, with each engine's "
+        f"best setting, all but {' to '.join(ends)}{beside}."
     )
+
+
+def settings_claim(lines: pd.DataFrame) -> str:
+    """Say with which setting each engine keeps a coefficient best."""
+    words = [
+        f"in {row['engine']} to {_off(row['off'])} by {row['literal']}"
+        for row in best_of(lines).to_dict("records")
+    ]
+    return f"It is kept, here one of 0.6, {'; '.join(words)}."
 
 
 def block_claim(blocks: pd.DataFrame) -> str:

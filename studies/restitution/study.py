@@ -11,7 +11,14 @@ from studies.kit.arguments import BadInputError, Place, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.restitution import STUDY, drops, strikes
-from studies.restitution.report import LOST, block_claim, findings_text, first_claim, told
+from studies.restitution.report import (
+    LOST,
+    block_claim,
+    findings_text,
+    first_claim,
+    settings_claim,
+    told,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,15 +80,16 @@ def _read(folder: Path, name: str) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say what each engine makes of a coefficient, and which setting keeps it."""
-    return f"{first_claim(_read(folder, 'kept'))} {block_claim(_read(folder, 'struck'))}"
+    """Say how well engines keep a coefficient."""
+    return first_claim(_read(folder, "kept"))
 
 
 def paragraph(folder: Path) -> str:
-    """Say which ways hold over what is varied."""
+    """Say which setting keeps a coefficient, what a block makes of it, and which ways hold."""
+    first = [settings_claim(_read(folder, "kept")), block_claim(_read(folder, "struck"))]
     tables = {"a sphere": "kept", "a block's rate": "struck"}
     held = [told(_read(folder, table), asked) for asked, table in tables.items()]
-    return " ".join([*held, LOST])
+    return " ".join([*first, *held, LOST])
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

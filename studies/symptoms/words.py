@@ -13,7 +13,7 @@ from engines import ENGINES, Scene
 from studies.cases.variants import variants
 from studies.measures.columns import COLUMNS
 from studies.measures.differences import scientific
-from studies.measures.words import listed
+from studies.measures.words import listed, part
 
 SCENE_STEP = 1e-3
 """p dt at which settings are written out, that of the study of contacts."""
@@ -100,19 +100,21 @@ def _number(value: float) -> str:
 def first_claim(lines: pd.DataFrame) -> str:
     """Say of every engine which single setting helps most against a wrong peak."""
     first = lines[lines["symptom"] == lines.iloc[0]["symptom"]]
-    words = [_helps(row) for row in first.to_dict("records")]
-    return f"Against a block that tips too early or too late: {'; '.join(words)}."
+    rows = first.to_dict("records")
+    words = [_helps(row) for row in rows if row["setting"]]
+    others = [str(row["engine"]) for row in rows if not row["setting"]]
+    if others:
+        words.append(f"in {listed(others)} no single setting halves it")
+    return f"Where a block tips too early or too late, {'; '.join(words)}."
 
 
 def _helps(row: Mapping[Any, Any]) -> str:
     before, after = float(str(row["before"])), float(str(row["after"]))
-    if not row["setting"]:
-        return f"in {row['engine']} no single setting halves the error of {scientific(before)}"
     literal = str(row["literal"])
     setting = literal if 0 < len(literal) <= SHORT else row["setting"]
     return (
-        f"in {row['engine']} {setting} alone takes the largest error from "
-        f"{scientific(before)} to {scientific(after)}"
+        f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
+        f"{part(after)}"
     )
 
 

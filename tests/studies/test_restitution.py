@@ -1,6 +1,7 @@
 """A dropped sphere: what comes out of a coefficient of restitution, and what setting gives it."""
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
@@ -109,10 +110,12 @@ def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch
     assert run(["restitution", "--engines", "mujoco", "--out", str(tmp_path)]) == 0
     assert "drops broken" in capsys.readouterr().out
     said = study.headline(tmp_path)
-    assert "in mujoco (solref=" in said
     assert "asked in the first way that comes to mind, mujoco miss it" in said
-    assert "sin² α of its rate, Housner's for e = 0: it does within 0.0" in said
-    assert "over all that is varied: no way" in study.paragraph(tmp_path)
+    assert len(said) < 300
+    told = study.paragraph(tmp_path)
+    assert re.search("in mujoco to 0[.][0-9]+ by solref=", told)
+    assert "sin² α of its rate, Housner's for e = 0: it does within 0.0" in told
+    assert "over all that is varied: no way" in told
     for name in study.pictures(tmp_path):
         assert (tmp_path / f"{name}.png").stat().st_size > 20_000
     lines = study._read(tmp_path, "kept").set_index("way")
