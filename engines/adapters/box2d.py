@@ -140,6 +140,7 @@ class Box2DWorld:
                 "mass": (scene.mass, body.mass),
                 "inertia": (scene.inertia[1] * self._unit**2, body.inertia),
                 "friction": (s.friction, body.fixtures[0].friction),
+                "restitution": (s.restitution, body.fixtures[0].restitution),
                 "continuous": (s.continuous, self._world.continuousPhysics),
             },
             Precision.SINGLE.value,

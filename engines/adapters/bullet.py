@@ -199,6 +199,7 @@ class BulletWorld:
             pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}
         if s.multibody:
             # a body in maximal coordinates takes them, too, but reads zeros
+            pairs["restitution"] = (s.restitution, block[5])
             pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
             pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
         return disagreement(pairs)

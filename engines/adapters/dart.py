@@ -184,13 +184,17 @@ class DartWorld:
         sleeps = hasattr(world, "getDeactivationOptions")
         splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self._floor.getShapeNode(0), self._block.getShapeNode(0)]
-        found = [node.getDynamicsAspect().getFrictionCoeff() for node in shapes]
+        top, own = (node.getDynamicsAspect() for node in shapes)
         moment = scene.inertia[1] * self._unit**2 if s.exact_inertia else None
         return disagreement(
             {
                 "mass": (scene.mass, self._block.getMass()),
                 "moment": (moment, self._block.getInertia().getMoment()[1, 1]),
-                "friction": (s.friction, min(found)),
+                "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
+                "restitution": (
+                    s.restitution,
+                    top.getRestitutionCoeff() * own.getRestitutionCoeff(),
+                ),
                 "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
                 "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
             }

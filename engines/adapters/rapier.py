@@ -144,6 +144,7 @@ class RapierWorld:
         pairs = {
             "mass": (scene.mass, self._body.mass),
             "friction": (self._s.friction, friction),
+            "restitution": (self._s.restitution, colliders[1].restitution),
             "iterations": (
                 self._s.iterations_of(scene),
                 self._parameters.num_internal_pgs_iterations,

@@ -51,7 +51,7 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     axes.set_xlabel("largest error of a peak, kept on every published case")
     axes.set_ylabel("time of a case  [ms]")
     axes.grid(alpha=0.25)
-    axes.set_title(_title(lines, targets), fontsize=11)
+    axes.set_title(_title(lines, targets), fontsize=10)
     around(axes, steps, np.array([(step.x, step.y) for step in steps]).reshape(-1, 2), 7.0)
     beside(axes, names)
     return drawing

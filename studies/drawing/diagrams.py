@@ -44,7 +44,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
         words = f"{source}: none beyond {scientific(bound)} κ"
         bounds.append(Name(words, float(ends[1]), bound * float(ends[1]), style.colour))
     axes.set(xscale="log", yscale="log", xlim=(0.8, 1.2 * ends[1]))
-    axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|  [–]")
+    axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln $a_p$| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
     if not bounds:
         axes.set(title="no case that both survive", ylim=(LOWEST, 1.0))

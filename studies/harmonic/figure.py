@@ -8,7 +8,7 @@ from studies.drawing.styles import style_of
 
 LABELS = {
     "frequency": "frequency of the shaking  ω/p  [–]",
-    "amplitude": "amplitude of the shaking over the onset  a_p / (g tan α)  [–]",
+    "amplitude": "amplitude of the shaking over the onset  $a_p$ / (g tan α)  [–]",
 }
 ARROWS = {"up": ("#0072B2", "▸ swept up"), "down": ("#D55E00", "◂ swept down")}
 
@@ -45,7 +45,9 @@ def draw_harmonic(table: pd.DataFrame, engines: pd.DataFrame, over: str) -> Figu
     axes.set_ylim(0.0, 1.24)
     axes.set_xlabel(LABELS[over])
     axes.set_ylabel("largest steady rotation  |θ|/θcr  [–]")
-    axes.plot([], [], color="#777777", linewidth=0.9, linestyle=":", label="the other side")
+    axes.plot(
+        [], [], color="#777777", linewidth=0.9, linestyle=":", label="largest to the other side"
+    )
     axes.set_title("Steady states under sustained harmonic shaking", fontsize=10)
     axes.legend(fontsize=8, frameon=False, ncols=2)
     return drawing

@@ -22,6 +22,9 @@ REFERENCE = "exact"
 
 ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
 
+NAMED = 2
+"""Engines up to which a headline names each; more are counted together."""
+
 
 def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> str:
     """Return the findings in a few sentences, from the numbers."""
@@ -38,11 +41,17 @@ def first_claim(matrix: pd.DataFrame) -> str:
     counts: dict[str, list[tuple[int, int]]] = {}
     for source, good in right:
         counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
-    parts = [
-        f"{in_words(name)} {each_out_of(*zip(*counts[name], strict=True))}"
-        for name in in_order(counts)
-    ]
-    return f"Of extreme cases the engines get right: {', '.join(parts)}."
+    parts = [f"{in_words(name)} {_counted(counts[name])}" for name in in_order(counts)]
+    engines = list(dict.fromkeys(source.partition(":")[0] for source in asked["source"]))
+    named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
+    verb = "get" if len(engines) > 1 else "gets"
+    return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
+
+
+def _counted(pairs: list[tuple[int, int]]) -> str:
+    """Return how many are right of how many, of each engine or of all."""
+    right, total = zip(*pairs, strict=True)
+    return each_out_of(right, total) if len(pairs) <= NAMED else out_of(sum(right), sum(total))
 
 
 def verdicts_sentence(matrix: pd.DataFrame) -> str:

@@ -119,11 +119,16 @@ def _helps(row: Mapping[Any, Any]) -> str:
 
 
 def told(lines: pd.DataFrame) -> str:
-    """Say of every symptom what there is by default, and what one setting and all leave of it."""
+    """Say of every symptom where there is most of it, what mends it there, and where is least."""
     sentences = []
     for symptom, group in lines.groupby("symptom", sort=False):
-        words = [_short(row) for row in group.to_dict("records")]
-        sentences.append(f"{str(symptom).capitalize()}: {'; '.join(words)}.")
+        ordered = group.sort_values("before", key=abs, ascending=False, kind="stable")
+        most, *others = ordered.to_dict("records")
+        words = f"{str(symptom).capitalize()}: most in {_short(most)}"
+        if others:
+            least = others[-1]
+            words += f"; least in {least['engine']}, {_number(float(str(least['before'])))}"
+        sentences.append(f"{words}.")
     return " ".join(sentences)
 
 

@@ -269,7 +269,12 @@ def test_unseen_and_invalid_cases_are_not_right_ones():
     text = stability.verdicts_sentence(pd.DataFrame([extreme("exact", "good"), *rows]))
     assert "mujoco 2 of 4 (1 too small to be seen, 1 more beyond the reference)" in text
     assert "exact 1" not in text and "independent" not in text
+    assert "Of extreme cases mujoco gets right: " in stability.first_claim(pd.DataFrame(rows))
     assert "2 of 4" in stability.first_claim(pd.DataFrame(rows))
+    more = [{**row, "source": source} for row in rows for source in ("mujoco", "dart", "rapier")]
+    assert "3 engines get right: with steps that land on impacts 6 of 12" in (
+        stability.first_claim(pd.DataFrame(more))
+    )
 
 
 def test_the_reference_stands_beside_independent_integrators():
