@@ -11,7 +11,12 @@ from studies.drawing.labels import Name, beside
 from studies.drawing.styles import PRESET_LINES, engine_style
 from studies.measures.words import listed, part
 
-WORDS = {"naive": "the libraries' defaults", "fixed": "equal steps", "landing": "landing steps"}
+WORDS = {
+    "naive": "the libraries' defaults",
+    "fixed": "equal steps",
+    "error-controlled": "error-controlled steps",
+    "landing": "landing steps",
+}
 """Preset -> what it is called in the title."""
 
 

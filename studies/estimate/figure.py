@@ -1,5 +1,7 @@
 """True errors against estimates: below the line an estimate is enough, far above it is blind."""
 
+from textwrap import fill
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,6 +13,8 @@ from studies.measures.presets import in_order, in_words, preset_of
 
 FLOOR = 1e-10
 """Errors and estimates below are drawn here."""
+TITLE = 36
+"""Letters in a line of a panel's title."""
 
 
 def draw_estimates(lines: pd.DataFrame) -> Figure:
@@ -32,7 +36,7 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
         axes.plot(ends, 10.0 * ends, color="#777777", linewidth=0.9, linestyle=":")
         _points(axes, lines[presets == preset])
         axes.set(xscale="log", yscale="log", xlim=(FLOOR / 2, 10.0), ylim=(FLOOR / 2, 10.0))
-        axes.set_title(in_words(preset), fontsize=9)
+        axes.set_title(fill(in_words(preset), TITLE), fontsize=9)
         axes.set_xlabel("difference to half the step  [–]")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("true error of the peak  [–]")
@@ -47,8 +51,9 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
 
 
 def _points(axes: Axes, lines: pd.DataFrame) -> None:
-    """Draw the cases of each source, and write its name and how many lie above ten estimates."""
-    for place, (source, rows) in enumerate(lines.groupby("source", sort=False)):
+    """Draw the cases of each engine, and write its name and how many lie above ten estimates."""
+    groups = list(lines.groupby("source", sort=False))
+    for place, (source, rows) in enumerate(reversed(groups)):
         style = style_of(str(source))
         axes.plot(
             rows["estimate"].clip(lower=FLOOR),
@@ -58,11 +63,11 @@ def _points(axes: Axes, lines: pd.DataFrame) -> None:
         above = int((rows["over"] > 10.0).sum())
         axes.text(
             0.97,
-            0.1 - 0.06 * place,
-            f"{source}: {above} of {len(rows)} above",
+            0.03 + 0.05 * place,
+            f"{str(source).partition(':')[0]}: {above} of {len(rows)}",
             color=style.colour,
-            fontsize=8,
+            fontsize=7.5,
             transform=axes.transAxes,
             ha="right",
-            va="top",
+            va="bottom",
         )
