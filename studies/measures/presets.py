@@ -8,7 +8,7 @@ from studies.sources.registry import resolve
 WORDS = {
     "naive": "with the libraries' defaults",
     "fixed": "with a tuned contact and a fixed step",
-    "error-controlled": "with steps by the engine's own estimate of its error",
+    "error-controlled": "with the engine's own error-controlled steps",
     "landing": "with steps that land on impacts",
 }
 """Preset -> what it is, as part of a sentence about engines that have it."""

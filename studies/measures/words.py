@@ -1,7 +1,7 @@
 """Words of a claim made from its counts and numbers, so that no sentence says more than a table."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from studies.measures.differences import scientific
 
@@ -33,6 +33,17 @@ def listed(words: Sequence[str], joint: str = "and") -> str:
 def alike(words: Sequence[str], joint: str = "and") -> str:
     """Return a list of words, or the one word that they all are."""
     return words[0] if len(set(words)) == 1 else listed(words, joint)
+
+
+def gathered(said: Iterable[tuple[str, str]]) -> str:
+    """Return names and what is said of each, once for all of whom the same is said.
+
+    "a and b 7 of 10; c none of 10".
+    """
+    names: dict[str, list[str]] = {}
+    for name, words in said:
+        names.setdefault(words, []).append(name)
+    return "; ".join(f"{listed(group)} {words}" for words, group in names.items())
 
 
 def part(value: float) -> str:

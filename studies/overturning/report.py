@@ -13,7 +13,7 @@ from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
-from studies.measures.words import listed, out_of, part
+from studies.measures.words import gathered, listed, out_of, part
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
 
@@ -77,28 +77,30 @@ def headline(folder: Path) -> str:
     shares = [
         f"{row['source']} {part(row['false'] + row['missed'])}" for _, row in models.iterrows()
     ]
-    cells = [f"{row['source']} {out_of(_lost(row), row['cells'])}" for _, row in engines.iterrows()]
     words = f"Of an overturning map is wrong: {listed(shares)}"
-    return f"{words}; of the cells of a coarse grid: {listed(cells)}." if cells else f"{words}."
+    if engines.empty:
+        return f"{words}."
+    cells = ((row["source"], out_of(_lost(row), row["cells"])) for _, row in engines.iterrows())
+    return f"{words}. Of the cells of a coarse grid: {gathered(cells)}."
 
 
 def paragraph(folder: Path) -> str:
     """Say how much of the map each source gets wrong, on which side and where."""
-    words = [_share(line) for _, line in read(folder, "differences").iterrows()]
-    return f"On the map of the {window_of(folder).title}: {'; '.join(words)}."
+    said = [_share(line) for _, line in read(folder, "differences").iterrows()]
+    return f"On the map of the {window_of(folder).title}: {gathered(said)}."
 
 
-def _share(line: "pd.Series[Any]") -> str:
-    """Return what part of the map, or how many of its cells, a source gets wrong."""
+def _share(line: "pd.Series[Any]") -> tuple[str, str]:
+    """Return a source, and what part of the map it gets wrong or how many of its cells right."""
     if math.isnan(line["cells"]):
         wrong = [
             f"{words} {part(line[name])}{_between(line, name)}"
             for name, words in (("false", "overturns falsely in"), ("missed", "misses"))
             if line[name]
         ]
-        return f"{line['source']} {listed(wrong) if wrong else 'gets all of it right'}"
+        return line["source"], listed(wrong) if wrong else "gets all of it right"
     right = out_of(line["cells"] - _lost(line), line["cells"])
-    return f"{line['source']} gets {right} cells of a coarse grid right"
+    return line["source"], f"right in {right} cells of a coarse grid"
 
 
 def _lost(line: "pd.Series[Any]") -> int:

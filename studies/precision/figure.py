@@ -31,7 +31,10 @@ AIMS = (1e-4, 1e-2)
 """Errors between which most applications are content: shaded."""
 MANY = 12
 """More lines of engines than these are named by engine, and told apart by what follows."""
-PRESETS_SAID = "engines: full lines land on impacts, dashed fixed steps, dotted defaults"
+PRESETS_SAID = (
+    "engines: full lines land on impacts or choose their own steps,\n"
+    "dashed fixed steps, dotted defaults"
+)
 WRONG = 10.0
 """Where methods that fail or get outcomes wrong are drawn."""
 

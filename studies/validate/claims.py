@@ -6,10 +6,14 @@ import pandas as pd
 
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.measures.differences import conditioning_of, scientific
-from studies.measures.words import listed, out_of, part
+from studies.measures.words import gathered, listed, out_of, part
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
+
+
+FEW = 3
+"""Of more sources than these a headline names the best and the worst."""
 
 
 class Census(NamedTuple):
@@ -38,20 +42,26 @@ def census(seed: int, kept: int) -> Census:
 
 
 def first_claim(compared: pd.DataFrame) -> str:
-    """Say how many outcomes the sources get right, and the largest error over κ."""
-    scaled = compared["error"].abs() / conditioning_of(compared)
-    alike: dict[str, list[str]] = {}
-    for source, rows in compared.groupby("source", sort=False):
-        right = out_of(int(rows["agrees"].sum()), len(rows))
-        alike.setdefault(right, []).append(str(source))
-    words = [
-        f"{listed(names)} get{'s' if len(names) == 1 else ''} {right} outcomes right"
-        for right, names in alike.items()
+    """Say what each source gets right, and its largest error over κ."""
+    scaled = (compared["error"].abs() / conditioning_of(compared)).groupby(
+        compared["source"], sort=False
+    )
+    right = [
+        (str(source), out_of(int(rows["agrees"].sum()), len(rows)))
+        for source, rows in compared.groupby("source", sort=False)
     ]
     return (
-        f"On random cases that nothing was tuned on {', '.join(words)}; the largest error of a "
-        f"peak is {scientific(float(scaled.max()))} κ."
+        f"Outcomes right on random cases that nothing was tuned on: {gathered(right)}; "
+        f"largest errors of the peak {_sizes(scaled.max())}."
     )
+
+
+def _sizes(largest: "pd.Series[float]") -> str:
+    """Return each source's number over κ, or the least and the largest of many."""
+    if len(largest) > FEW:
+        ends = (largest.idxmin(), largest.idxmax())
+        return listed([f"{scientific(largest[name])} κ ({name})" for name in ends], "to")
+    return f"{listed([scientific(size) for size in largest])} κ"
 
 
 def claims(compared: pd.DataFrame, counted: Census) -> str:
