@@ -20,6 +20,10 @@ FloatArray = NDArray[np.float64]
 kernel = keeper(Path(__file__).parent)
 """Compile a function at its first call; see `analytic.kernels.compiled.keeper`."""
 
+exclusive = keeper(Path(__file__).parent, nogil=False)
+"""Compile, as `kernel`, what calls a library that keeps some of its numbers for the whole process:
+no other thread of Python runs meanwhile."""
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

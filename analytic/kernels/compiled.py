@@ -21,11 +21,13 @@ SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
 
 
-def keeper(sources: Path, *, counted: bool = True) -> Callable[[Function], Function]:
+def keeper(
+    sources: Path, *, counted: bool = True, nogil: bool = True
+) -> Callable[[Function], Function]:
     """Return the decorator of the kernels in a folder, which call no kernel of another one.
 
-    It compiles a function at its first call, keeps the result on disk, and releases the GIL. What
-    makes no array needs no references to its arrays counted.
+    It compiles a function at its first call, keeps the result on disk, and releases the GIL unless
+    told not to. What makes no array needs no references to its arrays counted.
 
     No operation is merged with another: whether it is would depend on what the compiler inlines,
     and the last digit on which process compiled.
@@ -34,7 +36,7 @@ def keeper(sources: Path, *, counted: bool = True) -> Callable[[Function], Funct
     def kernel(function: Function) -> Function:
         folder = kept_in(sources)
         njit: Any = numba.njit  # its types leave out what it takes with an underscore
-        compile_ = njit(cache=folder is not None, nogil=True, error_model="numpy", _nrt=counted)
+        compile_ = njit(cache=folder is not None, nogil=nogil, error_model="numpy", _nrt=counted)
         with _cache_folder(folder):
             return cast(Function, compile_(function))
 

@@ -2,14 +2,18 @@
 
 import contextlib
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from typing import Any
 
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
 from engines.adapters.bullet_calls import (
     Call,
     Constant,
     base_body,
     base_call,
+    base_place,
     base_shape,
     block_body,
     block_call,
@@ -18,6 +22,16 @@ from engines.adapters.bullet_calls import (
 )
 from engines.adapters.bullet_clients import given_back, taken
 from engines.adapters.bullet_drop import BOUNCING
+from engines.adapters.bullet_loop import (
+    Client,
+    Hold,
+    begin_hold,
+    client_of,
+    clients,
+    corrected,
+    drive,
+    once,
+)
 from engines.adapters.bullet_script import script
 from engines.adapters.bullet_settings import (
     FACTORS,
@@ -32,7 +46,15 @@ from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
 from engines.scene import GEOMETRIES, Scene
-from engines.world import Grip, Moment, Pose, Step
+from engines.world import Driver, Grip, Moment, Pose, Step
+
+TRIAL = (
+    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, Grip.SWING, 1.0),
+    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, Grip.SWING, 1.0),
+    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, Grip.SWING, 1.0),
+    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, Grip.APPROACH, 1.0),
+)
+"""Steps by which a compiled loop is held against Python."""
 
 
 class BulletWorld:
@@ -48,14 +70,12 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
+        loops = scene.compiled and loop_agrees()
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
-        self._dt = 0.0
         self._set_engine(scene)
-        self._ground = (0.0, 0.0, 0.0)
-        if settings.base_geometry == "box":
-            self._ground = (0.0, 0.0, -scene.block.height)
+        self._ground = base_place(scene, settings)
         floor = self._do(base_shape(scene, settings))
         self._base = int(self._do(base_body(floor, self._ground)))
         shape = self._do(block_shape(scene, settings))
@@ -63,18 +83,32 @@ class BulletWorld:
         self._fault = self._set_bodies(scene)
         self._take_inertia(scene)
         self._put(scene)
+        self._holds = Hold.blank()
+        self._held = self._holds[0]
+        begin_hold(self._held, scene, settings, dt_s)
+        self._held.block, self._held.base = self._body, self._base
+        self._lent = self.lent() if loops else None
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         p, client = self._p, self._client
-        if step.dt_s != self._dt or step.grip is not self._grip:
-            held = self._held(step.grip, step.dt_s) if self._s.by_phase else {}
-            p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **held, physicsClientId=client)
-            self._dt, self._grip = step.dt_s, step.grip
+        if step.dt_s != self._held.dt or step.grip is not self._grip:
+            erp = self._erp(step) if self._s.by_phase else {}
+            p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
+            self._held.dt, self._grip = step.dt_s, step.grip
         if self._moving:
             self._move_base(step)
         p.setGravity(step.pull_x, 0.0, step.pull_z, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+
+    @property
+    def drive(self) -> Driver | None:
+        """What takes many steps at once; see `engines.world.DrivenWorld`."""
+        return None if self._lent is None else partial(drive, *self._lent)
+
+    def lent(self) -> tuple[Sequence[Hold], Client]:
+        """Return what a compiled loop steps by."""
+        return self._holds, client_of(self._p, self._client, self._body)
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
@@ -88,7 +122,9 @@ class BulletWorld:
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
         engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
-        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
+        return self._fault or disagreement(
+            {"fixedTimeStep": (self._held.dt, engine["fixedTimeStep"])}
+        )
 
     def close(self) -> None:
         """Leave the client to the next run."""
@@ -121,15 +157,11 @@ class BulletWorld:
         place, upright = (step.base_x, *self._ground[1:]), (0.0, 0.0, 0.0, 1.0)
         p.resetBasePositionAndOrientation(self._base, place, upright, physicsClientId=client)
 
-    def _held(self, grip: Grip, dt_s: float) -> dict[str, float]:
-        """Correct positions in ordinary steps alone: a short one would make a velocity of them."""
-        part = 0.0
-        if grip not in (Grip.APPROACH, Grip.STRIKE):
-            part = min(1.0, dt_s / self._ordinary) ** 2
-        return {
-            "contactERP": part * (self._s.contact_erp or 0.0),
-            "frictionERP": part * (self._s.friction_erp or 0.0),
-        }
+    def _erp(self, step: Step) -> dict[str, float]:
+        """Return what a step corrects of positions."""
+        held = self._held
+        part = corrected(step.grip, step.dt_s, held.ordinary)
+        return {"contactERP": part * held.contact_erp, "frictionERP": part * held.friction_erp}
 
     def _set_engine(self, scene: Scene) -> None:
         # the library announces a solver past Python
@@ -175,6 +207,34 @@ class BulletWorld:
         return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
 
 
+@cache
+def loop_agrees() -> bool:
+    """Return whether a loop can step a block on a moving base, and as Python does."""
+    known = clients(imported("pybullet"))
+    return bool(known.size) and _trial(_by_loop) == _trial(_by_calls)
+
+
+def _trial(after: Callable[[BulletWorld, Step], Pose]) -> list[Pose]:
+    """Return the poses after each step of the trial."""
+    block = RigidBlock(width=0.5, height=1.5)
+    motion = SinePulse(amplitude=1.0, omega=1.0)
+    scene = Scene(block=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
+    world = BulletWorld(scene, LANDING, TRIAL[0].dt_s)
+    try:
+        return [after(world, step) for step in TRIAL]
+    finally:
+        world.close()
+
+
+def _by_calls(world: BulletWorld, step: Step) -> Pose:
+    world.step(step)
+    return world.pose()
+
+
+def _by_loop(world: BulletWorld, step: Step) -> Pose:
+    return Pose(*once(*world.lent(), (*step[:-2], int(step.grip), step.side)))
+
+
 ENGINE = Engine(
     name="pybullet",
     title="PyBullet",
@@ -185,15 +245,13 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=BulletSettings(),
             step_s=LIBRARY_STEP_S,
             step_source="the library's own time step, 1/240 s",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -213,4 +271,5 @@ ENGINE = Engine(
     rules=RULES,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",
+    compiles=True,
 )

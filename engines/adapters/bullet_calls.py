@@ -7,7 +7,7 @@ from typing import Any
 
 from engines.adapters.bullet_settings import SOLVERS, BulletSettings
 from engines.parts.settings import given
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
+from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
 
 KEPT_GAP = 4.0
@@ -32,23 +32,28 @@ class Call:
 
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
-    block, threshold = scene.block, s.breaking_threshold
-    if s.gap_by_step:
-        threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * dt_s) ** 2
     wanted = {
         "numSolverIterations": s.iterations,
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,
         "contactSlop": s.contact_slop,
-        "contactBreakingThreshold": threshold,
+        "contactBreakingThreshold": kept_gap(scene, s, dt_s),
         "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),
         "warmStartingFactor": s.warm_starting,
         "useSplitImpulse": s.split_impulse,
         "enableConeFriction": s.cone_friction,
         "enableSAT": s.separating_axis,
+        "restitutionVelocityThreshold": s.restitution_threshold,
     }
     return Call("setPhysicsEngineParameter", given(wanted))
+
+
+def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the gap, over a body's size, up to which a contact is kept."""
+    if not s.gap_by_step:
+        return s.breaking_threshold
+    return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
 
 
 def base_shape(scene: Scene, s: BulletSettings) -> Call:
@@ -76,6 +81,11 @@ def block_shape(scene: Scene, s: BulletSettings) -> Call:
 
 def _shape(kind: str, **shape: Any) -> Call:
     return Call("createCollisionShape", {"shapeType": Constant(kind), **shape})
+
+
+def base_place(scene: Scene, s: BulletSettings) -> Point:
+    """Return where the centre of the base is [m]."""
+    return (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
 
 
 def base_body(shape: Any, place: tuple[float, ...]) -> Call:
@@ -108,6 +118,7 @@ def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
         "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
         "linearDamping": s.damping,
         "angularDamping": s.damping,
+        "restitution": s.restitution,
     }
     if s.contact_stiffness is not None and s.contact_damping is not None:
         wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
@@ -117,7 +128,9 @@ def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
 
 def base_call(s: BulletSettings, body: Any) -> Call:
     """Return the call that sets the base's dynamics."""
-    return _change(s, body, {"lateralFriction": 1.0})
+    return _change(
+        s, body, {"lateralFriction": 1.0, **({} if s.restitution is None else {"restitution": 1.0})}
+    )
 
 
 def _change(s: BulletSettings, body: Any, wanted: Mapping[str, Any]) -> Call:

@@ -6,6 +6,10 @@ A reset gives a client a new world with a solver and settings of its own; what i
 from typing import Any
 
 from engines.adapters.bullet_settings import LIBRARY_BREAKING_THRESHOLD, LIBRARY_STEP_S
+from engines.parts.quiet import silence
+
+RENDERER = "tinyRendererPlugin"
+"""The library's name of what draws, or would."""
 
 idle: list[int] = []
 """Clients of this process whose run has ended."""
@@ -13,7 +17,17 @@ idle: list[int] = []
 
 def taken(p: Any) -> int:
     """Return a client of the library `p` that no run uses, as good as new."""
-    return idle.pop() if idle else int(p.connect(p.DIRECT))
+    return idle.pop() if idle else connected(p)
+
+
+def connected(p: Any) -> int:
+    """Connect a client without a renderer, whose meshes take longer to make than the bodies."""
+    client = int(p.connect(p.DIRECT))
+    with silence():  # a build that has none says so past Python
+        renderer = p.loadPlugin(RENDERER, physicsClientId=client)
+    if renderer >= 0:
+        p.unloadPlugin(renderer, physicsClientId=client)
+    return client
 
 
 def given_back(p: Any, client: int) -> None:

@@ -9,6 +9,7 @@ from engines.adapters.bullet_calls import (
     Constant,
     base_body,
     base_call,
+    base_place,
     base_shape,
     block_body,
     block_call,
@@ -25,7 +26,7 @@ FLOOR, SHAPE, BASE, BLOCK = map(Constant, ("floor", "shape", "base", "block"))
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of PyBullet; see `engines.script`."""
-    ground = (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
+    ground = base_place(scene, s)
     engine, bodies = engine_call(scene, s, dt_s), (block_call(scene, s, BLOCK), base_call(s, BASE))
     shape, body = block_shape(scene, s), block_body(scene, s, SHAPE)
     settings = (engine, shape, body, *bodies)

@@ -7,8 +7,10 @@ left where they are.
 
 from typing import Any
 
+from engines.adapters.dart_drop import BOUNCING
 from engines.adapters.dart_script import script
 from engines.adapters.dart_settings import (
+    DETECTORS,
     FACTORS,
     IN_PLANE,
     IN_SPACE,
@@ -75,7 +77,10 @@ class DartWorld:
 
     def close(self) -> None:
         """Release the engine's memory."""
-        self._world.removeAllSkeletons()
+        world = self._world
+        # releases before 6.20 cannot answer removeAllSkeletons
+        for number in reversed(range(world.getNumSkeletons())):
+            world.removeSkeleton(world.getSkeleton(number))
 
     def _lower(self, pivot: float) -> None:
         """Keep the corner about which the block turns, or both at rest, in contact."""
@@ -101,15 +106,16 @@ class DartWorld:
 
     def _set_world(self) -> None:
         s, world, dart = self._s, self._world, self._dart
+        solver = world.getConstraintSolver()
         if s.collision is not None:
-            kind = getattr(dart.simulation.CollisionDetectorType, s.collision)
-            world.setCollisionDetector(kind)
-        if s.sleeping is not None:
+            solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
+        # what a release does not have is off in it, and reads so
+        if s.sleeping is not None and hasattr(world, "setDeactivationOptions"):
             options = world.getDeactivationOptions()
             options.mEnabled = s.sleeping
             world.setDeactivationOptions(options)
-        if s.split_impulse is not None:
-            world.getConstraintSolver().setSplitImpulseEnabled(s.split_impulse)
+        if s.split_impulse is not None and hasattr(solver, "setSplitImpulseEnabled"):
+            solver.setSplitImpulseEnabled(s.split_impulse)
 
     def _add_base(self, scene: Scene) -> tuple[Any, Any]:
         dart, skeleton = self._dart, self._dart.dynamics.Skeleton("base")
@@ -119,7 +125,9 @@ class DartWorld:
             slide, body = skeleton.createPrismaticJointAndBodyNodePair(body)
             slide.setAxis((0.0, 1.0, 0.0))
         x, y, z = (2.0 * size * self._unit for size in floor_half_size(scene))
-        self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
+        top = self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
+        if self._s.restitution is not None:
+            top.getDynamicsAspect().setRestitutionCoeff(1.0)
         self._world.addSkeleton(skeleton)
         return joint, body
 
@@ -157,6 +165,8 @@ class DartWorld:
         node.createCollisionAspect()
         # of a pair the library takes the smaller one
         node.createDynamicsAspect().setFrictionCoeff(self._s.friction)
+        if self._s.restitution is not None:
+            node.getDynamicsAspect().setRestitutionCoeff(self._s.restitution)
         node.setRelativeTranslation(at)
         return node
 
@@ -170,7 +180,9 @@ class DartWorld:
             joint.setVelocity(index, speed)
 
     def _read_back(self, scene: Scene) -> str:
-        s, solver = self._s, self._world.getConstraintSolver()
+        s, world, solver = self._s, self._world, self._world.getConstraintSolver()
+        sleeps = hasattr(world, "getDeactivationOptions")
+        splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self._floor.getShapeNode(0), self._block.getShapeNode(0)]
         found = [node.getDynamicsAspect().getFrictionCoeff() for node in shapes]
         moment = scene.inertia[1] * self._unit**2 if s.exact_inertia else None
@@ -179,8 +191,8 @@ class DartWorld:
                 "mass": (scene.mass, self._block.getMass()),
                 "moment": (moment, self._block.getInertia().getMoment()[1, 1]),
                 "friction": (s.friction, min(found)),
-                "split impulse": (s.split_impulse, solver.isSplitImpulseEnabled()),
-                "sleeping": (s.sleeping, self._world.getDeactivationOptions().mEnabled),
+                "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
+                "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
             }
         )
 
@@ -195,20 +207,17 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=DartSettings(),
             step_s=1e-3,
             step_source="the world's own time step, 0.001 s",
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=5e-4,
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -221,6 +230,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     own_step="dartpy:simulation.World.step",

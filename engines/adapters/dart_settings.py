@@ -15,8 +15,13 @@ from engines.factors import (
 )
 from engines.parts.settings import check, setting
 
-DETECTORS = ("DART", "FCL", "BULLET", "ODE")
-"""The library's collision detectors, by its own names."""
+DETECTORS = {
+    "DART": "DARTCollisionDetector",
+    "FCL": "FCLCollisionDetector",
+    "BULLET": "BulletCollisionDetector",
+    "ODE": "OdeCollisionDetector",
+}
+"""The library's names of its collision detectors -> their classes, which every release has."""
 
 IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
 """Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
@@ -60,6 +65,8 @@ class DartSettings:
         impact and the first one after it.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float or None
+        Coefficient of the block, on a base whose own is 1: the library takes their product.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -67,7 +74,7 @@ class DartSettings:
     aside: bool = False
     friction: float = 1.0
     exact_inertia: bool = True
-    collision: str | None = setting(names=DETECTORS)
+    collision: str | None = setting(names=tuple(DETECTORS))
     split_impulse: bool | None = None
     sleeping: bool | None = None
     unit: float = setting(1.0, above=0.0)
@@ -75,6 +82,7 @@ class DartSettings:
     margin: float | None = setting(above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float | None = setting(least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

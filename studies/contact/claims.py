@@ -134,7 +134,8 @@ def findings(lines: pd.DataFrame) -> str:
     sentences = [
         sentence for engine in lines["engine"].unique() for sentence in of_engine(lines, engine)
     ]
-    sentences += [f"{FRAMES}: {frames(lines)}."] if frames(lines) else []
+    both = [f"{engine} {still} and {moved}" for engine, still, moved in frames(lines)]
+    sentences += [f"{FRAMES}: {'; '.join(both)}."] if both else []
     return "\n".join(sentences)
 
 
@@ -199,16 +200,16 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
     return found
 
 
-def frames(lines: pd.DataFrame) -> str:
-    """Say of each engine what its defaults err by in either frame, at the library's own step."""
-    words = []
+def frames(lines: pd.DataFrame) -> list[tuple[str, str, str]]:
+    """Return of each engine what its defaults err by in either frame, at the library's own step."""
+    found = []
     for engine in lines["engine"].unique():
         still, moved = (
             variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (OWN_STEP, MOVED)
         )
         if still is not None and moved is not None:
-            words.append(f"{engine} {error_words(still)} and {error_words(moved)}")
-    return "; ".join(words)
+            found.append((str(engine), error_words(still), error_words(moved)))
+    return found
 
 
 def variant_of(

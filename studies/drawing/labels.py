@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
 
 from analytic.motion import FloatArray
@@ -87,6 +88,8 @@ PLACES = (
     *((28, 0, "left", "center"), (24, -12, "left", "top"), (-24, -12, "right", "top")),
 )
 """Where a name may stand from its point [points], and how it is aligned there; best first."""
+FAR = 10
+"""Distance from its point [points] from which on a name is led to it by a line."""
 LETTER = 0.62
 """Width of a letter over the size of letters, about."""
 
@@ -121,8 +124,11 @@ def around(axes: Axes, names: Sequence[Name], taken: FloatArray, size: float = 8
         best = int(np.argmin(costs))
         boxes.append(found[best])
         x, y, across, along = PLACES[best]
+        line = {"arrowstyle": "-", "color": name.colour, "linewidth": 0.5, "shrinkB": 3.0}
         axes.annotate(name.text, (name.x, name.y), (x, y), textcoords="offset points",
-                      ha=across, va=along, color=name.colour, fontsize=size)  # fmt: skip
+                      ha=across, va=along, color=name.colour, fontsize=size,
+                      arrowprops=line if max(abs(x), abs(y)) >= FAR else None,
+                      path_effects=[withStroke(linewidth=2.5, foreground="white")])  # fmt: skip
 
 
 def _box(

@@ -8,7 +8,7 @@ from engines import ENGINES
 LOWEST = 1e-16
 """Errors below are drawn here, on the floor of double precision."""
 
-Fill = Literal["none", "left", "full"]
+Fill = Literal["none", "left", "bottom", "full"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +60,17 @@ ENGINE_COLOURS = (
     *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
 )
 ENGINE_MARKERS = "o^sDvPXp"
-FILLS: dict[str, Fill] = {"naive": "full", "fixed": "left"}
+FILLS: dict[str, Fill] = {"naive": "full", "fixed": "left", "error-controlled": "bottom"}
 """Preset -> how much of an engine's marker is filled; open is the best there is."""
-PRESET_LINES = {"naive": ":", "fixed": "--"}
+PRESET_LINES = {"naive": ":", "fixed": "--", "error-controlled": "-."}
 """Preset -> line, where an engine is drawn as one; the best there is has a full line."""
+PRESET_COLOURS = {
+    "naive": "#D55E00",
+    "fixed": "#0072B2",
+    "error-controlled": "#CC79A7",
+    "landing": "#009E73",
+}
+"""Preset -> colour where presets are compared, and the engines are named."""
 
 OTHER = Style("#777777", marker="D")
 """Of a source without a style of its own."""
@@ -77,6 +84,12 @@ def engine_style(engine: str, preset: str) -> Style:
         marker=ENGINE_MARKERS[place % len(ENGINE_MARKERS)],
         fill=FILLS.get(preset, "none"),
     )
+
+
+def preset_style(preset: str) -> Style:
+    """Return how the engines with a preset are drawn where they are named beside their points."""
+    colour = PRESET_COLOURS.get(preset, OTHER.colour)
+    return Style(colour, marker="o", fill=FILLS.get(preset, "none"))
 
 
 def style_of(source: str) -> Style:

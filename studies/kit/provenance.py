@@ -16,6 +16,8 @@ from studies.kit.drafts import draft
 from studies.kit.fingerprint import ROOT, fingerprint
 from studies.kit.journal import FolderError
 
+NOT_INSTALLED = "not installed"
+"""What stands for the version of a package that is not there."""
 NUMERICAL_PACKAGES = ("numpy", "scipy", "numba")
 """Packages that a number may depend on."""
 TOOLS = ("pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
@@ -23,11 +25,11 @@ TOOLS = ("pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
 
 
 def version_of(package: str) -> str:
-    """Return the version of an installed package, "not installed" without it."""
+    """Return the version of an installed package, `NOT_INSTALLED` without it."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:
-        return "not installed"
+        return NOT_INSTALLED
 
 
 @cache

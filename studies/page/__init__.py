@@ -13,7 +13,7 @@ was interrupted goes on where it stopped when the same command is given again.""
 README = Study(
     name="readme",
     module="studies.page.readme",
-    help="Write README.md and the page of the published results from their tables.",
+    help="Write README.md and the pages of the published results from their tables.",
 )
 REDRAW = Study(
     name="redraw",

@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -12,20 +13,23 @@ from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
+from studies.kit.provenance import NOT_INSTALLED
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
 from studies.measures.differences import scientific
-from studies.measures.presets import in_words, preset_of
-from studies.measures.words import capital, duration, listed, out_of, part
+from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.words import capital, duration, listed, out_of, part, per_cent
 from studies.page import hero
 from studies.page.markdown import table
 from studies.precision.choices import NEAR, TYPICAL, Choice, choices
-from studies.sweep.claims import preset_table, whole
+from studies.sweep.claims import linearized, preset_table, whole
 
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
 
+MANY = 15
+"""Statements of a chapter up to which they are shown; more are folded."""
 NINTH = Path("tests", "plugin", "my_engine.py")
 """An engine of another package, in few lines."""
 
@@ -61,8 +65,15 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
             for path in sorted(folder.glob("*.png"))
         ),
         texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
-        statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
+        statements=told_of(folder),
     )
+
+
+def told_of(folder: Path) -> tuple[Finding, ...]:
+    """Return the statements that a study tested; what it could not test is no finding."""
+    if not (folder / TABLE).is_file():
+        return ()
+    return tuple(item for item in read_findings(folder) if item.holds is not None)
 
 
 def chapters(published: Path) -> list[Told]:
@@ -87,8 +98,43 @@ def presets(published: Path) -> pd.DataFrame:
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
+def shared(lines: pd.DataFrame) -> list[str]:
+    """Return the presets that several engines have, in order; all, where there is none such."""
+    counts = lines["preset"].value_counts()
+    return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
+
+
+def presets_short(lines: pd.DataFrame) -> str:
+    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
+
+    A preset of one engine alone has no column: it is named in its cell in the last.
+    """
+    names = shared(lines)
+    heads = [f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names]
+    rows = []
+    for engine, mine in lines.groupby("engine", sort=False):
+        cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
+        alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
+        shown = [cells.get(name, "–") for name in names]
+        if alone and shown[-1] == "–":
+            shown[-1] = "<br>".join(alone)
+        rows.append((f"**{ENGINES[str(engine)].title}**", *shown))
+    return table(("", *heads), rows)
+
+
+def _short(row: "pd.Series[Any]") -> str:
+    """Return a line of the presets in a cell: outcomes, errors of the peak, time."""
+    lost = int(row["cases"] - row["right"])
+    parts = (
+        f"**{lost} wrong**" if lost else "none wrong",
+        f"{part(row['median'])}, max {part(row['max'])}",
+        duration(1e-3 * row["ms"]),
+    )
+    return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
+
+
 def presets_text(lines: pd.DataFrame) -> str:
-    """Return the presets as a table of Markdown."""
+    """Return the presets as a table of Markdown: a row for each, with all that is known."""
     heads = ("engine", "how it is used", "outcomes right", "median", "p90", "max", "a case")
     rows = [
         (
@@ -103,8 +149,34 @@ def presets_text(lines: pd.DataFrame) -> str:
     return table(heads, rows)
 
 
+def models(published: Path) -> dict[str, int]:
+    """Return how many outcomes of the paper's cases each linearization gets wrong."""
+    lines = linearized(whole(published / "sweep"))
+    return {str(row["source"]): int(row["cases"] - row["agree"]) for _, row in lines.iterrows()}
+
+
+def choices_short(lines: pd.DataFrame) -> str:
+    """Return the cheapest setting for each accuracy as a table of Markdown.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of work-precision.csv.
+    """
+    heads = ("largest error", "typical cases", "a case", "also near overturning", "a case")
+    rows = [
+        (per_cent(chosen.target), *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
+        for chosen in choices(lines)
+    ]
+    return table(heads, rows)
+
+
+def _cheapest(chosen: Choice | None) -> tuple[str, str]:
+    return (chosen.setting, duration(chosen.wall_s)) if chosen else ("none tried", "–")
+
+
 def choices_text(lines: pd.DataFrame) -> str:
-    """Return which setting for which accuracy as a table of Markdown.
+    """Return which setting for which accuracy as a table of Markdown, with what it errs by.
 
     Parameters
     ----------
@@ -116,15 +188,7 @@ def choices_text(lines: pd.DataFrame) -> str:
         *("near overturning", "cheapest on all cases", "a case"),
     )
     rows = [
-        (
-            f"{chosen.target:g}",
-            *_typical(chosen.typical),
-            *(
-                (chosen.everywhere.setting, duration(chosen.everywhere.wall_s))
-                if chosen.everywhere
-                else ("none tried", "-")
-            ),
-        )
+        (per_cent(chosen.target), *_typical(chosen.typical), *_cheapest(chosen.everywhere))
         for chosen in choices(lines)
     ]
     return table(heads, rows)
@@ -166,6 +230,7 @@ def counts(published: Path) -> dict[str, int]:
     each = lines.groupby("set")["cases"].max()
     return {
         "paper": int(presets(published)["cases"].max()),
+        "engines": presets(published)["engine"].nunique(),
         "typical": int(each[TYPICAL]),
         "near": int(each[NEAR]),
     }
@@ -175,8 +240,9 @@ def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
     record = json.loads((published / "sweep" / "provenance.json").read_text(encoding="utf-8"))
     machine = record["machine"]
+    used = [each for each in record["engines"].items() if each[1] != NOT_INSTALLED]
     return {
-        "engines": listed([f"{name} {version}" for name, version in record["engines"].items()]),
+        "engines": listed([f"{name} {version}" for name, version in used]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
         "date": record["runs"][-1]["start"][:10],
         "sweep": f"{record['runs'][-1]['duration_s']:.0f} s",
@@ -226,7 +292,8 @@ def rules_of_engines(published: Path) -> str:
 
 def frames_of_engines(published: Path) -> str:
     """Return what the defaults err by where a body force moves the block, and where the base."""
-    return frames(_variants(published))
+    rows = [(ENGINES[engine].title, *errors) for engine, *errors in frames(_variants(published))]
+    return table(("engine", "body force", "moving base"), rows) if rows else ""
 
 
 def _variants(published: Path) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""README.md and the page of the published results, written from the published tables."""
+"""README.md and the pages of the published results, written from the published tables."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ PUBLISHED = Path("studies", "published")
 
 
 def command(*, root: Path = Path()) -> int:
-    """Write README.md and studies/published/README.md, with their pictures, from the tables.
+    """Write README.md and the pages in studies/published, with their pictures, from the tables.
 
     Every number in them is computed from studies/published, and so are words such as "all".
 
@@ -51,12 +51,18 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    lines = facts.presets(published)
+    steps = pd.read_csv(published / "precision" / "work-precision.csv")
     known = {
+        "many": facts.MANY,
         "chapters": facts.chapters(published),
-        "verdict": verdict(facts.presets(published)),
+        "verdict": verdict(lines),
         "missing": facts.missing(published),
-        "presets": facts.presets_text(facts.presets(published)),
-        "choices": facts.choices_text(pd.read_csv(published / "precision" / "work-precision.csv")),
+        "presets": facts.presets_short(lines),
+        "presets_all": facts.presets_text(lines),
+        "models": facts.models(published),
+        "choices": facts.choices_short(steps),
+        "choices_all": facts.choices_text(steps),
         "counts": facts.counts(published),
         "hero": facts.hero_lines(published),
         "made": facts.made(published),
@@ -73,5 +79,6 @@ def pages(root: Path) -> dict[Path, str]:
         for path, name in (
             (root / "README.md", "readme.md.jinja"),
             (published / "README.md", "published.md.jinja"),
+            (published / "engines.md", "engines.md.jinja"),
         )
     }

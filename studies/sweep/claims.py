@@ -28,8 +28,14 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
 
 
+NAMED = 2
+"""Engines up to which a sentence names each; of more it says the range."""
+
+
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
+    if len(lines) > NAMED:
+        return capital(_range(preset, lines))
     names = listed([source.partition(":")[0] for source in lines["source"]])
     right = each_out_of(list(lines["agree"]), list(lines["cases"]))
     verb = "get" if len(lines) > 1 else "gets"
@@ -37,6 +43,23 @@ def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     return capital(
         f"{in_words(preset)}, {names} {verb} {right} outcomes right, and peaks wrong by "
         f"{alike(medians)} in the median and {alike(largest)} at most."
+    )
+
+
+def _range(preset: str, lines: pd.DataFrame) -> str:
+    """Say between what the engines lie with a preset, and which is the worst."""
+    by_count, cases = lines.sort_values("agree").iloc[[0, -1]], float(lines["cases"].iloc[0])
+    few, most = by_count["agree"]
+    fewest, worst = (
+        str(found["source"].iloc[0]).partition(":")[0]
+        for found in (by_count, lines.sort_values("max_error", ascending=False))
+    )
+    right = out_of(few, cases) if few == most else f"{few} ({fewest}) to {out_of(most, cases)}"
+    medians = dict.fromkeys([part(lines["median_error"].min()), part(lines["median_error"].max())])
+    return (
+        f"{in_words(preset)}, {len(lines)} engines get {right} outcomes right, and peaks wrong by "
+        f"{' to '.join(medians)} in the median and at most by {part(lines['max_error'].max())} "
+        f"({worst})."
     )
 
 
@@ -68,9 +91,13 @@ def first_claim(lines: pd.DataFrame) -> str:
 
 
 def _short(preset: str, lines: pd.DataFrame) -> str:
-    wrong = each_out_of(list(lines["cases"] - lines["agree"]), list(lines["cases"]))
-    largest = alike([part(error) for error in lines["max_error"]])
-    return f"{in_words(preset)} {wrong} outcomes are wrong, and peaks by up to {largest}"
+    if len(lines) > NAMED:
+        lost = out_of((lines["cases"] - lines["agree"]).sum(), lines["cases"].sum())
+        largest = part(lines["max_error"].max())
+    else:
+        lost = each_out_of(list(lines["cases"] - lines["agree"]), list(lines["cases"]))
+        largest = alike([part(error) for error in lines["max_error"]])
+    return f"{in_words(preset)} {lost} outcomes are wrong, and peaks by up to {largest}"
 
 
 def linearized(lines: pd.DataFrame) -> pd.DataFrame:
@@ -125,9 +152,7 @@ def verdict(table: pd.DataFrame) -> str:
 
 def _of_preset(name: str, lines: pd.DataFrame) -> str:
     lost = out_of((lines["cases"] - lines["right"]).sum(), lines["cases"].sum())
-    medians = dict.fromkeys([part(lines["median"].min()), part(lines["median"].max())])
     return capital(
-        f"{in_words(name)} {len(lines)} engines miss in {lost} cases whether the block falls, "
-        f"and its largest rotation by {' to '.join(medians)} in the median, "
-        f"{part(lines['max'].max())} at worst."
+        f"{in_words(name)}, {len(lines)} engines are wrong about whether the block falls in {lost} "
+        f"cases, and about how far it rocks by up to {part(lines['max'].max())}."
     )

@@ -71,7 +71,8 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
         axes.plot(failed, np.full(len(failed), 0.02), "*", color=style.colour)
     top = TOP + ROW * len(sources)
     axes.axhspan(TOP, top, color="#eeeeee", zorder=0)
-    axes.text(4.05, TOP + 0.02, OVERTURNED, ha="right", fontsize=8, color="#555555")
+    axes.text(4.05, TOP - 0.02, "above: overturned", ha="right", va="top", fontsize=8,
+              color="#555555")  # fmt: skip
     axes.set(xlim=(0.0, 4.1), ylim=(0.0, top), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
     axes.axhline(1.0, color="#999999", linewidth=0.6, zorder=1)
     axes.grid(alpha=0.25)

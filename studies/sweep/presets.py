@@ -1,14 +1,17 @@
 """The presets of the engines beside each other: all cases at once, and along the frequency."""
 
+import math
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from engines import ENGINES
 from studies.drawing.labels import Name, around
-from studies.drawing.styles import Style, style_of
+from studies.drawing.styles import preset_style, style_of
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.words import capital
+from studies.measures.words import capital, per_cent
 
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors along the frequency."""
@@ -24,37 +27,42 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     table : DataFrame
         From `studies.sweep.claims.preset_table`.
     """
-    drawing = Figure(figsize=(8.6, 5.4), layout="constrained")
+    drawing = Figure(figsize=(8.6, 5.6), layout="constrained")
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log")
     names, taken = [], []
     for _, line in table.iterrows():
-        style = style_of(str(line["source"]))
+        style = preset_style(str(line["preset"]))
         ends = [(line["ms"], line["median"]), (line["ms"], line["max"])]
-        axes.plot(*zip(*ends, strict=True), color=style.colour, linewidth=1.6, alpha=0.55)
+        axes.plot(*zip(*ends, strict=True), color=style.colour, linewidth=1.6, alpha=0.45)
         axes.plot(*ends[1], **style.points(7.0))
         axes.plot(*ends[0], "_", color=style.colour, markersize=8)
         lost = int(line["cases"] - line["right"])
-        words = f"{line['engine']}, {lost} wrong" if lost else str(line["engine"])
+        title = ENGINES[str(line["engine"])].title
+        words = f"{title}, {lost} wrong" if lost else title
         names.append(Name(words, *ends[1], style.colour))
         taken += [(x, y * (ends[1][1] / y) ** (k / 8)) for x, y in ends[:1] for k in range(9)]
         taken += [ends[1]] * 8  # a name rather crosses a bar than a point
-    axes.margins(x=0.12, y=0.12)
+    axes.margins(x=0.12, y=0.08)
     axes.set_xlabel("run time of a case  [ms]")
-    axes.set_ylabel("relative error of the peak, median to largest  [–]")
-    axes.set_title(f"What each engine errs by on {int(table['cases'].max())} cases, and how many "
-                   "outcomes it gets wrong", fontsize=11)  # fmt: skip
+    axes.set_ylabel("error of the largest rotation: median (bar) to largest (dot)")
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter(_mark)
+    axes.set_title(f"{int(table['cases'].max())} cases: errors, and outcomes that are wrong, "
+                   "by engine and by how it is used", fontsize=11)  # fmt: skip
     axes.grid(alpha=0.25)
     around(axes, names, pd.DataFrame(taken).to_numpy(float), 8.5)
-    shown = [style_of(str(table.loc[table["preset"] == name, "source"].iloc[0]))
-             for name in in_order(table["preset"])]  # fmt: skip
-    grey = [Style("#555555", marker="o", fill=style.fill) for style in shown]
     handles = [
-        Line2D([], [], **style.points(7.0), label=in_words(name))
-        for style, name in zip(grey, in_order(table["preset"]), strict=True)
+        Line2D([], [], **preset_style(name).points(7.0), label=in_words(name))
+        for name in in_order(table["preset"])
     ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="outside upper center", ncols=2, frameon=False, fontsize=9)
     return drawing
+
+
+def _mark(value: float, _: float) -> str:
+    """Return a relative error as a mark along an axis: in per cent, as a power of ten below."""
+    return per_cent(value) if value >= 1e-4 else f"$10^{{{round(math.log10(value))}}}$"
 
 
 def draw_by_preset(rows: pd.DataFrame) -> Figure:
@@ -80,10 +88,12 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         axes.set_title(f"H/B = {aspect:g}", fontsize=10)
     for axes in grid[-1]:
         axes.set_xlabel("frequency  ω/p  [–]")
-    title = "errors of the peak; in the grey band outcomes that are wrong"
+    first, *others = (f"B = {width_m:g} m" for width_m in sorted(rows["width_m"].unique()))
+    pale = f" (pale: {', '.join(others)})" if others else ""
+    title = f"errors of the peak, {first}{pale}; in the grey band outcomes that are wrong"
     drawing.suptitle(f"Figure {rows['figure'].iloc[0]}: {title}", fontsize=11)
     handles = [Line2D([], [], **style_of(name).points(5.0), label=name) for name in engines]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False, fontsize=9)
     return drawing
 
 

@@ -34,6 +34,10 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
         axes.set_title(f"{engine} by release", fontsize=10)
     for axes in panels[len(engines) :]:
         axes.set_axis_off()
+    key = (
+        f"line: median, points: largest error; grey line: an answer moved by more than {CHANGED:g}"
+    )
+    drawing.suptitle(key, fontsize=9, color="#555555")
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("relative error of the peak  [–]")
     for axes, mine in zip(panels, names, strict=False):
@@ -67,14 +71,5 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> list[Name]
         shown = median.dropna()
         if len(shown):
             names.append(Name(preset, place[str(shown.index[-1])], shown.iloc[-1], style.colour))
-    axes.text(
-        0.02,
-        0.97,
-        f"line: median, points: largest; | moved by more than {CHANGED:g}",
-        transform=axes.transAxes,
-        fontsize=7,
-        color="#555555",
-        va="top",
-    )
     axes.grid(alpha=0.25)
     return names

@@ -90,6 +90,8 @@ def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -
 class RoundedWorld(BulletWorld):
     """PyBullet, told in the numbers of single precision."""
 
+    drive = None
+
     def pose(self) -> Pose:
         return Pose(*np.array(super().pose(), dtype=np.float32).tolist())
 

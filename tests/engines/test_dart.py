@@ -76,3 +76,19 @@ def test_space_begins_as_the_plane_does() -> None:
         for settings in ({}, {"planar": False, "aside": False})
     )
     assert space == pytest.approx(plane, rel=1e-5)
+
+
+def test_a_release_without_an_option_has_it_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that cannot split impulses does as one that does not, and not as one that does."""
+    import dartpy
+
+    as_it_is = peak(preset="fixed")
+    solver = dartpy.constraint.ConstraintSolver
+    for name in ("isSplitImpulseEnabled", "setSplitImpulseEnabled"):
+        monkeypatch.delattr(solver, name)
+    for name in ("getDeactivationOptions", "setDeactivationOptions"):
+        monkeypatch.delattr(dartpy.simulation.World, name)
+    assert peak(preset="fixed") == as_it_is
+    asked = run("dart", scene(MOTION, preset="fixed", settings={"split_impulse": True}))
+    assert asked.outcome is Outcome.FAILED
+    assert "split impulse was set to True but reads False" in asked.message

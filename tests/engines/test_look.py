@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from collections import OrderedDict
 from dataclasses import asdict
 from types import SimpleNamespace
 
@@ -13,12 +12,13 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, run
-from engines.adapters import mujoco_loop, mujoco_models
+from engines.adapters import bullet_clients, mujoco_loop, mujoco_models
 from engines.drive import LOOK_AROUND, build
 from engines.look import roomy
+from studies.cases.motions import noise
 
 TIMES = [0.02 * i for i in range(80)]
-SCENES = {
+OF_ALL = {
     "landing": {},
     "history": {"times": TIMES, "duration": 2.0},
     "released": {"start": (0.5 * BLOCK.alpha, 0.3), "accuracy": "loose"},
@@ -27,12 +27,36 @@ SCENES = {
     "moving base": {"frame": "world", "accuracy": "loose"},
     "box": {"settings": {"geometry": "box"}, "accuracy": "loose"},
     "free body": {"settings": {"planar": False}, "accuracy": "loose"},
-    "no reflection": {"settings": {"reflection": False}, "accuracy": "loose"},
-    "no margin": {"settings": {"carry": None, "preload": False}, "accuracy": "loose"},
-    "Runge-Kutta": {"settings": {"integrator": "RK4"}, "accuracy": "loose"},
+    "record": {"motion": noise(1).scaled_to(6.0), "accuracy": "loose"},
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
 }
+SCENES = {
+    "mujoco": {
+        **OF_ALL,
+        "no reflection": {"settings": {"reflection": False}, "accuracy": "loose"},
+        "no margin": {"settings": {"carry": None, "preload": False}, "accuracy": "loose"},
+        "Runge-Kutta": {"settings": {"integrator": "RK4"}, "accuracy": "loose"},
+    },
+    "pybullet": {
+        **OF_ALL,
+        "base without velocity": {"settings": {"base_velocity": False}, "frame": "world"},
+        "same in all phases": {"settings": {"by_phase": False}, "accuracy": "loose"},
+        "same gap": {"settings": {"gap_by_step": False}, "accuracy": "loose"},
+        "naive on a moving base": {"preset": "naive", "frame": "world"},
+        "hull on a box": {
+            "preset": "fixed",
+            "settings": {"geometry": "hull", "base_geometry": "box"},
+            "step": 5e-3,
+        },
+    },
+}
+EACH = [
+    pytest.param(engine, options, id=f"{engine}, {name}")
+    for engine, scenes in SCENES.items()
+    if engine in HERE
+    for name, options in scenes.items()
+]
 
 
 def all_but_times(response: Response) -> str:
@@ -43,17 +67,27 @@ def all_but_times(response: Response) -> str:
     return repr({**found, "wall_s": 0.0, "setup_s": 0.0}) + repr(parts)
 
 
-@pytest.mark.parametrize("options", SCENES.values(), ids=SCENES)
-def test_a_compiled_loop_answers_as_python_does(options: dict[str, object]) -> None:
-    assert mujoco_loop.reachable()
+def shaken(**options: object) -> Scene:
+    """Return a scene with these options, shaken by two half cycles."""
+    return scene(**{"motion": pulse(1.3, 3.0, 2), **options})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("engine", "options"), EACH)
+def test_a_compiled_loop_answers_as_python_does(engine: str, options: dict[str, object]) -> None:
+    world = build(ENGINES[engine], shaken(**options))
+    world.close()
+    assert world.drive is not None  # type: ignore[attr-defined]
     at_once, one_by_one = (
-        run("mujoco", scene(pulse(1.3, 3.0, 2), compiled=compiled, **options))
-        for compiled in (True, False)
+        run(engine, shaken(compiled=compiled, **options)) for compiled in (True, False)
     )
     assert all_but_times(at_once) == all_but_times(one_by_one)
 
 
-@pytest.mark.parametrize("engine", [name for name in HERE if name in ("pybullet", "mujoco")])
+def test_what_is_compiled_is_so_ahead() -> None:
+    assert all(ENGINES[engine].compiles for engine in SCENES)
+
+
+@pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
 def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
     """There is one source: numba switched off, the same functions are Python."""
     code = (
@@ -81,7 +115,7 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
 def test_memory_that_is_not_where_it_should_be_is_left_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked = scene(pulse(1.3, 3.0, 2), accuracy="loose")
+    asked = shaken(accuracy="loose")
     compiled = run("mujoco", asked)
     found = mujoco_loop.layout("mjData")
 
@@ -118,14 +152,18 @@ def test_a_table_with_room_keeps_its_rows() -> None:
     assert (table[:2] == rows).all()
 
 
-def test_a_model_that_was_used_is_as_good_as_new(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever it was used for before, in whichever order, after a failure, too."""
-    monkeypatch.setattr(mujoco_models, "idle", OrderedDict())
+@pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
+def test_what_was_used_is_as_good_as_new(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model or a client, whatever it was used for before, in whichever order, after a failure."""
+    kept, scenes = {"mujoco": mujoco_models, "pybullet": bullet_clients}[engine], SCENES[engine]
+    monkeypatch.setattr(kept, "idle", type(kept.idle)())
     fresh = {}
-    for name, options in SCENES.items():
-        mujoco_models.idle.clear()
-        fresh[name] = all_but_times(run("mujoco", scene(pulse(1.3, 3.0, 2), **options)))
-    for name in np.random.default_rng(1).choice(list(SCENES), 40).tolist():
-        again = run("mujoco", scene(pulse(1.3, 3.0, 2), **SCENES[name]))
+    for name, options in scenes.items():
+        kept.idle.clear()
+        fresh[name] = all_but_times(run(engine, shaken(**options)))
+    generator = np.random.default_rng(1)
+    for name in generator.choice(list(scenes), 40).tolist():
+        compiled = bool(generator.integers(4))
+        again = run(engine, shaken(compiled=compiled, **scenes[name]))
         assert all_but_times(again) == fresh[name], name
-    assert 0 < len(mujoco_models.idle) <= mujoco_models.MOST_IDLE
+    assert 0 < len(kept.idle) <= mujoco_models.MOST_IDLE

@@ -18,7 +18,10 @@ ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / readme.PUBLISHED
 
 
-@pytest.mark.parametrize("name", ["README.md", "studies/published/README.md"])
+PAGES = ("README.md", "studies/published/README.md", "studies/published/engines.md")
+
+
+@pytest.mark.parametrize("name", PAGES)
 def test_a_page_says_what_the_published_tables_say(name):
     assert readme.pages(ROOT)[ROOT / name] == (ROOT / name).read_text(encoding="utf-8"), (
         "run `rocking readme`"
@@ -31,16 +34,50 @@ def test_the_readme_follows_its_tables(tmp_path):
     shutil.copytree(PUBLISHED, copy)
     (tmp_path / facts.NINTH).parent.mkdir(parents=True)
     shutil.copy(ROOT / facts.NINTH, tmp_path / facts.NINTH)
-    before = readme.pages(tmp_path)[tmp_path / "README.md"]
+    before = said(tmp_path)
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
         lines = pd.read_csv(path)
         mine = (lines["source"] == "mujoco") & (lines["figure"] == "all")
         lines.loc[mine, ["agree", "max_error"]] = [957, 0.0123]
         lines.to_csv(path, index=False)
-    after = readme.pages(tmp_path)[tmp_path / "README.md"]
-    assert "957 of 960" in after and "957 of 960" not in before
-    assert "1.2 % |" in after
-    assert "4 of 5760 cases" in after  # one of another engine's besides
+    after = said(tmp_path)
+    for old, new, words in zip(before, after, ("**3 wrong**<br>", "957 of 960 |"), strict=True):
+        assert words in new.replace("\N{NO-BREAK SPACE}", " ") and words not in old
+    assert "max\N{NO-BREAK SPACE}1.2\N{NO-BREAK SPACE}%" in after[0]
+    assert "1.2 % |" in after[1]
+    assert "4 of 5760 cases" in after[0]  # one of another engine's besides
+
+
+def said(root):
+    """Return README.md and the page about the engines, of a folder."""
+    pages = readme.pages(root)
+    return pages[root / "README.md"], pages[root / readme.PUBLISHED / "engines.md"]
+
+
+def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
+    lines = pd.DataFrame(
+        [
+            ("naive", "pybullet", 9),
+            ("naive", "drake", 10),
+            ("naive", "newton", 10),
+            ("landing", "pybullet", 10),
+            ("landing", "mujoco", 10),
+            ("error-controlled", "drake", 10),
+        ],
+        columns=["preset", "engine", "right"],
+    ).assign(cases=10, median=0.01, p90=0.02, max=0.5, ms=2.0)
+    heads, _, *rows = facts.presets_short(lines).replace("\N{NO-BREAK SPACE}", " ").splitlines()
+    assert heads.count("|") == 4 and "`:error-controlled`" not in heads
+    assert rows[0].startswith(
+        "| **PyBullet** | **1 wrong**<br>1 %, max 50 %<br>2 ms | none wrong<br>"
+    )
+    assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
+    assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+
+
+def test_the_readme_is_short():
+    """Two screens of text before its example; the numbers are on the pages that it leads to."""
+    assert len((ROOT / "README.md").read_bytes()) < 11_500
 
 
 def test_both_commands_of_ci_are_there_once():
@@ -58,16 +95,26 @@ def test_the_engine_of_the_readme_is_the_one_that_is_scored():
 
 
 def test_every_link_of_a_page_leads_somewhere():
-    for path in (ROOT / "README.md", PUBLISHED / "README.md"):
+    for path in (ROOT / "README.md", ROOT / "studies" / "GUIDE.md", *PUBLISHED.glob("*.md")):
         text = path.read_text(encoding="utf-8")
         targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
         targets += re.findall(r'src="([^"]+)"', text)
         inside = [target for target in targets if not target.startswith("http")]
-        assert len(inside) > 5
+        assert inside
         assert [name for name in inside if not (path.parent / name).exists()] == []
-        names = set(re.findall(r'<a id="([^"]+)"', (PUBLISHED / "README.md").read_text()))
-        asked = re.findall(r"studies/published/README\.md#([\w-]+)", text)
-        assert set(asked) <= names
+        for name, place in re.findall(r"\]\(([^)#]*)#([\w-]+)\)", text):
+            assert place in anchors(path.parent / name if name else path), (path, name, place)
+
+
+def anchors(path):
+    """Return the names that a link into a page may end with: its own, and those of its headings."""
+    text = path.read_text(encoding="utf-8")
+    heads = re.findall("^#+ (.*)$", text, re.MULTILINE)
+    return {*re.findall(r'<a id="([^"]+)"', text), *(slug(head) for head in heads)}
+
+
+def slug(head):
+    return re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-")
 
 
 def test_every_published_column_is_in_the_glossary():

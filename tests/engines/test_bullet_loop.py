@@ -1,0 +1,156 @@
+"""PyBullet's compiled loop: held against Python before it is used, and left alone where it is not
+what it should be."""
+
+import multiprocessing
+import signal
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_look import all_but_times
+from uses import BLOCK, pulse, scene
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from analytic.response import Reason
+from engines import ENGINES, Scene, run
+from engines.adapters import bullet, bullet_loop
+from engines.adapters.bullet_addresses import spans
+from engines.drive import build
+
+p = pytest.importorskip("pybullet")
+
+ROCKS = scene(pulse(1.3, 3.0, 2), accuracy="loose")
+
+
+@pytest.fixture(autouse=True)
+def asked_anew() -> Iterator[None]:
+    for known in (bullet_loop.clients, bullet.loop_agrees):
+        known.cache_clear()
+    yield
+    for known in (bullet_loop.clients, bullet.loop_agrees):
+        known.cache_clear()
+
+
+def driven(asked: Scene) -> bool:
+    world: Any = build(ENGINES["pybullet"], asked)
+    world.close()
+    return world.drive is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("CLIENTS", "sPhysicsClientsGUI"),  # none is there
+        ("CLIENTS", "sNobody"),
+        ("DIRECT", "_ZTV25PhysicsClientSharedMemory"),  # clients of another kind
+        ("FUNCTIONS", (bullet_loop.c_function("b3Nothing", bullet_loop.HANDLE),)),
+    ],
+)
+def test_another_build_is_stepped_from_python(
+    name: str, other: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiled = all_but_times(run("pybullet", ROCKS))
+    assert driven(ROCKS)
+    bullet_loop.clients.cache_clear()
+    bullet.loop_agrees.cache_clear()
+    monkeypatch.setattr(bullet_loop, name, other)
+    assert not driven(ROCKS)
+    assert all_but_times(run("pybullet", ROCKS)) == compiled
+
+
+def test_a_library_without_symbols_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "library").write_bytes(b"MZ" + bytes(100))
+    with pytest.raises(ValueError, match="library is no ELF file of 64 bits"):
+        spans(tmp_path / "library", "anything")
+
+
+def test_where_functions_stand() -> None:
+    """Two that can be asked for, too, are as far apart as they were loaded."""
+    names = ("b3ConnectPhysicsDirect", "b3InitStepSimulationCommand")
+    (first, _), (second, size) = spans(Path(p.__file__), *names)
+    assert bullet_loop.clients(p).size
+    loaded = [bullet_loop.address_of(name) for name in names]
+    assert second - first == loaded[1] - loaded[0]
+    assert 0 < size < 1000
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("contact_erp", 0.5),
+        ("friction_erp", 0.5),
+        ("by_phase", False),
+        ("moving", False),
+        ("base_velocity", False),
+        ("ordinary", 1.0),
+    ],
+)
+def test_a_loop_that_steps_otherwise_is_not_used(
+    name: str, other: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert bullet.loop_agrees()
+    bullet.loop_agrees.cache_clear()
+    begin = bullet.begin_hold
+    looped = iter((True, False))
+
+    def otherwise(held: Any, *rest: Any) -> None:
+        begin(held, *rest)
+        if next(looped):
+            setattr(held, name, other)
+
+    monkeypatch.setattr(bullet, "begin_hold", otherwise)
+    assert not bullet.loop_agrees()
+
+
+def apart(number: int) -> Scene:
+    """Return a scene in which contacts are kept up to a gap of its own."""
+    block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
+    pulse = SinePulse(amplitude=1.3 * block.gravity * block.width / 1.5, omega=3.0 * block.p)
+    return Scene(block=block, motion=pulse, accuracy="loose")
+
+
+def answer(number: int) -> str:
+    return all_but_times(run("pybullet", apart(number)))
+
+
+def test_threads_do_not_disturb_each_other() -> None:
+    """The library holds the gap up to which contacts are kept for the whole process."""
+    alone = [answer(number) for number in range(6)]
+    with ThreadPoolExecutor(3) as pool:
+        assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_processes_answer_alike(method: str) -> None:
+    here = answer(1)
+    with ProcessPoolExecutor(1, multiprocessing.get_context(method)) as pool:
+        assert pool.submit(answer, 1).result() == here
+
+
+ENDLESS = {"preset": "fixed", "duration": 1e5}
+
+
+def test_a_time_limit_ends_a_loop() -> None:
+    asked = Scene(block=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
+    assert driven(asked)
+    response = run("pybullet", asked)
+    assert response.reason is Reason.UNDECIDED
+    assert response.message == "not decided within 0.05 s"
+
+
+def test_a_signal_ends_a_loop() -> None:
+    def stop(number: int, frame: object) -> None:
+        raise InterruptedError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(InterruptedError):
+            run("pybullet", Scene(block=BLOCK, motion=pulse(0.5, 1.0), **ENDLESS))
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert driven(ROCKS)
