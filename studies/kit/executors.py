@@ -12,7 +12,6 @@ from analytic.response import Response
 from engines.look import compile_look
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
-from studies.kit.cluster import Cluster
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask, short
 from studies.kit.processes import ask_loaded, outcome_of
@@ -137,6 +136,9 @@ def choose(
     if cluster is None:
         refuse_excess(f"--jobs is {jobs}", (jobs or 1) * PROCESS_BYTES)
         return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
+    # asyncio takes a tenth of a second to load, and most runs have no cluster
+    from studies.kit.cluster import Cluster
+
     refuse_given({"jobs": jobs}, "only without --cluster")
     chosen = Cluster(cluster, time_limit_s, ask)
     chosen.check()

@@ -21,6 +21,9 @@ from analytic.motion import FloatArray
 from studies.cases.window import Window
 
 MOST_IMPACTS = 10_000
+UPRIGHT = 1e-300
+"""Rotation that stands for none: of a series that begins with zero heyoka finds no further root
+in the same step, and lets a short swing fall through the ground."""
 FIRST_EVENT = -1
 """How heyoka calls an outcome that is its first event, here an impact."""
 
@@ -137,7 +140,7 @@ class HeyokaSolver:
         step = self.integrator
         while flight.overturned is None:
             step.time, end = flight.span
-            step.state[:], step.pars[:] = (0.0, flight.v), flight.parameters
+            step.state[:], step.pars[:] = (UPRIGHT, flight.v), flight.parameters
             step.reset_cooldowns()
             outcome = step.propagate_until(end)[0]
             flight.stopped(outcome, step.time, *step.state)
@@ -199,7 +202,7 @@ class HeyokaBatch:
             ends[lane] = times[lane]  # nothing is left to do here
             return
         times[lane], ends[lane] = flight.span
-        self.integrator.state[:, lane] = 0.0, flight.v
+        self.integrator.state[:, lane] = UPRIGHT, flight.v
         self.integrator.pars[:, lane] = flight.parameters
         self.integrator.reset_cooldowns(lane)
 
