@@ -185,6 +185,7 @@ def peak_ratios(
     half_cycles: ArrayLike,
     model: str | Model = "exact",
     restitution: ArrayLike | None = None,
+    threads: int | None = None,
 ) -> tuple[FloatArray, NDArray[np.object_]]:
     """Solve many responses to sine pulses, on all cores.
 
@@ -203,6 +204,8 @@ def peak_ratios(
     model : {"exact", "housner", "modified", "onset-matched"}
     restitution : array_like, optional
         Velocity ratio at impacts, in [0, 1]; Housner's value by default.
+    threads : int, optional
+        By default the number of cores.
 
     Returns
     -------
@@ -222,7 +225,7 @@ def peak_ratios(
     def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
         solve_pulses(linear, exactly, constants, given, peaks[part], codes[part])
 
-    cases.solve(solve)
+    cases.solve(solve, threads)
     outcomes = np.array(OUTCOMES, dtype=object)[codes]
     return peaks.reshape(cases.shape), outcomes.reshape(cases.shape)
 

@@ -50,6 +50,14 @@ class Precision(enum.Enum):
     SINGLE = 2.0**-24
 
 
+TITLES = {
+    "naive": "the library's defaults",
+    "fixed": "best at a fixed step",
+    "landing": "steps that land on impacts",
+}
+"""Name of a preset -> what a reader is told it is."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preset:
     """One way to use an engine.
@@ -59,7 +67,7 @@ class Preset:
     name : str
         "naive", "fixed", ...; "naive" is the library as a first-time user meets it.
     title : str
-        What a reader is told it is.
+        What a reader is told it is, where `TITLES` does not say it.
     settings : dataclass
         The engine's settings; one of them is called "friction".
     stepping : Stepping
@@ -79,7 +87,7 @@ class Preset:
     """
 
     name: str
-    title: str
+    title: str = ""
     settings: Any
     stepping: Stepping = Stepping.FIXED
     step: float = math.nan
@@ -91,6 +99,7 @@ class Preset:
     misses: tuple[Miss, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "title", self.title or TITLES.get(self.name, self.name))
         given = sum(map(math.isfinite, (self.step, self.step_s)))
         if given != (self.stepping is Stepping.FIXED):
             raise ValueError(

@@ -1,8 +1,9 @@
 """A sphere dropped on a base: what a library makes of a coefficient of restitution."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from analytic.checks import positive
 
@@ -74,11 +75,15 @@ class Bouncing:
     dropped : callable
         ``(drop) -> float``: the speed after over before an impact that comes out; nan where the
         library says that it went wrong.
+    block : callable or None
+        ``(restitution) -> settings``: the same for a rocking block, in place of those of the
+        preset "fixed"; None where that is not tried.
     """
 
     name: str
     setting: Callable[[Drop], str]
     dropped: Callable[[Drop], float]
+    block: Callable[[float], Mapping[str, Any]] | None = None
 
 
 def rebound(drop: Drop, step: Callable[[], tuple[float, float]]) -> float:

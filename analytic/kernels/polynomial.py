@@ -3,6 +3,7 @@
 A polynomial is turned into Bernstein form, where the number of sign changes of its coefficients
 bounds the number of its roots in (0, 1) and has the same parity (Descartes). No change: no root;
 one change: exactly one. Otherwise the interval is halved (de Casteljau) until one of the two holds.
+Most are monotone, as the signs of their coefficients tell for less.
 """
 
 import math
@@ -20,6 +21,9 @@ MAX_DEPTH = 45
 
 NEWTON_DONE = 1e-9
 """Relative length of the last Newton step of a root."""
+
+SAME_ROOT = 1e-15
+"""Distance within which a root is not told from another."""
 
 INVERSE_BINOMIALS = np.array(
     [[1.0 / math.comb(n, i) if i <= n else 0.0 for i in range(ORDER + 1)] for n in range(ORDER + 1)]
@@ -42,6 +46,16 @@ def slope(a: FloatArray, degree: int, x: float) -> float:
     for i in range(degree - 1, 0, -1):
         total = total * x + i * a[i]
     return total
+
+
+@inner
+def value_and_slope(a: FloatArray, degree: int, x: float) -> tuple[float, float]:
+    """Return `value` and `slope`, in little more time than one of them."""
+    total, rate = a[degree], 0.0
+    for i in range(degree - 1, -1, -1):
+        rate = rate * x + total
+        total = total * x + a[i]
+    return total, rate
 
 
 @inner
@@ -105,18 +119,23 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
 
 @inner
 def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float:
-    """Return the only root of `a` in [low, high], by Newton's method kept in its bracket."""
-    rising = value(a, degree, high) > value(a, degree, low)
-    x = 0.5 * (low + high)
+    """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
+
+    It begins where the chord between the two ends is zero.
+    """
+    first, last = value(a, degree, low) if low > 0.0 else a[0], value(a, degree, high)
+    rising = last > first
+    x = low + (high - low) * (first / (first - last))
+    if not low < x < high:
+        x = 0.5 * (low + high)
     for _ in range(100):
-        f = value(a, degree, x)
+        f, gradient = value_and_slope(a, degree, x)
         if f == 0.0:
             return x
         if (f > 0.0) == rising:
             high = x
         else:
             low = x
-        gradient = slope(a, degree, x)
         new = x - f / gradient if gradient != 0.0 else low
         if low < new < high:
             # the error of a Newton step is of the order of its square
@@ -131,6 +150,16 @@ def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float
 
 
 @inner
+def only_root(a: FloatArray, degree: int, start: float) -> float:
+    """Return the root of a monotone `a` in (start, 1], or 2 when there is none."""
+    last = value(a, degree, 1.0)
+    if a[0] * last > 0.0 or a[0] == 0.0:
+        return 2.0
+    root = bracketed_root(a, degree, 0.0, 1.0) if last != 0.0 else 1.0
+    return root if root > start + SAME_ROOT else 2.0
+
+
+@inner
 def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
     """Return the first root of `a` in (start, 1], or 2 when there is none.
 
@@ -140,10 +169,12 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
         Coefficients of sum a[i] x^i.
     degree : int
     start : float
-        In [0, 1); a root within 1e-15 of it is not found again.
+        In [0, 1); a root within SAME_ROOT of it is not found again.
     pool : ndarray, shape (MAX_DEPTH + 2, >= degree + 1)
         Workspace.
     """
+    if trend(a, degree, 0) != 0:
+        return only_root(a, degree, start)
     to_bernstein(a, degree, pool[0])
     low, width = 0.0, 1.0
     top = depth = 0
@@ -161,10 +192,10 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
             continue
         if changes == 1:
             root = bracketed_root(a, degree, low, low + width)
-            if root > start + 1e-15:
+            if root > start + SAME_ROOT:
                 return root
         low += width
-        if b[degree] == 0.0 and low > start + 1e-15:
+        if b[degree] == 0.0 and low > start + SAME_ROOT:
             return low
         top -= 1
         # after a right half the next interval is the sibling of an ancestor, which is wider
@@ -201,10 +232,11 @@ def highest(
         most += max(rate[i], 0.0) if i > 0 else rate[i]
     if least > 0.0 or most < 0.0:
         return top, where
+    once = trend(rate, degree, 0) != 0
     x = next_root(rate, degree, 0.0, work[1:])
     while x < end:
         here = value(d, order, x)
         if here > top:
             top, where = here, x
-        x = next_root(rate, degree, x, work[1:])
+        x = 2.0 if once else next_root(rate, degree, x, work[1:])
     return top, where

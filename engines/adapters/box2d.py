@@ -6,12 +6,13 @@ halfway between the surfaces of two shapes, so that half of the pivot's margin i
 radius, and half is the height by which its floor is raised.
 """
 
-import warnings
 from typing import Any
 
+from engines.adapters.box2d_drop import BOUNCING
 from engines.adapters.box2d_script import script
 from engines.adapters.box2d_settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
@@ -31,7 +32,7 @@ class Box2DWorld:
 
     def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
         self.settings = settings
-        block, self._box2d = scene.block, imported()
+        block, self._box2d = scene.block, imported("Box2D")
         self._unit = settings.unit_of(scene)
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
@@ -93,7 +94,9 @@ class Box2DWorld:
         )
         if s.geometry == "box":
             body.CreateFixture(
-                shape=b2.b2PolygonShape(box=self._half), friction=s.friction, restitution=0.0
+                shape=b2.b2PolygonShape(box=self._half),
+                friction=s.friction,
+                restitution=s.restitution,
             )
         else:
             for number, side in enumerate((-1.0, 1.0)):
@@ -102,7 +105,7 @@ class Box2DWorld:
                         pos=(side * self._half[0], -self._half[1]), radius=self._reach
                     ),
                     friction=s.friction,
-                    restitution=0.0,
+                    restitution=s.restitution,
                     filter=b2.b2Filter(categoryBits=1 << number, maskBits=4 << number),
                 )
         body.massData = b2.b2MassData(
@@ -143,15 +146,6 @@ class Box2DWorld:
         )
 
 
-def imported() -> Any:
-    """Import the library; its own warnings would be errors where warnings are."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        import Box2D
-
-        return Box2D
-
-
 def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
     """Build a scene."""
     return Box2DWorld(scene, settings, dt_s)
@@ -167,7 +161,6 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=Box2DSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
@@ -175,14 +168,12 @@ ENGINE = Engine(
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=1e-3,
             helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -196,6 +187,7 @@ ENGINE = Engine(
     precision=Precision.SINGLE,
     shortest_step=1e-5,
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
 )

@@ -34,6 +34,8 @@ class Box2DSettings:
         Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float
+        Coefficient of the block; of a pair the library takes the larger one.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -46,6 +48,7 @@ class Box2DSettings:
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

@@ -245,15 +245,13 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=BulletSettings(),
             step_s=LIBRARY_STEP_S,
             step_source="the library's own time step, 1/240 s",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={

@@ -47,6 +47,7 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
         "useSplitImpulse": s.split_impulse,
         "enableConeFriction": s.cone_friction,
         "enableSAT": s.separating_axis,
+        "restitutionVelocityThreshold": s.restitution_threshold,
     }
     return Call("setPhysicsEngineParameter", given(wanted))
 
@@ -113,6 +114,7 @@ def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
         "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
         "linearDamping": s.damping,
         "angularDamping": s.damping,
+        "restitution": s.restitution,
     }
     if s.contact_stiffness is not None and s.contact_damping is not None:
         wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
@@ -122,7 +124,9 @@ def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
 
 def base_call(s: BulletSettings, body: Any) -> Call:
     """Return the call that sets the base's dynamics."""
-    return _change(s, body, {"lateralFriction": 1.0})
+    return _change(
+        s, body, {"lateralFriction": 1.0, **({} if s.restitution is None else {"restitution": 1.0})}
+    )
 
 
 def _change(s: BulletSettings, body: Any, wanted: Mapping[str, Any]) -> Call:

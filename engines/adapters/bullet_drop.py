@@ -13,6 +13,11 @@ UNCORRECTED = {**TOUCHING, "contactERP": 0.0}
 """A depth that is corrected adds to the speed."""
 
 
+FAST = {"restitution_threshold": 0.0}
+NEAR = {"breaking_threshold": 1e-9}
+"""The same for a block."""
+
+
 def _dropped(drop: Drop, base: float, **engine: Any) -> float:
     """Drop a sphere; base is the plane's coefficient, the rest engine parameters."""
     p = imported("pybullet")
@@ -62,29 +67,33 @@ def _engine(**engine: Any) -> str:
 
 BOUNCING = (
     Bouncing(
-        name="e on the sphere alone",
+        name="e on the body alone",
         setting=_sphere,
         dropped=lambda drop: _dropped(drop, 0.0),
     ),
     Bouncing(
-        name="e on the sphere, 1 on the plane",
+        name="e on the body, 1 on the plane",
         setting=_both,
         dropped=lambda drop: _dropped(drop, 1.0),
+        block=lambda e: {"restitution": e},
     ),
     Bouncing(
         name="and at all speeds",
         setting=lambda drop: f"{_both(drop)}, {_engine(**AT_ALL_SPEEDS)}",
         dropped=lambda drop: _dropped(drop, 1.0, **AT_ALL_SPEEDS),
+        block=lambda e: {"restitution": e, **FAST},
     ),
     Bouncing(
         name="and where they touch alone",
         setting=lambda drop: f"{_both(drop)}, {_engine(**TOUCHING)}",
         dropped=lambda drop: _dropped(drop, 1.0, **TOUCHING),
+        block=lambda e: {"restitution": e, **FAST, **NEAR},
     ),
     Bouncing(
         name="and no depth is corrected",
         setting=lambda drop: f"{_both(drop)}, {_engine(**UNCORRECTED)}",
         dropped=lambda drop: _dropped(drop, 1.0, **UNCORRECTED),
+        block=lambda e: {"restitution": e, **FAST, **NEAR, "contact_erp": 0.0},
     ),
 )
 """The library takes the product of two bodies' coefficients; each way adds to the one before."""

@@ -85,6 +85,10 @@ class BulletSettings:
     split_impulse, cone_friction, separating_axis : bool or None
         Correct penetration without giving it a velocity; bound friction by a cone instead of a
         pyramid; find contacts of polyhedra by separating axes.
+    restitution : float or None
+        Of the block, on a base whose own is 1: the library takes their product.
+    restitution_threshold : float or None
+        Speed [m/s] below which nothing bounces.
     contact_stiffness, contact_damping : float or None
         Of a yielding contact, over m p^2 and m p; both or neither.
     """
@@ -112,6 +116,8 @@ class BulletSettings:
     split_impulse: bool | None = None
     cone_friction: bool | None = None
     separating_axis: bool | None = None
+    restitution: float | None = setting(least=0.0, most=1.0)
+    restitution_threshold: float | None = setting(least=0.0)
     contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
     contact_damping: float | None = setting(above=0.0)
 

@@ -7,6 +7,7 @@ left where they are.
 
 from typing import Any
 
+from engines.adapters.dart_drop import BOUNCING
 from engines.adapters.dart_script import script
 from engines.adapters.dart_settings import (
     DETECTORS,
@@ -124,7 +125,9 @@ class DartWorld:
             slide, body = skeleton.createPrismaticJointAndBodyNodePair(body)
             slide.setAxis((0.0, 1.0, 0.0))
         x, y, z = (2.0 * size * self._unit for size in floor_half_size(scene))
-        self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
+        top = self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
+        if self._s.restitution is not None:
+            top.getDynamicsAspect().setRestitutionCoeff(1.0)
         self._world.addSkeleton(skeleton)
         return joint, body
 
@@ -162,6 +165,8 @@ class DartWorld:
         node.createCollisionAspect()
         # of a pair the library takes the smaller one
         node.createDynamicsAspect().setFrictionCoeff(self._s.friction)
+        if self._s.restitution is not None:
+            node.getDynamicsAspect().setRestitutionCoeff(self._s.restitution)
         node.setRelativeTranslation(at)
         return node
 
@@ -202,20 +207,17 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=DartSettings(),
             step_s=1e-3,
             step_source="the world's own time step, 0.001 s",
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=5e-4,
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -228,6 +230,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     own_step="dartpy:simulation.World.step",

@@ -65,6 +65,8 @@ class DartSettings:
         impact and the first one after it.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float or None
+        Coefficient of the block, on a base whose own is 1: the library takes their product.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -80,6 +82,7 @@ class DartSettings:
     margin: float | None = setting(above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float | None = setting(least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

@@ -12,10 +12,13 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
+from engines.adapters.drake_script import script
 from engines.adapters.drake_settings import (
     CENIC,
     CONTROLLED,
     FACTORS,
+    LONGEST,
+    PLANE,
     RULES,
     TUNED,
     DrakeSettings,
@@ -40,14 +43,8 @@ MODULES = (
 )
 """Parts of the library that are needed; all of it takes several times as long to import."""
 
-PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
-"""Its columns are z, x and y: a planar joint moves along two axes, and turns about the third."""
-
 GIVEN_UP = (RuntimeError, SystemExit)
 """What the library raises; the latter where one of its own conditions does not hold."""
-
-LONGEST = 10.0
-"""No step that is told is longer than this many ordinary ones."""
 
 IN_PLANE = (1, 0, 2, 5)
 """Where x, z, theta and its rate stand in the state of a planar joint."""
@@ -268,12 +265,11 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=DrakeSettings(),
             step_s=1e-3,
             step_source="MultibodyPlantConfig's own time_step, 0.001 s",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="error-controlled",
             title="steps of its own, by its own estimate of the error",
@@ -285,6 +281,7 @@ ENGINE = Engine(
     frames=("base",),
     geometries=("box", "corners"),
     spatial=True,
+    script=script,
     factors=FACTORS,
     rules=RULES,
     own_step="pydrake.systems.analysis:Simulator.AdvanceTo",

@@ -12,6 +12,12 @@ CENIC = "cenic"
 SOLVERS = ("lagged", "similar", "sap", CENIC)
 """The library's models of contact, by its own names."""
 
+PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+"""Its columns are z, x and y: a planar joint moves along two axes, and turns about the third."""
+
+LONGEST = 10.0
+"""No step that CENIC is told is longer than this many ordinary ones."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrakeSettings:

@@ -143,16 +143,14 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=MujocoSettings(),
             step_s=LIBRARY_STEP_S,
             step_source="the library's own timestep, 0.002 s",
             contact_s=DEFAULT_CONTACT_S,
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=2.5e-4),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={

@@ -97,11 +97,18 @@ def _direct_setting(drop: Drop, steps: float) -> str:
     return f'solref="{k:.5g} {b:.5g}" {FIRM}'
 
 
+def _held(restitution: float, steps: int) -> dict[str, float]:
+    """Return the settings of a block for the same contact: k dt^2 and b dt; see `direct`."""
+    k, b = direct(Drop(restitution=restitution, dt_s=1.0), steps)
+    return {"stiffness": -k, "damping": -b}
+
+
 def _over(steps: int) -> Bouncing:
     return Bouncing(
         name=f"spring and damper over {steps} steps",
         setting=partial(_direct_setting, steps=steps),
         dropped=lambda drop: _dropped(drop, direct(drop, steps), FIRM),
+        block=partial(_held, steps=steps),
     )
 
 

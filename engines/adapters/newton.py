@@ -158,7 +158,7 @@ ENGINE = Engine(
             step_s=2e-3,
             step_source="the library's own example basic_shapes, 5 substeps of 1/100 s",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=1e-3),
+        Preset(name="fixed", settings=TUNED, step=1e-3),
     ),
     frames=("base",),
     geometries=("box", "corners"),

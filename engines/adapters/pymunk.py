@@ -9,6 +9,7 @@ positions itself, by the library's own function, from the library's own velociti
 import math
 from typing import Any
 
+from engines.adapters.pymunk_drop import BOUNCING
 from engines.adapters.pymunk_script import script
 from engines.adapters.pymunk_settings import FACTORS, LANDING, LEVEL, RULES, TUNED, PymunkSettings
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
@@ -127,7 +128,7 @@ class PymunkWorld:
             pivot = step.grip is Grip.REST or side * about >= -LEVEL
             floor.unsafe_set_radius(self._margin if pivot else 0.0)
             returned = back if pivot and step.side else 0.0
-            corner.elasticity, floor.elasticity = 1.0, returned
+            corner.elasticity, floor.elasticity = 1.0, max(returned, self.settings.restitution)
             slip = 0.0
             if returned:
                 at = (side * self._half[0], -self._half[1])
@@ -167,7 +168,6 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=PymunkSettings(),
             step_s=LIBRARY_STEP_S,
             step_source=README,
@@ -175,14 +175,12 @@ ENGINE = Engine(
         ),
         Preset(
             name="fixed",
-            title="best at a fixed step",
             settings=TUNED,
             step=2.5e-4,
             helped_by={Help.MARGIN: {"margin": None}},
         ),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
@@ -195,6 +193,7 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
 )

@@ -1,6 +1,5 @@
 """What pymunk can be set to: its settings, the tuned ones, and what the studies try of them."""
 
-import math
 from dataclasses import dataclass, replace
 
 from engines.factors import (
@@ -15,7 +14,7 @@ from engines.factors import (
     level,
 )
 from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM, fall
+from engines.parts.shapes import NO_JAM, fall, iterations_for
 from engines.scene import Scene
 
 LEVEL = 1e-9
@@ -37,8 +36,7 @@ class PymunkSettings:
     iterations, slop, bias : optional
         `Space.iterations`, `collision_slop` [m] and `collision_bias`.
     sweeps : float or None
-        Iterations over 1/sin^2(alpha), in place of `iterations`: the impulses of the two corners
-        on which a block stands converge the slower, the more slender it is.
+        Iterations over 1/sin^2(alpha), in place of `iterations`.
     positions : bool
         Move the positions after the velocities, by the adapter.
     margin : float or None
@@ -49,6 +47,8 @@ class PymunkSettings:
         velocity.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float
+        Coefficient of the corners, the product of two `elasticity`; a box has none.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -61,15 +61,14 @@ class PymunkSettings:
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)
 
     def iterations_of(self, scene: Scene) -> int | None:
         """Return how often the solver goes through the contacts; None leaves that to it."""
-        if self.sweeps is None:
-            return self.iterations
-        return math.ceil(self.sweeps / math.sin(scene.block.alpha) ** 2)
+        return self.iterations if self.sweeps is None else iterations_for(scene, self.sweeps)
 
     def margin_of(self, scene: Scene, dt_s: float) -> float:
         """Return the gap [m] up to which the pivot is kept in contact."""

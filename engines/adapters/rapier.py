@@ -7,6 +7,7 @@ a step of less than some 1e-6/p has the noise of its contact for a velocity.
 import math
 from typing import Any
 
+from engines.adapters.rapier_drop import BOUNCING
 from engines.adapters.rapier_script import script
 from engines.adapters.rapier_settings import (
     FACTORS,
@@ -22,10 +23,7 @@ from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size
 from engines.scene import Scene
-from engines.world import Grip, Moment, Pose, Step
-
-NO_CORRECTION = 1e5
-"""Damping ratio of a contact that leaves its position where it is, at the frequency of the step."""
+from engines.world import Moment, Pose, Step
 
 FROZEN = 1e-5
 """A block that sleeps while it leans by more than this part of alpha would do so for ever."""
@@ -42,10 +40,9 @@ class RapierWorld:
         self._moving = scene.frame == "world"
         self._driven = self._moving or settings.reflection
         self._dt = self._speed = self._place = 0.0
-        self._short: bool | None = None
         self._world = self._rapier.PhysicsWorld()
         self._parameters = self._world.integration_parameters
-        self._set_parameters()
+        self._set_parameters(scene, dt_s)
         self._half = half_size(scene)
         self._base = self._add_base(scene)
         self._body = self._add_block(scene)
@@ -55,8 +52,6 @@ class RapierWorld:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         if step.dt_s != self._dt:
             self._parameters.dt = step.dt_s
-        if self._s.by_phase:
-            self._hold(step)
         self._world.gravity = (step.pull_x, 0.0, step.pull_z)
         if self._driven:
             self._drive(step)
@@ -84,20 +79,6 @@ class RapierWorld:
         """Release the engine's memory."""
         self._world.clear()
 
-    def _hold(self, step: Step) -> None:
-        """Correct positions in ordinary steps alone: a short one would make a velocity of noise."""
-        short = step.grip in (Grip.APPROACH, Grip.STRIKE)
-        if short:
-            self._soften(1.0 / (2.0 * math.pi * step.dt_s), NO_CORRECTION)
-        elif short is not self._short:
-            self._soften(self._s.frequency, self._s.damping_ratio)
-        self._short = short
-
-    def _soften(self, frequency: float | None, damping_ratio: float | None) -> None:
-        spring = self._rapier.SpringCoefficients(frequency, damping_ratio)
-        self._parameters.contact_softness = spring
-        self._parameters.static_contact_softness = spring
-
     def _drive(self, step: Step) -> None:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
@@ -111,13 +92,15 @@ class RapierWorld:
         self._base.linvel = (speed - back * slip, 0.0, 0.0)
         self._speed = speed
 
-    def _set_parameters(self) -> None:
-        s, model = self._s, self._rapier.FrictionModel
-        for name, value in parameters(s).items():
+    def _set_parameters(self, scene: Scene, dt_s: float) -> None:
+        model, spring = self._rapier.FrictionModel, self._s.spring_of(dt_s)
+        for name, value in parameters(self._s, scene).items():
             chosen = getattr(model, value) if isinstance(value, str) else value
             setattr(self._parameters, name, chosen)
-        if s.frequency is not None:
-            self._soften(s.frequency, s.damping_ratio)
+        if spring is not None:
+            softness = self._rapier.SpringCoefficients(*spring)
+            self._parameters.contact_softness = softness
+            self._parameters.static_contact_softness = softness
 
     def _add_base(self, scene: Scene) -> Any:
         rapier, (x, y, z) = self._rapier, floor_half_size(scene)
@@ -141,7 +124,7 @@ class RapierWorld:
             body = body.can_sleep(s.sleeping)
         if s.geometry == "box":
             return self._add(body, [rapier.Collider.cuboid(*self._half).density(scene.density)])
-        radius = s.corner_radius * scene.block.width
+        radius = s.corner_radius * scene.block.height
         corners = [
             rapier.Collider.ball(radius).density(0.0).translation(at)
             for at in corner_spheres(scene, radius, planar=s.planar)
@@ -150,7 +133,7 @@ class RapierWorld:
         return self._add(body.additional_mass_properties(inertia), corners)
 
     def _add(self, body: Any, colliders: list[Any]) -> Any:
-        rough = [collider.friction(self._s.friction) for collider in colliders]
+        rough = [it.friction(self._s.friction).restitution(self._s.restitution) for it in colliders]
         return self._world.rigid_bodies[self._world.add_body(body, rough)]
 
     def _read_back(self, scene: Scene) -> str:
@@ -161,7 +144,10 @@ class RapierWorld:
         pairs = {
             "mass": (scene.mass, self._body.mass),
             "friction": (self._s.friction, friction),
-            "iterations": (self._s.iterations, self._parameters.num_internal_pgs_iterations),
+            "iterations": (
+                self._s.iterations_of(scene),
+                self._parameters.num_internal_pgs_iterations,
+            ),
             "substeps": (self._s.substeps, self._parameters.num_solver_iterations),
         }
         return disagreement(pairs, Precision.SINGLE.value)
@@ -177,21 +163,18 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            title="the library's defaults",
             settings=RapierSettings(),
             step_s=1.0 / 60.0,
             step_source="the library's own time step, 1/60 s",
             misses=(Miss.MIRROR, Miss.RECORD),
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=LANDING,
             stepping=Stepping.LANDING,
             helped_by={
                 Help.STEPS: None,
-                Help.PHASES: {"by_phase": False},
                 Help.REFLECTION: {"reflection": False},
             },
         ),
@@ -201,6 +184,7 @@ ENGINE = Engine(
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     script=script,
+    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     remedy={"iterations": 1000},

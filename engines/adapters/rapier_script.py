@@ -9,7 +9,7 @@ from engines.script import Script
 def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of Rapier; see `engines.script`."""
     rough = f".friction({float(s.friction)!r})"
-    set_ = _parameters(s)
+    set_ = _parameters(scene, s, dt_s)
     locks, shape = _locks(s), _touching(scene, s)
     x, y, z = floor_half_size(scene)
     return Script(
@@ -44,11 +44,12 @@ def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
     )
 
 
-def _parameters(s: RapierSettings) -> tuple[str, ...]:
-    lines = [f"parameters.{name} = {_value(value)}" for name, value in parameters(s).items()]
-    if s.frequency is not None:
+def _parameters(scene: Scene, s: RapierSettings, dt_s: float) -> tuple[str, ...]:
+    given = parameters(s, scene)
+    lines = [f"parameters.{name} = {_value(value)}" for name, value in given.items()]
+    if spring := s.spring_of(dt_s):
         lines += [
-            f"spring = rapier.SpringCoefficients({s.frequency!r}, {s.damping_ratio!r})",
+            f"spring = rapier.SpringCoefficients{spring!r}",
             "parameters.contact_softness = parameters.static_contact_softness = spring",
         ]
     return tuple(lines)
@@ -87,7 +88,7 @@ def _touching(scene: Scene, s: RapierSettings) -> tuple[str, ...]:
     if s.geometry == "box":
         size = ", ".join(map(repr, half_size(scene)))
         return (f"shapes = [rapier.Collider.cuboid({size}).density({scene.density!r})]",)
-    radius = s.corner_radius * scene.block.width
+    radius = s.corner_radius * scene.block.height
     places = corner_spheres(scene, radius, planar=s.planar)
     return (
         f"ball = rapier.Collider.ball({radius!r}).density(0.0)",

@@ -1,5 +1,6 @@
 """What Rapier can be set to: its settings, the tuned ones, and what the studies try of them."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,6 +16,12 @@ from engines.factors import (
     level,
 )
 from engines.parts.settings import check, given, setting
+from engines.parts.shapes import NO_JAM, iterations_for
+from engines.scene import Scene
+
+OVERDAMPED = 1e5
+"""Damping ratio of a contact that corrects positions and is firm all the same, in single precision.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,11 +44,14 @@ class RapierSettings:
     substeps, iterations, stabilization : int or None
         Of the solver: substeps in a step, iterations in each, and those that take out of the
         velocities what the correction of positions has put in.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), in place of `iterations`.
     frequency, damping_ratio : float or None
         Natural frequency [Hz] and damping ratio of the contact; both or neither. The library's are
         30 and 10, and 60 Hz on what does not move.
-    by_phase : bool
-        Correct no positions in the short steps around an impact; needs a frequency.
+    correction : float or None
+        Ordinary steps in which a contact corrects a position, in place of the two: in a short step
+        it takes out no more than its share, which else would be a velocity made of rounding.
     recycling : bool or None
         Whether contacts are taken from the last step where bodies have hardly moved.
     warm_starting : float or None
@@ -52,12 +62,15 @@ class RapierSettings:
     sleeping : bool or None
         Whether a block that has hardly moved for half a second is no longer simulated.
     corner_radius : float
-        Radius of the corner balls over the width.
+        Radius of the corner balls over the height. A ball whose centre is rounded to where the
+        base's surface is has no normal there, and no contact for a step.
     reflection : bool
         Give the sliding velocity of the corner about which the block turns back to it, by the
         velocity of the base; not in the steps of an impact.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
+    restitution : float
+        Coefficient of block and base; the library takes their mean.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -67,29 +80,45 @@ class RapierSettings:
     substeps: int | None = setting(least=1)
     iterations: int | None = setting(least=1)
     stabilization: int | None = setting(least=0)
+    sweeps: float | None = setting(above=0.0)
     frequency: float | None = setting(above=0.0, beside=("damping_ratio",))
     damping_ratio: float | None = setting(above=0.0)
-    by_phase: bool = False
+    correction: float | None = setting(above=0.0)
     recycling: bool | None = None
     warm_starting: float | None = setting(least=0.0, most=1.0)
     coulomb: bool | None = None
     sleeping: bool | None = None
-    corner_radius: float = setting(1e-6, above=0.0)
+    corner_radius: float = setting(1e-5, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
+    restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)
-        if self.by_phase and self.frequency is None:
-            raise ValueError("frequency is None; it must be given wherever by_phase is set")
+
+    def iterations_of(self, scene: Scene) -> int | None:
+        """Return how often the solver goes through the contacts; None leaves that to it."""
+        return self.iterations if self.sweeps is None else iterations_for(scene, self.sweeps)
+
+    def spring_of(self, dt_s: float) -> tuple[float, float] | None:
+        """Return a contact's frequency [Hz] and damping ratio; None leaves both to the library.
+
+        A spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
+        depth out of it in a step dt.
+        """
+        if self.correction is not None:
+            return OVERDAMPED / (math.pi * self.correction * dt_s), OVERDAMPED
+        if self.frequency is None or self.damping_ratio is None:
+            return None
+        return self.frequency, self.damping_ratio
 
 
-def parameters(s: RapierSettings) -> dict[str, Any]:
+def parameters(s: RapierSettings, scene: Scene) -> dict[str, Any]:
     """Return the library's parameters that are set, by their own names; a model by its name."""
     return given(
         {
             "num_solver_iterations": s.substeps,
-            "num_internal_pgs_iterations": s.iterations,
+            "num_internal_pgs_iterations": s.iterations_of(scene),
             "num_internal_stabilization_iterations": s.stabilization,
             "contact_recycling": s.recycling,
             "warmstart_coefficient": s.warm_starting,
@@ -101,29 +130,32 @@ def parameters(s: RapierSettings) -> dict[str, Any]:
 TUNED = RapierSettings(
     geometry="corners",
     planar=True,
+    friction=NO_JAM,
     substeps=1,
-    iterations=100,
+    sweeps=20.0,
     stabilization=0,
-    frequency=1e6,
-    damping_ratio=1.0,
+    correction=10.0,
     recycling=False,
     warm_starting=0.0,
     sleeping=False,
 )
 
-LANDING = replace(TUNED, by_phase=True, reflection=True)
+LANDING = replace(TUNED, reflection=True)
 
 RECYCLED = "a contact of an earlier step: the block slides off its pivot"
 FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
+WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
 FACTORS = (
     Factor(
         "contact spring",
-        ("frequency", "damping_ratio"),
+        ("frequency", "damping_ratio", "correction"),
         (
-            level("1e3 Hz", frequency=1e3, damping_ratio=1.0),
-            level("1e6 Hz, ratio 10", frequency=1e6, damping_ratio=10.0),
+            level("1e3 Hz", frequency=1e3, damping_ratio=1.0, correction=None),
+            level("1e6 Hz", frequency=1e6, damping_ratio=1.0, correction=None),
+            level("1 step", correction=1.0),
+            level("1000 steps", correction=1000.0),
         ),
     ),
     factor("recycling", traps={"fixed": RECYCLED}, name="contact recycling"),
@@ -131,7 +163,14 @@ FACTORS = (
     factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
     factor("stabilization"),
     factor("substeps"),
-    factor("iterations", level("10", BOTH, iterations=10), level("1000", iterations=1000)),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (
+            level("10", BOTH, iterations=10, sweeps=None),
+            level("1000", iterations=1000, sweeps=None),
+        ),
+    ),
     factor("warm_starting"),
     factor("coulomb", level("Coulomb", BOTH, coulomb=True), name="friction model"),
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
@@ -140,7 +179,11 @@ FACTORS = (
         ("geometry", "planar"),
         (level("4 corners, free", planar=False), level("planar box", geometry="box")),
     ),
-    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor(
+        "corner_radius",
+        level("H/1000", corner_radius=1e-3),
+        level("1e-7 H", corner_radius=1e-7, trap=WITHOUT_NORMAL),
+    ),
     MOVING_BASE,
 )
 """What its contact can be set to."""

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import sys
+import warnings
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -28,8 +29,9 @@ def silence() -> Iterator[None]:
 
 
 def imported(library: str) -> Any:
-    """Import a library without what it writes past Python."""
+    """Import a library without what it writes past Python, and without its warnings."""
     if library in sys.modules:
         return sys.modules[library]
-    with silence():
+    with silence(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         return import_module(library)

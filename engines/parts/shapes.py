@@ -1,6 +1,7 @@
 """Shapes of block and base that every engine builds in its own words."""
 
 import itertools
+import math
 
 from engines.scene import Scene
 
@@ -17,6 +18,15 @@ FLOOR_HEIGHTS = 100.0
 def fall(scene: Scene, dt_s: float) -> float:
     """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot."""
     return (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
+
+
+def iterations_for(scene: Scene, sweeps: float) -> int:
+    """Return sweeps / sin^2(alpha), rounded up: how often a solver goes through the contacts.
+
+    The impulses of the two corners on which a block stands converge the slower, the more slender it
+    is, and as fast for every block by this.
+    """
+    return math.ceil(sweeps / math.sin(scene.block.alpha) ** 2)
 
 
 def half_size(scene: Scene) -> Point:

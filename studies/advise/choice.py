@@ -10,7 +10,13 @@ import pandas as pd
 from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.declaration import Preset
-from studies.advise.evidence import declared_step, declared_value, elsewhere, settings
+from studies.advise.evidence import (
+    declared_step,
+    declared_value,
+    elsewhere,
+    in_words,
+    settings,
+)
 from studies.kit.journal import Row
 from studies.measures.words import part
 
@@ -44,7 +50,7 @@ def advice(
         for engine in engines:
             mine = known[known["engine"] == engine]
             lines = list(_of_engine(published, mine, engine, target, block))
-            times = [line["wall_s"] for line in lines if math.isfinite(line["dt_s"])]
+            times = [line["wall_s"] for line in lines if not line["message"]]
             for line in lines:
                 line["cheapest"] = bool(times) and line["wall_s"] == min(times)
             rows += lines
@@ -77,9 +83,10 @@ def _chosen(known: pd.DataFrame, preset: Preset, target: float, block: RigidBloc
         nothing = ("value", "dt_s", "wall_s", "max_error")
         return {**dict.fromkeys(nothing, math.nan), "cases": 0}
     value = float(best["value"])
+    own = math.nan if preset.dial else preset.step_s
     return {
         "value": value,
-        "dt_s": value / block.p if math.isfinite(value) else preset.step_s,
+        "dt_s": own if preset.dial or math.isnan(value) else value / block.p,
         "wall_s": float(best["wall_s"]),
         "max_error": float(best["max_error"]),
         "cases": int(best["cases"]),
@@ -112,5 +119,5 @@ def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
     best = known.sort_values("max_error").iloc[0]
     if not math.isfinite(best["max_error"]):
         return f"{NOTHING}: outcomes are wrong at every step"
-    at = "its own step" if math.isnan(best["value"]) else f"p dt = {best['value']:g}"
+    at = in_words(preset, float(best["value"]))
     return f"{NOTHING}: {part(float(best['max_error']))} at best, at {at}"

@@ -59,6 +59,12 @@ def published_engines(published: Path) -> list[str]:
     return [name for name in ENGINES if name in known]
 
 
+def aspects(published: Path) -> tuple[float, float]:
+    """Return the smallest and the largest H/B of the random cases."""
+    found = pd.read_csv(published / RANDOM, usecols=["aspect"])["aspect"]
+    return float(found.min()), float(found.max())
+
+
 def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """Return the settings of the ladder: every preset along its steps, both sets of cases."""
     table = pd.read_csv(published / LADDER)
@@ -104,12 +110,21 @@ def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
 
 
 def declared_value(preset: Preset) -> float:
-    """Return p dt of a preset as it is declared; nan where its step is in seconds, or its own."""
-    return math.nan if preset.dial is not None else preset.ordinary_step()
+    """Return p dt, or the dial, of a preset as it is declared; nan where its step is in seconds."""
+    if preset.dial is not None:
+        return float(getattr(preset.settings, preset.dial[0]))
+    return preset.ordinary_step()
+
+
+def in_words(preset: Preset, value: float) -> str:
+    """Return a setting of a preset: its p dt, its dial, or the library's own step."""
+    if math.isnan(value):
+        return "its own step"
+    return f"{'p dt' if preset.dial is None else preset.dial[0]} = {value:g}"
 
 
 def declared_step(preset: Preset) -> float:
-    """Return p dt of a preset as it is declared; of a step in seconds, the largest in the paper."""
+    """Return what `declared_value` does; of a step in seconds, the largest p dt in the paper."""
     if math.isnan(preset.step_s):
         return declared_value(preset)
     return preset.step_s * max(case.block.p for case in sweep_cases((6,)))

@@ -1,18 +1,28 @@
 """The price of an error: a case's time with the cheapest setting that keeps it."""
 
-import math
 from collections.abc import Sequence
+from textwrap import wrap
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.labels import Name, beside
+from engines import ENGINES
+from studies.advise.evidence import in_words
+from studies.drawing.labels import Name, around, beside
 from studies.drawing.styles import PRESET_LINES, engine_style
-from studies.measures.words import listed, part
+from studies.measures.words import listed, per_cent
 
-WORDS = {"naive": "the libraries' defaults", "fixed": "equal steps", "landing": "landing steps"}
+WORDS = {
+    "naive": "the libraries' defaults",
+    "fixed": "equal steps",
+    "landing": "landing steps",
+    "error-controlled": "an engine's own steps",
+}
 """Preset -> what it is called in the title."""
+LETTERS = 88
+"""In a line of the title."""
 
 
 def draw_advice(lines: pd.DataFrame) -> Figure:
@@ -25,29 +35,30 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     """
     drawing = Figure(figsize=(8.4, 5.2), layout="constrained")
     axes = drawing.subplots()
-    engines = list(lines["engine"].unique())
-    names = []
+    names, steps = [], []
     for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
         kept = group[group["message"] == ""]
         if not kept.empty:
-            above = engines.index(engine) % 2 == 0
-            names.append(_draw(axes, str(engine), str(preset), kept, above))
+            name, mine = _draw(axes, str(engine), str(preset), kept)
+            names.append(name)
+            steps += mine
     targets = sorted(lines["target"].unique(), reverse=True)
     axes.set(xscale="log", yscale="log", xticks=targets)
     axes.set_xticks([], minor=True)
-    axes.set_xticklabels([part(float(target)) for target in targets])
+    axes.set_xticklabels([per_cent(float(error)) for error in targets])
     axes.set_xlim(2.0 * targets[0], targets[-1] / 2.0)
     axes.margins(y=0.15)
     axes.set_xlabel("largest error of a peak, kept on every published case")
     axes.set_ylabel("time of a case  [ms]")
     axes.grid(alpha=0.25)
     axes.set_title(_title(lines, targets), fontsize=11)
+    around(axes, steps, np.array([(step.x, step.y) for step in steps]).reshape(-1, 2), 7.0)
     beside(axes, names)
     return drawing
 
 
-def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool) -> Name:
-    """Draw a preset's line, and its steps where they change; return its name, at the end."""
+def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Name, list[Name]]:
+    """Draw a preset's line; return its name, at the end, and its steps where they change."""
     style = engine_style(engine, preset)
     errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
     axes.plot(
@@ -59,29 +70,22 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame, above: bool)
         fillstyle=style.fill,
         markersize=6,
     )
-    steps = [_step(value) for value in kept["value"]]
+    steps = [_step(engine, preset, value) for value in kept["value"]]
     name = f"{engine} {preset}"
     if len(set(steps)) == 1:
-        return Name(f"{name}, {steps[0]}", float(errors[-1]), float(times[-1]), style.colour)
+        return Name(f"{name}, {steps[0]}", float(errors[-1]), float(times[-1]), style.colour), []
     changed = kept["value"].ne(kept["value"].shift())
-    for error, time, value in zip(
-        errors[changed], times[changed], kept["value"][changed], strict=True
-    ):
-        axes.annotate(
-            _step(value),
-            (error, time),
-            xytext=(-4, 5) if above else (4, -5),
-            textcoords="offset points",
-            ha="right" if above else "left",
-            va="bottom" if above else "top",
-            fontsize=8,
-            color=style.colour,
-        )
-    return Name(name, float(errors[-1]), float(times[-1]), style.colour)
+    marks = [
+        Name(step, float(error), float(time), style.colour)
+        for step, error, time, new in zip(steps, errors, times, changed, strict=True)
+        if new
+    ]
+    return Name(name, float(errors[-1]), float(times[-1]), style.colour), marks
 
 
-def _step(value: float) -> str:
-    return "its own" if math.isnan(value) else f"{value:g}"
+def _step(engine: str, preset: str, value: float) -> str:
+    """Return a setting, of a step the number alone."""
+    return in_words(ENGINES[engine].preset(preset), value).removeprefix("p dt = ")
 
 
 def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
@@ -89,10 +93,10 @@ def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
     kept = lines[lines["message"] == ""]
     best = list(kept.loc[kept["target"] == targets[-1], "preset"].unique())
     none = [name for name in lines["preset"].unique() if name not in set(kept["preset"])]
-    words = f"{part(targets[-1])} is kept by {_named(best)} alone"
+    words = f"{per_cent(targets[-1])} is kept by {_named(best)} alone"
     if none:
-        words += f", and {part(targets[0])} not even by {_named(none)}"
-    return f"{words}\n(numbers: p dt)"
+        words += f", and {per_cent(targets[0])} not even by {_named(none)}"
+    return "\n".join([*wrap(words, LETTERS), "(numbers: p dt)"])
 
 
 def _named(presets: Sequence[str]) -> str:

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import advice
-from studies.advise.evidence import TABLES, published_engines
+from studies.advise.evidence import TABLES, aspects, published_engines
 from studies.advise.words import advice_text, claim, settings_text, told
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -104,10 +104,21 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path) -> str:
     head = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s):"
     return "\n\n".join(
         [
-            f"{head}\n{advice_text(lines)}\n{ELSEWHERE}",
+            f"{head}\n{advice_text(lines)}\n{ELSEWHERE}{_beyond(block, published)}",
             settings_text(lines, block) or "No setting to write out.",
             fill(f"From {listed(TABLES)}, made with {_versions(published)}.", 99),
         ]
+    )
+
+
+def _beyond(block: RigidBlock, published: Path) -> str:
+    """Say where a block is of another shape than any of the published cases."""
+    low, high = aspects(published)
+    aspect = block.height / block.width
+    if low <= aspect <= high:
+        return ""
+    return (
+        f"\nIts H/B is {aspect:.3g}, and that of the published cases from {low:.3g} to {high:.3g}."
     )
 
 

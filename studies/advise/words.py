@@ -1,6 +1,7 @@
 """A setting in the library's own words, and advice as text."""
 
 import math
+from dataclasses import asdict
 from textwrap import indent
 from typing import Any
 
@@ -10,8 +11,10 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset
+from engines.parts.settings import given
+from studies.advise.evidence import in_words
 from studies.kit.tables import left_aligned
-from studies.measures.words import duration, listed, part
+from studies.measures.words import duration, listed, part, per_cent
 
 ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
 """Settings depend on no motion."""
@@ -25,10 +28,12 @@ def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> 
     engine, preset : Engine, Preset
     block : RigidBlock
     value : float
-        p dt; nan for the preset's own step.
+        p dt, or the preset's dial; nan for its own step.
     """
-    step = None if math.isnan(value) or preset.dial is not None else value
-    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, step=step)
+    options: dict[str, Any] = {}
+    if not math.isnan(value):
+        options = {"settings": {preset.dial[0]: value}} if preset.dial else {"step": value}
+    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, **options)
     lines = [*_settings(engine, preset, scene), *_besides(preset)]
     return "\n".join(lines)
 
@@ -38,7 +43,8 @@ def _settings(engine: Engine, preset: Preset, scene: Scene) -> list[str]:
     chosen = scene.choose(preset.settings)
     if engine.script is not None:
         return list(engine.script(scene, chosen, dt_s).settings)
-    return [f"a step of {dt_s!r} s, and in this project's names", repr(chosen)]
+    named = ", ".join(f"{name}={value!r}" for name, value in given(asdict(chosen)).items())
+    return [f"a step of {dt_s!r} s, and in this project's names", named]
 
 
 def _besides(preset: Preset) -> list[str]:
@@ -57,7 +63,7 @@ def advice_text(lines: pd.DataFrame) -> str:
             "error": lines["target"].map("{:g}".format),
             "engine": lines["engine"],
             "preset": lines["preset"],
-            "p dt": lines["value"].map(_number),
+            "setting": [_setting(line) for _, line in lines.iterrows()],
             "step here": lines["dt_s"].map(_time),
             "a case": lines["wall_s"].map(_time),
             "largest error": lines["max_error"].map(part),
@@ -73,8 +79,13 @@ def _mark(cheapest: bool) -> str:
     return "the engine's cheapest" if cheapest else ""
 
 
-def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:g}"
+def preset_of(line: "pd.Series[Any]") -> Preset:
+    """Return the preset of a line of advice."""
+    return ENGINES[str(line["engine"])].preset(str(line["preset"]))
+
+
+def _setting(line: "pd.Series[Any]") -> str:
+    return "-" if line["message"] else in_words(preset_of(line), float(line["value"]))
 
 
 def _time(value: float) -> str:
@@ -98,34 +109,28 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
     for _, line in chosen.iterrows():
         engine = ENGINES[str(line["engine"])]
         preset, value = engine.preset(str(line["preset"])), float(line["value"])
-        head = f"{engine.title}, {preset.title}, {_step(value, float(line['dt_s']))}"
+        here = "" if math.isnan(line["dt_s"]) else f", here {duration(float(line['dt_s']))}"
+        head = f"{engine.title}, {preset.title}, {in_words(preset, value)}{here}"
         parts.append(f"{head}\n{indent(literal(engine, preset, block, value), '  ')}")
     return "\n\n".join(parts)
 
 
-def _step(value: float, dt_s: float) -> str:
-    own = "the library's own step" if math.isnan(value) else f"p dt = {value:g}"
-    return f"{own}, here {duration(dt_s)}"
-
-
 def claim(lines: pd.DataFrame) -> str:
     """Say which engine keeps which error at what cost, and where nothing does."""
-    words = []
+    alike: dict[str, list[str]] = {}
     for target, group in lines.groupby("target", sort=False):
         found = group[group["cheapest"]].sort_values("wall_s")
-        if found.empty:
-            words.append(f"{part(float(str(target)))} by nothing")
-            continue
-        best = found.iloc[0]
-        words.append(
-            f"{part(float(str(target)))} by {best['engine']} {best['preset']} at "
-            f"{_at(float(best['value']))} ({duration(float(best['wall_s']))} a case)"
-        )
+        by = "nothing"
+        if not found.empty:
+            best = found.iloc[0]
+            by = (
+                f"{best['engine']} {best['preset']} at "
+                f"{in_words(preset_of(best), float(best['value']))} "
+                f"({duration(float(best['wall_s']))} a case)"
+            )
+        alike.setdefault(by, []).append(per_cent(float(str(target))))
+    words = [f"{listed(targets)} by {by}" for by, targets in alike.items()]
     return f"Errors are kept cheapest: {'; '.join(words)}."
-
-
-def _at(value: float) -> str:
-    return "its own step" if math.isnan(value) else f"p dt = {value:g}"
 
 
 def told(lines: pd.DataFrame) -> str:
@@ -133,7 +138,7 @@ def told(lines: pd.DataFrame) -> str:
     names = lines["engine"] + " " + lines["preset"]
     kept = lines["message"] == ""
     sentences = [
-        f"An error of {part(float(str(target)))} is kept by {listed(list(names[group.index]))}."
+        f"An error of {per_cent(float(str(target)))} is kept by {listed(list(names[group.index]))}."
         for target, group in lines[kept].groupby("target", sort=False)
     ]
     none = [name for name in names.unique() if not kept[names == name].any()]

@@ -10,6 +10,7 @@ from analytic.block import STANDARD_GRAVITY, RigidBlock
 from analytic.conditioning import Conditioning, condition_numbers
 from analytic.maps import Modes, overturning_modes
 from analytic.motion import FloatArray, SinePulse
+from analytic.simulate import peak_ratios
 from studies.cases.paper import PULSES
 
 Axis = Literal["frequency", "slenderness", "size"]
@@ -144,6 +145,12 @@ class Window:
         amplitude = onsets * np.tan(alpha)
         ratio, cycles = self.ratio(x), self.half_cycles
         return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
+
+    def peaks(self, x: FloatArray, onsets: FloatArray, threads: int | None = None) -> FloatArray:
+        """Return the exact peak ratios at points of the plane, broadcast; inf when overturned."""
+        alpha = self.alpha(x)
+        amplitude, ratio = onsets * np.tan(alpha), self.ratio(x)
+        return peak_ratios(alpha, amplitude, ratio, self.half_cycles, threads=threads)[0]
 
     def condition_numbers(self, x: FloatArray, onsets: FloatArray) -> Conditioning:
         """Return the condition numbers of the exact peaks at points of the plane, broadcast."""

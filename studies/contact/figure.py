@@ -9,14 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from engines.factors import BEST, DEFAULT
+from studies.drawing.styles import PRESET_COLOURS
 
-LANDING = "landing"
-COLOURS = {LANDING: "#009E73", BEST: "#0072B2", DEFAULT: "#D55E00"}
 TITLES = {
-    LANDING: "one help of landing left out",
+    "landing": "one help of landing left out",
+    "error-controlled": "one help of the engine's own steps",
     BEST: "one change from the best fixed-step setting",
     DEFAULT: "one from the defaults",
 }
+"""Preset -> what is changed of it, in the order in which they stand."""
 MATTER = 6
 """How many variants of a preset are drawn one by one."""
 REST = "the rest"
@@ -45,8 +46,8 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         f"The {MATTER} changes of each preset that matter most, from the smallest error down",
         fontsize=11,
     )
-    drawing.legend(handles=_handles(), loc="outside lower center", ncols=3, frameon=False,
-                   fontsize=9)  # fmt: skip
+    handles = _handles(set(lines["preset"]))
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
     return drawing
 
 
@@ -55,11 +56,11 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
     axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
     for place, (_, line) in enumerate(ordered.iterrows()):
         _one_variant(axes, place, line)
-    for preset in COLOURS:
+    for preset in TITLES:
         _baseline(axes, ordered, preset)
     axes.set_yticks(range(len(ordered)), [_label(line) for _, line in ordered.iterrows()])
     for text, (_, line) in zip(axes.get_yticklabels(), ordered.iterrows(), strict=True):
-        text.set(fontsize=8, color=COLOURS[str(line["preset"])])
+        text.set(fontsize=8, color=PRESET_COLOURS[str(line["preset"])])
         if not line["factor"]:
             text.set_fontweight("bold")
         elif line["factor"] == REST:
@@ -95,7 +96,7 @@ def _rest(lines: pd.DataFrame) -> pd.DataFrame:
 def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
     broken = lines["worse"] | lines["max_error"].isna()
     keyed = lines.assign(
-        first=lines["preset"].map({name: place for place, name in enumerate(COLOURS)}),
+        first=lines["preset"].map({name: place for place, name in enumerate(TITLES)}),
         own=(lines["factor"] != "").astype(int) - (lines["factor"] == REST) * 0.5,
         broken=broken,
         worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
@@ -104,7 +105,7 @@ def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
 
 
 def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
-    colour = COLOURS[str(line["preset"])]
+    colour = PRESET_COLOURS[str(line["preset"])]
     error = max(float(line["max_error"]), LOWEST)
     if line["max_error"] == line["max_error"]:
         median = max(float(line["median_error"]), LOWEST)
@@ -125,7 +126,7 @@ def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
     if base.empty:
         return
     places = own.nonzero()[0]
-    axes.plot([base.iloc[0]] * 2, [places[0] - 0.5, places[-1] + 0.5], color=COLOURS[preset],
+    axes.plot([base.iloc[0]] * 2, [places[0] - 0.5, places[-1] + 0.5], color=PRESET_COLOURS[preset],
               linewidth=1.0, linestyle="--", zorder=0)  # fmt: skip
     axes.axhline(places[0] - 0.5, color="#999999", linewidth=0.8)
 
@@ -137,10 +138,11 @@ def _label(line: "pd.Series[Any]") -> str:
     return f"{name}  [trap]" if line["trap"] else name
 
 
-def _handles() -> list[Line2D]:
+def _handles(presets: set[str]) -> list[Line2D]:
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o"}
     return [
-        *(Line2D([], [], color=COLOURS[key], label=name, **plain) for key, name in TITLES.items()),
+        *(Line2D([], [], color=PRESET_COLOURS[key], label=name, **plain)
+          for key, name in TITLES.items() if key in presets),
         Line2D([], [], color="#666666", linestyle="--", label="the preset as it is"),
         Line2D([], [], color="#666666", marker="o", label="peak, median to largest error"),
         Line2D([], [], color="#444444", linestyle="none", marker="D", markersize=4,

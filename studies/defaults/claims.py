@@ -87,11 +87,28 @@ def shares(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def first_claim(table: pd.DataFrame) -> str:
+    """Say between which parts of all pulses the engines get right."""
+    sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
+    parts = (sums["close"] / sums["cases"]).sort_values()
+    ends = dict.fromkeys(
+        f"{_whole(parts[name])} ({_engine(name)})" for name in parts.index[[0, -1]]
+    )
+    return (
+        f"As the libraries come, outcome and peak (within {part(CLOSE)}) are right in "
+        f"{' to '.join(ends)} of {int(sums['cases'].iloc[0])} pulses under which a block neither "
+        "slides nor lifts off."
+    )
+
+
+def _engine(source: object) -> str:
+    return str(source).partition(":")[0]
+
+
+def _each(table: pd.DataFrame) -> str:
     """Say what part of all pulses each engine gets right."""
     sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
     words = [
-        f"{str(name).partition(':')[0]} {_whole(row['close'] / row['cases'])}"
-        for name, row in sums.iterrows()
+        f"{_engine(name)} {_whole(row['close'] / row['cases'])}" for name, row in sums.iterrows()
     ]
     return (
         f"Outcome right and peak within {part(CLOSE)}, as the libraries come: {listed(words)} of "
@@ -119,8 +136,8 @@ def claims(table: pd.DataFrame, rows: pd.DataFrame) -> str:
             )
             if row[column]
         ]
-        words.append(f"{str(name).partition(':')[0]} {listed(wrong)}")
-    return f"{first_claim(table)} Of the rest: {'; '.join(words)}. {similarity(rows)}"
+        words.append(f"{_engine(name)} {listed(wrong)}")
+    return f"{_each(table)} Of the rest: {'; '.join(words)}. {similarity(rows)}"
 
 
 def similarity(rows: pd.DataFrame) -> str:

@@ -64,8 +64,13 @@ FILLS: dict[str, Fill] = {"naive": "full", "fixed": "left", "error-controlled": 
 """Preset -> how much of an engine's marker is filled; open is the best there is."""
 PRESET_LINES = {"naive": ":", "fixed": "--", "error-controlled": "-."}
 """Preset -> line, where an engine is drawn as one; the best there is has a full line."""
-PRESET_COLOURS = {"naive": "#D55E00", "fixed": "#7A7A7A", "error-controlled": "#CC79A7"}
-"""Preset -> colour where presets are compared and engines are named; blue is the best there is."""
+PRESET_COLOURS = {
+    "naive": "#D55E00",
+    "fixed": "#0072B2",
+    "error-controlled": "#CC79A7",
+    "landing": "#009E73",
+}
+"""Preset -> colour where presets are compared, and the engines are named."""
 
 OTHER = Style("#777777", marker="D")
 """Of a source without a style of its own."""
@@ -83,7 +88,7 @@ def engine_style(engine: str, preset: str) -> Style:
 
 def preset_style(preset: str) -> Style:
     """Return how the engines with a preset are drawn where they are named beside their points."""
-    colour = PRESET_COLOURS.get(preset, "#0072B2")
+    colour = PRESET_COLOURS.get(preset, OTHER.colour)
     return Style(colour, marker="o", fill=FILLS.get(preset, "none"))
 
 

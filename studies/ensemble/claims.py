@@ -32,10 +32,10 @@ def first_claim(agreed: pd.DataFrame) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
     words: dict[bool, list[str]] = {True: [], False: []}
     for source, rows in agreed.groupby("source", sort=False):
-        words[bool(rejections(rows))].append(f"{source} ({part(share_predicted(rows))})")
+        words[bool(rejections(rows))].append(str(source))
     return (
-        f"Tests tell the statistics from the exact ones for {listed(words[True])}, and for "
-        f"{listed(words[False])} they do not (in brackets the single responses predicted)."
+        f"Of many records, tests tell the statistics by {listed(words[True])} from the exact ones, "
+        f"and those by {listed(words[False])} they do not."
     )
 
 

@@ -13,7 +13,10 @@ estimates.csv, factors.csv, estimate.png and findings.txt; resumable.""",
     table="estimate.csv",
     products=("estimate.csv", "estimates.csv", "factors.csv", "estimate.png", "findings.txt"),
     captions={
-        "estimate": "Error of each case over the engine's own estimate of it, from half the step.",
+        "estimate": (
+            "Part of the cases whose true error is within so many times the engine's own estimate "
+            "of it, the difference from half the step; a line for each engine, by preset."
+        ),
     },
     chapters=(
         Chapter(

@@ -1,14 +1,12 @@
 """Estimates beside the true errors, and by how much they are to be multiplied."""
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import pandas as pd
 
 from studies.measures.differences import scientific, with_reference
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, estimates_of
-from studies.measures.presets import in_words, preset_of
+from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import listed, out_of, part
 
 RESOLVED = 1e-9
@@ -117,20 +115,29 @@ def first_claim(table: pd.DataFrame) -> str:
 
 
 def told(table: pd.DataFrame) -> str:
-    """Say of every source how far its estimates are off."""
-    return " ".join(_of_source(line) for line in table.to_dict("records"))
+    """Say of every preset what part of the errors 3 and 10 estimates bound, engine by engine."""
+    presets = table["source"].map(preset_of)
+    return " ".join(_of_preset(name, table[presets == name]) for name in in_order(presets))
 
 
-def _of_source(line: Mapping[Any, Any]) -> str:
-    source = str(line["source"])
-    number = {name: float(str(value)) for name, value in line.items() if name != "source"}
-    words = (
-        f"{source} ({in_words(preset_of(source))}): {part(number['median_estimate'])} for an error "
-        f"of {part(number['median_error'])} in the medians of {number['survivors']:.0f} survivors; "
-        f"3 estimates bound {part(number['within_3'])} of the errors, 10 bound "
-        f"{part(number['within_10'])}, and {number['factor_all']:.3g} all"
-    )
-    if number["wrong"]:
-        seen = out_of(number["told"], number["wrong"])
-        words += f"; of its wrong outcomes half the step tells {seen}"
-    return f"{words}."
+def _of_preset(preset: str, lines: pd.DataFrame) -> str:
+    head = in_words(preset)
+    head = head[0].upper() + head[1:]
+    ordered = lines[lines["survivors"] > 0].sort_values("within_10", kind="stable")
+    if ordered.empty:
+        return f"{head} no case rocked at both steps."
+    words = [
+        f"{engine_of(line['source'])} {part(float(line['within_3']))} and "
+        f"{part(float(line['within_10']))}"
+        for _, line in ordered.iterrows()
+    ]
+    sentence = f"{head} 3 and 10 estimates bound, of the errors of {listed(words)}"
+    if wrong := int(lines["wrong"].sum()):
+        seen = out_of(int(lines["told"].sum()), wrong)
+        sentence += f"; of their wrong outcomes half the step tells {seen}"
+    return f"{sentence}."
+
+
+def engine_of(source: str) -> str:
+    """Return the engine that a source is a preset of."""
+    return source.partition(":")[0]

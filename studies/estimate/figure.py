@@ -1,4 +1,4 @@
-"""True errors against estimates: below the line an estimate is enough, far above it is blind."""
+"""How many of the errors so many estimates bound: to the right of 10, an estimate is blind."""
 
 import numpy as np
 import pandas as pd
@@ -7,62 +7,54 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import style_of
+from studies.estimate.calibration import engine_of
 from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.words import part
 
-FLOOR = 1e-10
-"""Errors and estimates below are drawn here."""
+LEAST, MOST = 0.1, 1e4
+"""Ends of the scale of factors."""
+
+MARKED = 10.0
+"""Factor at which engines are named, with the part of their errors that it bounds."""
 
 
 def draw_estimates(lines: pd.DataFrame) -> Figure:
-    """Draw the error of every case against its estimate, a panel for each preset.
+    """Draw the part of each source's errors within a multiple of its estimates, by preset.
 
     Parameters
     ----------
     lines : DataFrame
         The columns of estimates.csv.
     """
-    lines = lines[lines["over"].notna() & np.isfinite(lines["estimate"])]
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
-    drawing = Figure(figsize=(2.9 * len(names) + 0.9, 4.2), layout="constrained")
+    drawing = Figure(figsize=(4.3 * len(names), 4.2), layout="constrained")
     panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
-    ends = np.array([FLOOR, 10.0])
+    named = [_panel(axes, lines[presets == name]) for axes, name in zip(panels, names, strict=True)]
     for axes, preset in zip(panels, names, strict=True):
-        axes.plot(ends, ends, color="#777777", linewidth=0.9)
-        axes.plot(ends, 10.0 * ends, color="#777777", linewidth=0.9, linestyle=":")
-        _points(axes, lines[presets == preset])
-        axes.set(xscale="log", yscale="log", xlim=(FLOOR / 2, 10.0), ylim=(FLOOR / 2, 10.0))
+        axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
         axes.set_title(in_words(preset), fontsize=9)
-        axes.set_xlabel("difference to half the step  [–]")
+        axes.set_xlabel("times the difference to half the step")
         axes.grid(alpha=0.25)
-    panels[0].set_ylabel("true error of the peak  [–]")
-    ten = [
-        Name("error = 10 ×", 1.0, 10.0, "#777777"),
-        Name("error = 1 ×", 10.0, 5.0, "#777777"),
-    ]
-    beside(panels[-1], ten, 8.0)
-    drawing.suptitle("Whether the change by half the step tells the error; "
-                     "counted: above ten times the change", fontsize=11)  # fmt: skip
+    panels[0].set_ylabel("part of the errors that are smaller")
+    drawing.suptitle(f"Named: the part within {MARKED:g} times the difference", fontsize=10)
+    for axes, mine in zip(panels, named, strict=True):
+        beside(axes, mine, 8.0)
     return drawing
 
 
-def _points(axes: Axes, lines: pd.DataFrame) -> None:
-    """Draw the cases of each source, and write its name and how many lie above ten estimates."""
-    for place, (source, rows) in enumerate(lines.groupby("source", sort=False)):
-        style = style_of(str(source))
-        axes.plot(
-            rows["estimate"].clip(lower=FLOOR),
-            rows["error"].abs().clip(lower=FLOOR),
-            **style.points(4.0),
-        )
-        above = int((rows["over"] > 10.0).sum())
-        axes.text(
-            0.97,
-            0.1 - 0.06 * place,
-            f"{source}: {above} of {len(rows)} above",
-            color=style.colour,
-            fontsize=8,
-            transform=axes.transAxes,
-            ha="right",
-            va="top",
-        )
+def _panel(axes: Axes, lines: pd.DataFrame) -> list[Name]:
+    """Draw a line for each source; return their names, at what ten estimates bound."""
+    names = []
+    for factor in (1.0, MARKED):
+        axes.axvline(factor, color="#999999", linewidth=0.8, linestyle=":")
+    for source, rows in lines.groupby("source", sort=False):
+        over = np.sort(rows["over"].dropna().to_numpy())
+        if len(over):
+            colour = style_of(str(source)).colour
+            parts = np.arange(len(over) + 1) / len(over)
+            axes.step([LEAST, *np.maximum(over, LEAST)], parts, where="post", color=colour)
+            within = float((over <= MARKED).mean())
+            text = f"{engine_of(str(source))} {part(within)}"
+            names.append(Name(text, MARKED, within, colour))
+    return names

@@ -140,16 +140,28 @@ SYMPTOMS = {
 
 RESTITUTION = {
     "way": Column("", "how the coefficient of restitution is asked for"),
-    "varied": Column("", "what differs from 1 ms, 1 m/s and a radius of 0.1 m"),
+    "varied": Column("", "what differs from the drop, or the strike, that stands first"),
     "wanted": Column("-", "coefficient of restitution that is asked for"),
     "speed_m_s": Column("m/s", "speed with which a sphere sets out"),
     "radius_m": Column("m", "radius of the sphere"),
     "phase": Column("-", "part of a step after which it meets the base"),
     "speed_ratio": Column("-", "speed after over before; nan where the library went wrong"),
-    "off": Column("-", "largest |speed_ratio - wanted| wherever in a step the impact falls"),
+    "p_dt": Column("-", "step in units of 1/p"),
+    "rate_over_alpha_p": Column("-", "angular rate of a block at its impact, over α p"),
+    "kept_ratio": Column("-", "1 - 3/2 (1 + e) sin² α, what the block should keep of its rate"),
+    "rate_ratio": Column("-", "angular rate after over before the impact"),
+    "corner_ratio": Column("-", "upward speed of the striking corner over that of its approach"),
+    "slide_ratio": Column("-", "its speed along the base over that of its approach"),
+    "off": Column("-", "largest difference of a ratio after over before from what it should be"),
     "off_dt_s": Column("-", "the same at other steps"),
     "off_speed": Column("-", "the same at other speeds"),
     "off_radius": Column("-", "the same at other radii"),
+    "off_p_dt": Column("-", "the same at other steps"),
+    "off_rate_over_alpha_p": Column("-", "the same at other rates"),
+    "off_height_m": Column("-", "the same at other heights"),
+    "off_aspect": Column("-", "the same at another slenderness"),
+    "corner": Column("-", "largest |corner_ratio - wanted|"),
+    "slide": Column("-", "largest |slide_ratio|"),
     "broken": Column("-", "drops that the library did not survive"),
 }
 
@@ -165,7 +177,7 @@ VERSIONS = {
 
 ADVICE = {
     "target": Column("-", "error of the peak that is to be kept"),
-    "dt_s": Column("s", "step for the block of the advice"),
+    "dt_s": Column("s", "step for the block of the advice; nan where an engine chooses its own"),
     "random_cases": Column("-", "random cases on which the preset was published as it is"),
     "random_off": Column("-", "of these, other outcomes, or errors above the target"),
     "extreme_cases": Column("-", "extreme cases, where the reference holds"),
@@ -224,6 +236,7 @@ METHODS = {
     "seconds": Column("s", "time of all cases"),
     "cases_a_second": Column("1/s", "cases a second"),
     "us_a_case_and_core": Column("µs", "time of a case on one core"),
+    "busy": Column("-", "part of the time that the cores of all threads worked"),
     "times_exact": Column("-", "time over that of the exact solution on one thread"),
 }
 

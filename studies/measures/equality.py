@@ -19,7 +19,7 @@ from studies.kit.study import Study
 MEASURED = frozenset(
     {
         *("wall_s", "setup_s", "step_s", "engine_s", "adapter_s", "pose_s", "look_s"),
-        *("seconds", "cases_a_second", "us_a_case_and_core", "times_exact"),
+        *("seconds", "cases_a_second", "us_a_case_and_core", "busy", "times_exact"),
         *("memory_kib", "real_time_factor"),
     }
 )

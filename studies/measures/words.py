@@ -48,6 +48,11 @@ def part(value: float) -> str:
     return f"{value:.0%}".replace("%", " %") if abs(value) >= WHOLE else f"{100.0 * value:.2g} %"
 
 
+def per_cent(error: float) -> str:
+    """Return an error that is asked for, in per cent."""
+    return f"{100.0 * error:g} %"
+
+
 def times(value: float) -> str:
     """Return a factor that something follows: "0.62 of", "1.1 times", "192 times"."""
     if value < 1.0:

@@ -9,6 +9,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from scipy.ndimage import distance_transform_edt
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
@@ -16,6 +17,7 @@ from studies.drawing.styles import style_of
 from studies.measures.differences import conditioning_of
 from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
 
+AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
 PIXELS = 900
 KAPPA_SHOWN = 1e2
 """Upper end of the colours of κ: what is beyond needs no telling apart."""
@@ -27,6 +29,15 @@ MODE_COLOURS = {
     "after 2": "#7FCDB8",
     "after 3 or more": "#CC79A7",
 }
+MODE_WORDS = {
+    "survives": "survives",
+    "no impact": "overturns at once",
+    "after 1": "overturns after 1 impact",
+    "after 2": "overturns after 2",
+    "after 3 or more": "overturns after 3 or more",
+}
+ROOM = 0.08
+"""Distance to its edge, over the size of the picture, of an area that has room for words."""
 DIFFERENCE_COLOURS = {
     "both survive": "#FFFFFF",
     "both overturn": "#CCCCCC",
@@ -41,12 +52,13 @@ def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
     drawing = Figure(figsize=(8.6, 6.4), layout="constrained")
     axes = drawing.subplots()
     exact = areas[areas["model"] == "exact"]
-    modes = picture(exact, window)
-    shown = _paint(axes, np.clip(modes, -1, 3) + 1, MODE_COLOURS, window)
+    codes = np.clip(picture(exact, window), -1, 3) + 1
+    shown = _paint(axes, codes, MODE_COLOURS, window)
+    named = _name_the_areas(axes, codes, window)
     handles: list[Line2D | Patch] = [
-        Patch(facecolor=colour, edgecolor="#888888", label=name)
+        Patch(facecolor=colour, edgecolor="#888888", label=MODE_WORDS[name])
         for name, colour in MODE_COLOURS.items()
-        if name in shown
+        if name in shown - named
     ]
     for model, part in areas.groupby("model", sort=False):
         over = part[part["mode"] >= 0].groupby("x")["low"].min()
@@ -60,9 +72,24 @@ def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
         Line2D([], [], color="#D55E00", linewidth=0.8, label="housner: no impact, closed form")
     )
     _frame(axes, window)
-    axes.set_title(f"Exact solution: {window.title}", fontsize=11)
+    axes.set_title(f"Which pulses overturn a block: {window.title}", fontsize=11)
     drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
     return drawing
+
+
+def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[str]:
+    """Write what happens in the middle of each area that has room for it; return these modes."""
+    named = set()
+    x, y = window.centres(codes.shape[0]), window.amplitudes(codes.shape[1])
+    for code, (mode, words) in enumerate(MODE_WORDS.items()):
+        # what is beyond the picture is another area
+        depth = distance_transform_edt(np.pad(codes == code, 1))[1:-1, 1:-1]
+        column, row = np.unravel_index(int(depth.argmax()), depth.shape)
+        if depth.max() > ROOM * max(codes.shape):
+            axes.text(x[column], y[row], words.replace(" ", "\n", 1), ha="center", va="center",
+                      fontsize=11, color="#333333")  # fmt: skip
+            named.add(mode)
+    return named
 
 
 def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window) -> Figure:
@@ -92,11 +119,12 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
             wrong = f"{off[source]} of {len(parts[source])} cells"
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
         axes.set_title(f"{source}: {wrong} wrong", fontsize=10)
-        _frame(axes, window, below=place + across >= len(drawn), left=place % across == 0)
+        _frame(axes, window, below=place + across >= len(drawn), left=False)
     for axes in panels[len(drawn) :]:
         axes.set_visible(False)
     alike = [str(name) for name in parts if not off[name]]
     words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
+    drawing.supylabel(AMPLITUDE, fontsize=10)
     drawing.suptitle(f"Beside the exact map, {window.title}{words}", fontsize=11)
     shown = [name for name in DIFFERENCE_COLOURS if name != "failed" or _any_failed(cells)]
     drawing.legend(
@@ -142,7 +170,8 @@ def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
     )
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
     _frame(axes, window)
-    axes.set_title(f"Conditioning: {window.title}; grey: overturns or stays at rest")
+    title = f"How sensitive a peak is: {window.title}; grey: it overturns or stays at rest"
+    axes.set_title(title, fontsize=11)
     return drawing
 
 
@@ -182,4 +211,4 @@ def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True)
         axes.set_xlabel(window.label)
         axes.tick_params(labelbottom=True)
     if left:
-        axes.set_ylabel("amplitude of the pulse  $a_p$ / (g tan α)  [–]")
+        axes.set_ylabel(AMPLITUDE)

@@ -19,7 +19,7 @@ from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import capital, duration, listed, out_of, part
+from studies.measures.words import capital, duration, listed, out_of, part, per_cent
 from studies.page import hero
 from studies.page.markdown import table
 from studies.precision.choices import NEAR, TYPICAL, Choice, choices
@@ -28,6 +28,8 @@ from studies.sweep.claims import linearized, preset_table, whole
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
 
+MANY = 15
+"""Statements of a chapter up to which they are shown; more are folded."""
 NINTH = Path("tests", "plugin", "my_engine.py")
 """An engine of another package, in few lines."""
 
@@ -63,8 +65,15 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
             for path in sorted(folder.glob("*.png"))
         ),
         texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
-        statements=tuple(read_findings(folder)) if (folder / TABLE).is_file() else (),
+        statements=told_of(folder),
     )
+
+
+def told_of(folder: Path) -> tuple[Finding, ...]:
+    """Return the statements that a study tested; what it could not test is no finding."""
+    if not (folder / TABLE).is_file():
+        return ()
+    return tuple(item for item in read_findings(folder) if item.holds is not None)
 
 
 def chapters(published: Path) -> list[Told]:
@@ -89,16 +98,28 @@ def presets(published: Path) -> pd.DataFrame:
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
+def shared(lines: pd.DataFrame) -> list[str]:
+    """Return the presets that several engines have, in order; all, where there is none such."""
+    counts = lines["preset"].value_counts()
+    return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
+
+
 def presets_short(lines: pd.DataFrame) -> str:
-    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset."""
-    names = in_order(lines["preset"])
-    heads = ("", *(f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names))
+    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
+
+    A preset of one engine alone has no column: it is named in its cell in the last.
+    """
+    names = shared(lines)
+    heads = [f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names]
     rows = []
     for engine, mine in lines.groupby("engine", sort=False):
-        by_preset = {row["preset"]: row for _, row in mine.iterrows()}
-        cells = (_short(by_preset[name]) if name in by_preset else "–" for name in names)
-        rows.append((f"**{ENGINES[str(engine)].title}**", *cells))
-    return table(heads, rows)
+        cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
+        alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
+        shown = [cells.get(name, "–") for name in names]
+        if alone and shown[-1] == "–":
+            shown[-1] = "<br>".join(alone)
+        rows.append((f"**{ENGINES[str(engine)].title}**", *shown))
+    return table(("", *heads), rows)
 
 
 def _short(row: "pd.Series[Any]") -> str:
@@ -144,7 +165,7 @@ def choices_short(lines: pd.DataFrame) -> str:
     """
     heads = ("largest error", "typical cases", "a case", "also near overturning", "a case")
     rows = [
-        (f"{100.0 * chosen.target:g} %", *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
+        (per_cent(chosen.target), *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
         for chosen in choices(lines)
     ]
     return table(heads, rows)
@@ -167,7 +188,7 @@ def choices_text(lines: pd.DataFrame) -> str:
         *("near overturning", "cheapest on all cases", "a case"),
     )
     rows = [
-        (f"{100.0 * chosen.target:g} %", *_typical(chosen.typical), *_cheapest(chosen.everywhere))
+        (per_cent(chosen.target), *_typical(chosen.typical), *_cheapest(chosen.everywhere))
         for chosen in choices(lines)
     ]
     return table(heads, rows)

@@ -13,14 +13,14 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
+from engines import ENGINES
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
-from studies.measures.claims import TABLE, Finding, read_findings
-from studies.measures.presets import in_order, in_words
+from studies.measures.presets import in_words
 from studies.measures.words import part
 from studies.page.engine_cases import engine_cases
-from studies.page.facts import presets
+from studies.page.facts import MANY, presets, shared, told_of
 from studies.sweep.claims import verdict
 
 GOOD, BAD = 1e-3, 0.1
@@ -42,6 +42,7 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
         made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
+        many=MANY,
         cases=engine_cases(folder),
         **first_sight(folder),
     )
@@ -60,15 +61,17 @@ def first_sight(folder: Path) -> dict[str, Any]:
     lines = presets(folder)
     if lines.empty:
         return {"verdict": "", "presets": [], "tiles": {}}
-    names = in_order(lines["preset"])
-    tiles = {
-        engine: {row["preset"]: _tile(row) for _, row in group.iterrows()}
-        for engine, group in lines.groupby("engine", sort=False)
-    }
+    names = shared(lines)
+    tiles = {}
+    for engine, group in lines.groupby("engine", sort=False):
+        mine = {row["preset"]: _tile(row) for _, row in group.iterrows()}
+        row = [mine.get(name) for name in names]
+        alone = [{**tile, "preset": name} for name, tile in mine.items() if name not in names]
+        tiles[ENGINES[str(engine)].title] = [*row[:-1], row[-1] or next(iter(alone), None)]
     return {
         "verdict": verdict(lines),
         "presets": list(map(in_words, names)),
-        "tiles": {engine: [mine.get(name) for name in names] for engine, mine in tiles.items()},
+        "tiles": tiles,
     }
 
 
@@ -80,7 +83,7 @@ def _tile(row: "pd.Series[Any]") -> dict[str, str]:
         "kind": "good" if good else "bad" if bad else "",
         "wrong": f"{lost} wrong" if lost else "none wrong",
         "median": _unbroken(part(row["median"])),
-        "max": _unbroken(part(row["max"])),
+        "max": f"max {_unbroken(part(row['max']))}",
     }
 
 
@@ -118,13 +121,6 @@ def prose(text: str) -> list[tuple[bool, list[str]]]:
         (tabular, list(part))
         for tabular, part in itertools.groupby(lines, lambda line: "  " in line.strip())
     ]
-
-
-def told_of(folder: Path) -> list[Finding]:
-    """Return the statements that a study tested; what it could not test is no finding."""
-    if not (folder / TABLE).is_file():
-        return []
-    return [item for item in read_findings(folder) if item.holds is not None]
 
 
 SMALL = 1e-2

@@ -54,6 +54,7 @@ def pages(root: Path) -> dict[Path, str]:
     lines = facts.presets(published)
     steps = pd.read_csv(published / "precision" / "work-precision.csv")
     known = {
+        "many": facts.MANY,
         "chapters": facts.chapters(published),
         "verdict": verdict(lines),
         "missing": facts.missing(published),

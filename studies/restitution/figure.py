@@ -1,77 +1,111 @@
 """What comes out of a coefficient of restitution against what is wanted."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from textwrap import wrap
 
-import numpy as np
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from studies.drawing.labels import Name, beside
 from studies.drawing.styles import engine_style
 
-ACROSS = 3
+ACROSS = 5
 """Panels in a row."""
-TOP = 1.35
-"""Upper end of the scale; what is beyond, or broken, stands there as a cross."""
+LETTERS = 34
+"""In a line of a panel's title."""
 
 
-def draw_restitution(rows: pd.DataFrame) -> Figure:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shown:
+    """What a figure shows.
+
+    Attributes
+    ----------
+    found, right : str
+        Columns: what is found, and what it should be.
+    label, base : str
+        Of the ordinate, and of what is varied.
+    varied : mapping
+        Column -> what its value is written with, and the line it is drawn with.
+    low, top : float
+        Ends of the scale; what is above, or broken, stands at the top as a cross.
+    """
+
+    found: str
+    right: str
+    label: str
+    base: str
+    varied: Mapping[str, tuple[str, str]]
+    low: float
+    top: float
+
+
+SPHERE = Shown(
+    found="speed_ratio",
+    right="wanted",
+    label="speed after over before",
+    base="1 ms, 1 m/s, in the engine's colour",
+    varied={"dt_s": ("{:.2g} s", "--"), "speed_m_s": ("{:.2g} m/s", ":")},
+    low=-0.05,
+    top=1.35,
+)
+BLOCK = Shown(
+    found="rate_ratio",
+    right="kept_ratio",
+    label="rate after over before",
+    base="p dt 1e-3, 0.5 α p, in the engine's colour",
+    varied={"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":")},
+    low=-0.75,
+    top=1.15,
+)
+
+
+def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     """Draw what is found against what is wanted, a panel for each way to ask for it.
 
     Parameters
     ----------
     rows : DataFrame
-        The columns of restitution.csv.
+        The columns of restitution.csv or strikes.csv.
+    shown : Shown
     """
-    engines = list(rows["engine"].unique())
-    ways = [list(rows.loc[rows["engine"] == engine, "way"].unique()) for engine in engines]
-    downs = [math.ceil(len(mine) / ACROSS) for mine in ways]
-    drawing = Figure(figsize=(8.8, 2.7 * sum(downs) + 0.5), layout="constrained")
-    grid = drawing.subplots(sum(downs), ACROSS, sharex=True, sharey=True, squeeze=False)
-    for axes in grid.flat:
+    ways = list(rows.groupby(["engine", "way"], sort=False))
+    down = math.ceil(len(ways) / ACROSS)
+    drawing = Figure(figsize=(2.5 * ACROSS, 2.45 * down + 0.8), layout="constrained")
+    grid = drawing.subplots(down, ACROSS, sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat[len(ways) :]:
         axes.set_axis_off()
-    for first, engine, mine in zip(np.cumsum([0, *downs[:-1]]), engines, ways, strict=True):
-        panels = list(grid[first:].flat)[: len(mine)]
-        for axes, way in zip(panels, mine, strict=True):
-            axes.set_axis_on()
-            group = rows[(rows["engine"] == engine) & (rows["way"] == way)]
-            names = _panel(axes, group, engine_style(engine, "").colour)
-            axes.set_title(way, fontsize=9)
-            axes.tick_params(labelbottom=True)
-        for axes in panels[::ACROSS]:
-            axes.set_ylabel(f"{engine}\nspeed after over before")
-        for axes in panels[-ACROSS:]:
-            axes.set_xlabel("coefficient that is wanted")
-        beside(panels[-1], names, 8.5)
+    for axes, ((engine, way), group) in zip(grid.flat, ways, strict=False):
+        _panel(axes, group, shown, engine_style(str(engine), "").colour)
+        axes.set_title("\n".join(wrap(f"{engine}: {way}", LETTERS)), fontsize=8)
+        axes.tick_params(labelbottom=True, labelsize=8)
+    handles, labels = grid.flat[0].get_legend_handles_labels()
+    across = {"ncols": len(labels), "fontsize": 8, "frameon": False}
+    drawing.legend(handles, labels, loc="outside upper center", **across)
+    drawing.supylabel(shown.label, fontsize=9)
+    drawing.supxlabel("coefficient of restitution that is wanted", fontsize=9)
     return drawing
 
 
-def _panel(axes: Axes, group: pd.DataFrame, colour: str) -> list[Name]:
+def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:
     """Draw the band over where an impact falls in a step, and lines of what is varied."""
-    axes.plot([0.0, 1.0], [0.0, 1.0], color="#777777", linewidth=0.8)
-    base = group[group["varied"] == ""].groupby("wanted")["speed_ratio"]
-    axes.fill_between(
-        base.min().index, base.min(), base.max(), color=colour, alpha=0.35, linewidth=0.0
-    )
-    ended = base.median().dropna()
-    names = [Name("1 ms, 1 m/s", float(ended.index[-1]), float(ended.iloc[-1]), colour)]
-    varied = {"dt_s": ("dt_s", "s", "--"), "speed": ("speed_m_s", "m/s", ":")}
+    usual = group[group["varied"] == ""].groupby("wanted")
+    right, base = usual[shown.right].first(), usual[shown.found]
+    axes.plot(right.index, right, color="#777777", linewidth=0.8, label="as it should be")
+    low, middle, high = base.min(), base.median(), base.max()
+    axes.fill_between(low.index, low, high, color=colour, alpha=0.35, linewidth=0.0)
+    axes.plot(middle.index, middle, color=colour, linewidth=1.1, label=shown.base)
     shades = colormaps["Greys"]
-    for name, (column, unit, line) in varied.items():
-        for place, (value, rows) in enumerate(group[group["varied"] == name].groupby(column)):
-            found = rows.groupby("wanted")["speed_ratio"].median()
-            shown = found.where(found < TOP)
-            shade = to_hex(shades(0.55 + 0.35 * place))
-            axes.plot(shown.index, shown, color=shade, linestyle=line, linewidth=1.1)
-            lost = found[~(found < TOP)]
-            axes.plot(lost.index, [TOP - 0.05] * len(lost), "x", color=shade, markersize=5)
-            last = shown.dropna()
-            if len(last):
-                text = f"{float(str(value)):.2g} {unit}"
-                names.append(Name(text, float(last.index[-1]), float(last.iloc[-1]), shade))
-    axes.set(xlim=(-0.03, 1.03), ylim=(-0.05, TOP))
+    for column, (words, line) in shown.varied.items():
+        mine = group[(group["varied"] != "") & group["varied"].map(column.startswith)]
+        for place, (value, rows) in enumerate(mine.groupby(column)):
+            found = rows.groupby("wanted")[shown.found].median()
+            kept, lost = found.where(found < shown.top), found[~(found < shown.top)]
+            shade, label = shades(0.55 + 0.35 * place), words.format(float(str(value)))
+            axes.plot(kept.index, kept, line, color=shade, linewidth=1.1, label=label)
+            axes.plot(lost.index, [shown.top - 0.05] * len(lost), "x", color=shade, markersize=5)
+    axes.set(xlim=(-0.03, 1.03), ylim=(shown.low, shown.top))
     axes.grid(alpha=0.25)
-    return names

@@ -1,28 +1,39 @@
-"""A sphere dropped on a base: what comes out of a coefficient of restitution."""
+"""A dropped sphere, and a block that strikes: what comes out of a coefficient of restitution."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
-from engines import ENGINES, core_engines
+from engines import ENGINES, installed_engines
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.restitution import STUDY
-from studies.restitution.drops import BASE, PHASES, kept, measured
-from studies.restitution.report import first_claim, kept_text, told
+from studies.restitution import STUDY, drops, strikes
+from studies.restitution.report import (
+    LOST,
+    block_claim,
+    findings_text,
+    first_claim,
+    settings_claim,
+    told,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = core_engines()) -> int:
-    """Drop a sphere on a base, and hold the speed after over before against what was asked for.
+ASKED = tuple(name for name in installed_engines() if ENGINES[name].bouncing)
 
-    Coefficients from 0 to 1, at a step of 1 ms, 1 m/s and a radius of 0.1 m, wherever in a step the
-    impact falls; and with another step, speed or radius.
+
+def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
+    """Hold what a dropped sphere, and a rocking block, keep at an impact against what was asked.
+
+    Coefficients from 0 to 1, wherever in a step the impact falls: a sphere at a step of 1 ms, 1 m/s
+    and a radius of 0.1 m, and with another step, speed or radius; a block of 0.5 by 1 m in the
+    preset "fixed" that turns about a corner at half of alpha p and strikes with the other, in steps
+    of 1e-3/p, and at another step, rate, height or slenderness.
 
     Parameters
     ----------
@@ -38,8 +49,13 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = core_e
         raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
 
     def tabulate(_: object) -> Tables:
-        rows = measured(engines)
-        return {"restitution": rows, "kept": kept(rows)}
+        dropped, struck = drops.measured(engines), strikes.measured(engines)
+        return {
+            "restitution": dropped,
+            "kept": drops.kept(dropped),
+            "strikes": struck,
+            "struck": strikes.struck(struck),
+        }
 
     plan = Plan(settings={"engines": engines}, tabulate=tabulate)
     return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
@@ -50,15 +66,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
-    text = "\n".join(
-        [
-            "Largest difference of the speed after over before from the coefficient that is",
-            f"wanted, 0 to 1, at {BASE.dt_s:g} s, {BASE.speed:g} m/s and a radius of "
-            f"{BASE.radius:g} m, wherever",
-            f"in a step the impact falls ({len(PHASES)} places); over steps, speeds and sizes:",
-            kept_text(_read(folder, "kept")),
-        ]
-    )
+    text = findings_text(_read(folder, "kept"), _read(folder, "struck"))
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -72,17 +80,23 @@ def _read(folder: Path, name: str) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say what each engine makes of a coefficient, and which setting keeps it."""
+    """Say how well engines keep a coefficient."""
     return first_claim(_read(folder, "kept"))
 
 
 def paragraph(folder: Path) -> str:
-    """Say of every way how far off it is."""
-    return told(_read(folder, "kept"))
+    """Say which setting keeps a coefficient, what a block makes of it, and which ways hold."""
+    first = [settings_claim(_read(folder, "kept")), block_claim(_read(folder, "struck"))]
+    tables = {"a sphere": "kept", "a block's rate": "struck"}
+    held = [told(_read(folder, table), asked) for asked, table in tables.items()]
+    return " ".join([*first, *held, LOST])
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":
-    """Draw what is found against what is wanted from a folder's restitution.csv alone."""
-    from studies.restitution.figure import draw_restitution
+    """Draw what is found against what is wanted, from a folder's tables of rows alone."""
+    from studies.restitution.figure import BLOCK, SPHERE, draw_restitution
 
-    return {"restitution": draw_restitution(_read(folder, "restitution"))}
+    return {
+        "restitution": draw_restitution(_read(folder, "restitution"), SPHERE),
+        "strikes": draw_restitution(_read(folder, "strikes"), BLOCK),
+    }

@@ -11,7 +11,7 @@ from engines import ENGINES
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import preset_style, style_of
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.words import capital
+from studies.measures.words import capital, per_cent
 
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors along the frequency."""
@@ -47,7 +47,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     axes.set_xlabel("run time of a case  [ms]")
     axes.set_ylabel("error of the largest rotation: median (bar) to largest (dot)")
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter(per_cent)
+    axes.yaxis.set_major_formatter(_mark)
     axes.set_title(f"{int(table['cases'].max())} cases: errors, and outcomes that are wrong, "
                    "by engine and by how it is used", fontsize=11)  # fmt: skip
     axes.grid(alpha=0.25)
@@ -60,9 +60,9 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     return drawing
 
 
-def per_cent(value: float, _: float = 0.0) -> str:
+def _mark(value: float, _: float) -> str:
     """Return a relative error as a mark along an axis: in per cent, as a power of ten below."""
-    return f"{100.0 * value:g} %" if value >= 1e-4 else f"$10^{{{round(math.log10(value))}}}$"
+    return per_cent(value) if value >= 1e-4 else f"$10^{{{round(math.log10(value))}}}$"
 
 
 def draw_by_preset(rows: pd.DataFrame) -> Figure:

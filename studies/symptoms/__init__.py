@@ -9,7 +9,8 @@ STUDY = Study(
 
 A block creeps, sinks, bounces, tips too early, a moved base carries nothing, ...: for each engine
 what it is by default, the one setting that helps most, and what is left with all of them. It runs
-nothing: it reads the published tables of `rocking contact` and `rocking precision`.""",
+nothing: it reads the published tables of `rocking contact`, `rocking precision` and `rocking
+restitution`.""",
     table="symptoms.csv",
     products=("symptoms.csv", "symptoms.png", "findings.txt"),
     captions={

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.drawing.styles import engine_style
+from studies.measures.words import listed
 
 STAGES = {"before": "as seen", "after": "one setting", "tuned": "tuned", "landing": "landing"}
 MEASURES = {
@@ -15,6 +16,7 @@ MEASURES = {
     "slip_widths": "slide of the pivot over B  [–]",
     "sink_widths": "depth of a corner over B  [–]",
     "energy_growth": "rise of energy  [–]",
+    "off": "off by  [–]",
 }
 """Column -> what it is called at an axis."""
 FLOOR = 1e-12
@@ -32,19 +34,22 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
         The columns of symptoms.csv.
     """
     groups = list(lines.groupby("symptom", sort=False))
-    columns = 2
+    engines = list(lines["engine"].unique())
+    columns = 3
     rows = -(-len(groups) // columns)
-    drawing = Figure(figsize=(8.8, 2.7 * rows + 0.5), layout="constrained")
+    drawing = Figure(figsize=(12.4, 2.7 * rows + 0.5), layout="constrained")
     panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
     for axes, (symptom, group) in zip(panels, groups, strict=False):
         _panel(axes, group)
-        axes.set_title(_broken(str(symptom)), fontsize=10)
+        asked = list(group["engine"].unique())
+        only = "" if len(asked) > len(engines) // 2 else f" (asked: {listed(asked)})"
+        axes.set_title(_broken(f"{symptom}{only}"), fontsize=10)
         axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8.5)
     handles = [
         Line2D([], [], **{**engine_style(name, "").points(6.0), "linestyle": "-"}, label=name)
-        for name in lines["engine"].unique()
+        for name in engines
     ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False, fontsize=9)
     for axes in panels[len(groups) :]:
         axes.set_axis_off()
     return drawing

@@ -10,10 +10,21 @@ import pandas as pd
 from engines import ENGINES
 from engines.factors import BEST, DEFAULT, MOVING_BASE
 from studies.kit.journal import Row
-from studies.symptoms.seen import HULL, STEP, SYMPTOMS, THREADS, UNMOVED, Symptom
+from studies.symptoms.seen import (
+    BOUNCE,
+    HULL,
+    STEP,
+    STUDIES,
+    SYMPTOMS,
+    THREADS,
+    UNMOVED,
+    Symptom,
+)
 from studies.symptoms.words import changed
 
 VARIANTS, LADDER = "contact/variants.csv", "precision/work-precision.csv"
+BOUNCES = "restitution/kept.csv"
+TABLES = (VARIANTS, LADDER, BOUNCES)
 """The tables that are read."""
 
 HELPS = 0.5
@@ -36,13 +47,14 @@ def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """
     words = dict.fromkeys(("factor", "level", "trap", "message"), str)
     table = pd.read_csv(published / VARIANTS, keep_default_na=False, na_values=["nan"], dtype=words)
-    ladder = pd.read_csv(published / LADDER)
+    ladder, bounces = (pd.read_csv(published / name) for name in (LADDER, BOUNCES))
     rows: list[Row] = []
     for engine in engines:
         mine = table[table["engine"] == engine]
         if len(mine):
             rows += [_measured(mine, engine, symptom) for symptom in SYMPTOMS]
             rows += [*_unmoved(mine, engine), *_hull(mine, engine), *_stepped(ladder, engine)]
+            rows += _bouncing(bounces, engine)
     order = [*(symptom.name for symptom in SYMPTOMS), *THREADS]
     ordered = [row for name in order for row in rows if row["symptom"] == name]
     return pd.DataFrame(ordered)
@@ -51,7 +63,6 @@ def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
 def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
     threads = THREADS.get(symptom) or next(s.threads for s in SYMPTOMS if s.name == symptom)
     nothing = {"setting": "", "literal": "", "after": math.nan}
-    study = "precision" if symptom == STEP else "contact"
     return {
         "symptom": symptom,
         "engine": engine,
@@ -63,7 +74,7 @@ def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
         "landing": math.nan,
         **values,
         "asked_in": ", ".join(threads),
-        "command": f"rocking {study} --engines {engine} --out DIR",
+        "command": f"rocking {STUDIES.get(symptom, 'contact')} --engines {engine} --out DIR",
     }
 
 
@@ -72,7 +83,8 @@ def _measured(mine: pd.DataFrame, engine: str, symptom: Symptom) -> Row:
     base = {name: _preset(mine, name, symptom.column) for name in (DEFAULT, BEST, "landing")}
     values = {"before": base[DEFAULT], "tuned": base[BEST], "landing": base["landing"]}
     best = _best_single(mine, symptom)
-    if best is None or not _size(best[symptom.column]) <= HELPS * _size(base[DEFAULT]):
+    most = HELPS * _size(base[DEFAULT])
+    if best is None or not most or not _size(best[symptom.column]) <= most:
         return _row(symptom.name, engine, symptom.column, **values)
     return _row(
         symptom.name,
@@ -177,4 +189,21 @@ def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
             after=left[BEST],
             tuned=left[BEST],
             landing=left.get("landing", math.nan),
+        )
+
+
+def _bouncing(bounces: pd.DataFrame, engine: str) -> Iterator[Row]:
+    """Yield how far off a dropped sphere is, asked in the first way and in the best."""
+    mine = bounces[bounces["engine"] == engine]
+    if len(mine):
+        first, best = mine.iloc[0], mine.iloc[int(mine["off"].argmin())]
+        yield _row(
+            BOUNCE,
+            engine,
+            "off",
+            shown_by=f'"{first["way"]}"',
+            before=float(first["off"]),
+            setting=f'"{best["way"]}"',
+            literal=f"for 0.6: {best['literal']}",
+            after=float(best["off"]),
         )

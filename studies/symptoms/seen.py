@@ -50,10 +50,15 @@ SYMPTOMS = (
 UNMOVED = "a moved base carries nothing"
 HULL = "a hull behaves unlike a box"
 STEP = "the step changes the answer"
+BOUNCE = "a coefficient of restitution does nothing, or too much"
 
 THREADS = {
     UNMOVED: ("bullet3 #1204",),
     HULL: ("bullet3 #4341",),
     STEP: ("mujoco #1240", "mujoco #954"),
+    BOUNCE: ("bullet3 #3094", "bullet3 #1530", "mujoco #2080", "mujoco #1124"),
 }
 """What is measured by two settings that are held against each other."""
+
+STUDIES = {STEP: "precision", BOUNCE: "restitution"}
+"""What another study than that of contacts has measured."""

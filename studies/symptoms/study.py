@@ -11,8 +11,9 @@ from studies.kit.arguments import BadInputError, Place, check_engines, several_o
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.measures.published import PUBLISHED
+from studies.measures.words import listed
 from studies.symptoms import STUDY
-from studies.symptoms.lines import LADDER, VARIANTS, lines_of
+from studies.symptoms.lines import TABLES, VARIANTS, lines_of
 from studies.symptoms.words import first_claim, page, told
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def command(
         Folder for a table and a figure; none by default.
     """
     tables = published or PUBLISHED
-    for name in (VARIANTS, LADDER):
+    for name in TABLES:
         if not (tables / name).is_file():
             raise BadInputError(f"--published is {str(tables)!r}; it must hold {name}")
     asked = tuple(ENGINES) if engines is None else engines
@@ -50,7 +51,7 @@ def command(
     if lines.empty:
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
-    text = f"{page(lines)}\n\nFrom {VARIANTS} and {LADDER}."
+    text = f"{page(lines)}\n\nFrom {listed(TABLES)}."
     if out is None:
         print(text)
         return 0

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from textwrap import fill
 from typing import Any
 
 import pandas as pd
@@ -12,13 +13,19 @@ from engines import ENGINES, Scene
 from studies.cases.variants import variants
 from studies.measures.columns import COLUMNS
 from studies.measures.differences import scientific
-from studies.measures.words import listed
+from studies.measures.words import listed, part
 
 SCENE_STEP = 1e-3
 """p dt at which settings are written out, that of the study of contacts."""
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 """The block for which they are."""
+
+LINES: dict[str, Any] = {
+    **{"width": 99, "initial_indent": "  ", "subsequent_indent": "    "},
+    **{"break_long_words": False, "break_on_hyphens": False},
+}
+"""How a line of the page is broken: no number in two."""
 
 SHORT = 60
 """Letters up to which a sentence quotes what a setting is in the library's words."""
@@ -69,18 +76,19 @@ def _measure(column: str) -> str:
 
 def _line(row: Mapping[Any, Any]) -> str:
     number = {name: float(str(row[name])) for name in ("before", "after", "tuned", "landing")}
-    words = f"  {row['engine']}: {_number(number['before'])} with {row['shown_by']}"
+    words = f"{row['engine']}: {_number(number['before'])} with {row['shown_by']}"
     if row["setting"]:
         words += f"; {_number(number['after'])} with {row['setting']}"
         words += f" ({row['literal']})" if row["literal"] else ""
-    else:
+    elif number["before"]:
         words += "; no single setting halves it"
     rest = [
         f"{_number(number[name])} {how}"
         for name, how in (("tuned", "tuned"), ("landing", "landing"))
         if number[name] == number[name]
     ]
-    return f"{words}; {listed(rest)}\n    {row['command']}"
+    lines = fill("; ".join([words, listed(rest)] if rest else [words]), **LINES)
+    return f"{lines}\n    {row['command']}"
 
 
 def _number(value: float) -> str:
@@ -92,19 +100,21 @@ def _number(value: float) -> str:
 def first_claim(lines: pd.DataFrame) -> str:
     """Say of every engine which single setting helps most against a wrong peak."""
     first = lines[lines["symptom"] == lines.iloc[0]["symptom"]]
-    words = [_helps(row) for row in first.to_dict("records")]
-    return f"Against a block that tips too early or too late: {'; '.join(words)}."
+    rows = first.to_dict("records")
+    words = [_helps(row) for row in rows if row["setting"]]
+    others = [str(row["engine"]) for row in rows if not row["setting"]]
+    if others:
+        words.append(f"in {listed(others)} no single setting halves it")
+    return f"Where a block tips too early or too late, {'; '.join(words)}."
 
 
 def _helps(row: Mapping[Any, Any]) -> str:
     before, after = float(str(row["before"])), float(str(row["after"]))
-    if not row["setting"]:
-        return f"in {row['engine']} no single setting halves the error of {scientific(before)}"
     literal = str(row["literal"])
     setting = literal if 0 < len(literal) <= SHORT else row["setting"]
     return (
-        f"in {row['engine']} {setting} alone takes the largest error from "
-        f"{scientific(before)} to {scientific(after)}"
+        f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
+        f"{part(after)}"
     )
 
 
@@ -122,4 +132,6 @@ def _short(row: Mapping[Any, Any]) -> str:
     words = f"{row['engine']} {_number(number['before'])}"
     if row["setting"]:
         words += f", {_number(number['after'])} with {row['setting']}"
-    return f"{words}, {_number(number['tuned'])} tuned"
+    return words + (
+        f", {_number(number['tuned'])} tuned" if number["tuned"] == number["tuned"] else ""
+    )

@@ -4,14 +4,15 @@ import math
 import resource
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
 
-from analytic.maps import FAILED, Modes
+from analytic.maps import FAILED
 from analytic.models import MODELS
 from analytic.motion import FloatArray
 from analytic.response import Outcome
@@ -25,16 +26,18 @@ from studies.throughput import STUDY
 
 CASES, QUICK_CASES = 1_000_000, 40_000
 PEER_CASES, QUICK_PEER_CASES = 900, 100
+PEAKS = "exact, peaks too"
 RUNS = 3
-"""The shortest of so many is reported, the first one, which compiles, apart."""
+"""The shortest of so many is reported of the models; peers take too long for more than one."""
 
 
 def command(*, out: Place, quick: bool = False, threads: Count | None = None) -> int:
     """Report how many cases of an overturning map are solved in a second.
 
     The models on all threads and on one, SciPy's DOP853 and, where it is installed, heyoka.py on
-    a sample of the same cases, on one. All find the outcome only: no peaks, nothing after the
-    pulse but its energy; SciPy follows the free rocking to its turning point.
+    a sample of the same cases, on one, alone and in its batch mode. All but one find the outcome
+    only: no peaks, nothing after the pulse but its energy; SciPy follows the free rocking to its
+    turning point.
 
     Parameters
     ----------
@@ -69,31 +72,47 @@ def timings(window: Window, count: int, peers: int, threads: int) -> list[dict[s
     """Return a row for each model, on all threads and on one, and for each peer."""
     x, onsets = points(window, count)
     rows, alone = [], 0.0
+    for used in dict.fromkeys((threads, 1)):
+        peaks, spent = timed(partial(window.peaks, x, onsets, used))
+        row = _row(window, PEAKS, used, len(x), spent)
+        rows.append({**row, "steps": math.nan, "wrong": int(np.isnan(peaks).sum())})
     for model in MODELS:
         for used in dict.fromkeys((threads, 1)):
-            found, seconds = timed(partial(window.modes, x, onsets, model, used))
-            row = _row(window, model, used, len(x), seconds)
+            found, spent = timed(partial(window.modes, x, onsets, model, used))
+            row = _row(window, model, used, len(x), spent)
             failed = int((found.mode == FAILED).sum())
             rows.append({**row, "steps": float(found.steps.mean()), "wrong": failed})
             if model == "exact" and used == 1:
-                alone = seconds / len(x)
-    rows += [_peer_row(window, name, ask, peers) for name, ask in peer_solvers().items()]
+                alone = spent.wall_s / len(x)
+    for name, ask in peer_solvers().items():
+        rows += _peer_rows(window, name, ask, peers)
     return [
         {**row, "times_exact": float(str(row["us_a_case_and_core"])) / alone / 1e6} for row in rows
     ]
 
 
-def timed(solve: Callable[[], Modes]) -> tuple[Modes, float]:
-    """Return what a call finds and the shortest of RUNS run times [s], compiling apart."""
-    found, best = solve(), math.inf
-    for _ in range(RUNS):
-        began = time.perf_counter()
+class Spent(NamedTuple):
+    """Time that a call took, and that it kept all cores busy together [s]."""
+
+    wall_s: float
+    busy_s: float
+
+
+Found = TypeVar("Found")
+
+
+def timed(solve: Callable[[], Found], runs: int = RUNS) -> tuple[Found, Spent]:
+    """Return what a call finds and the shortest of some run times, the first, warming, apart."""
+    found, times = solve(), []
+    for _ in range(runs):
+        began, busy = time.perf_counter(), time.process_time()
         solve()
-        best = min(best, time.perf_counter() - began)
-    return found, best
+        times.append(Spent(time.perf_counter() - began, time.process_time() - busy))
+    return found, min(times)
 
 
-def _row(window: Window, name: str, threads: int, cases: int, seconds: float) -> dict[str, object]:
+def _row(window: Window, name: str, threads: int, cases: int, spent: Spent) -> dict[str, object]:
+    seconds = spent.wall_s
     return {
         "pulse": window.pulse,
         "source": name,
@@ -102,39 +121,53 @@ def _row(window: Window, name: str, threads: int, cases: int, seconds: float) ->
         "seconds": seconds,
         "cases_a_second": cases / seconds,
         "us_a_case_and_core": 1e6 * seconds * threads / cases,
+        "busy": spent.busy_s / (seconds * threads),
     }
 
 
-Overturns = Callable[[Window, float, float], bool]
-"""Says whether the block of a point of the map overturns."""
+Overturns = Callable[[Window, FloatArray, FloatArray], Sequence[bool]]
+"""Says of each point of a map whether the block overturns."""
 
 
 def peer_solvers() -> dict[str, Overturns]:
     """Return the general-purpose integrators that are installed."""
     solvers: dict[str, Overturns] = {"dop853 (SciPy)": by_scipy}
     try:
-        from studies.throughput.heyoka_peer import HeyokaSolver
+        from studies.throughput.heyoka_peer import HeyokaBatch, HeyokaSolver
     except ImportError:
         return solvers
-    return {**solvers, "heyoka.py": HeyokaSolver()}
+    batch = HeyokaBatch()
+    return {**solvers, "heyoka.py": HeyokaSolver(), f"heyoka.py, {batch.lanes} at once": batch}
 
 
-def by_scipy(window: Window, x: float, onsets: float) -> bool:
+def by_scipy(window: Window, x: FloatArray, onsets: FloatArray) -> list[bool]:
     """Ask SciPy's DOP853 with its events, at a relative tolerance of 1e-9."""
     from studies.sources.registry import resolve
 
-    response = resolve("dop853").call(*window.case(x, onsets))
-    return bool(response.outcome is Outcome.OVERTURNED)
+    source, points = resolve("dop853"), zip(x.tolist(), onsets.tolist(), strict=True)
+    responses = [source.call(*window.case(*point)) for point in points]
+    return [response.outcome is Outcome.OVERTURNED for response in responses]
 
 
-def _peer_row(window: Window, name: str, ask: Overturns, count: int) -> dict[str, object]:
+def _peer_rows(
+    window: Window, name: str, ask: Overturns, count: int
+) -> Iterator[dict[str, object]]:
+    """Yield a peer's row, and another of its integrator alone where that is known."""
     x, onsets = points(window, count)
-    right = window.modes(x, onsets).mode >= 0
-    ask(window, float(x[0]), float(onsets[0]))
-    began = time.perf_counter()
-    found = [ask(window, float(a), float(b)) for a, b in zip(x, onsets, strict=True)]
-    row = _row(window, name, 1, len(x), time.perf_counter() - began)
-    return {**row, "steps": math.nan, "wrong": int((np.array(found) != right).sum())}
+    before = _integrating_s(ask)
+    found, spent = timed(partial(ask, window, x, onsets), runs=1)
+    after, right = _integrating_s(ask), window.modes(x, onsets).mode >= 0
+    rest = {"steps": math.nan, "wrong": int((np.array(found) != right).sum())}
+    yield {**_row(window, name, 1, len(x), spent), **rest}
+    if not math.isnan(after):
+        alone = (after - before) / 2
+        spent = Spent(alone, alone)
+        yield {**_row(window, f"{name}, its integrator alone", 1, len(x), spent), **rest}
+
+
+def _integrating_s(ask: Overturns) -> float:
+    """Return the time [s] that a peer has spent in its integrator so far; nan if unknown."""
+    return float(getattr(ask, "integrating_s", math.nan))
 
 
 def report(folder: Path) -> str:
@@ -145,6 +178,7 @@ def report(folder: Path) -> str:
         cases_a_second=table["cases_a_second"].map("{:,.0f}".format),
         us_a_case_and_core=table["us_a_case_and_core"].map("{:.3g}".format),
         steps=table["steps"].map(lambda steps: "-" if math.isnan(steps) else f"{steps:.2f}"),
+        busy=table["busy"].map("{:.0%}".format),
         times_exact=table["times_exact"].map("{:.3g}".format),
     ).rename(columns={"times_exact": "time / exact"})
     # kilobytes on Linux, bytes on macOS
@@ -153,7 +187,8 @@ def report(folder: Path) -> str:
     text = "\n".join(
         [
             "Outcomes of overturning maps; time / exact is per case and core, exact on one thread;",
-            "steps are Taylor steps of exact and evaluations of the linear closed forms:",
+            "steps are Taylor steps of exact and evaluations of the linear closed forms;",
+            "busy is the part of their time that the cores of all threads worked:",
             shown.to_string(index=False),
             f"Peak memory of this process: {peak:.0f} MiB",
         ]

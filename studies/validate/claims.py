@@ -38,14 +38,20 @@ def census(seed: int, kept: int) -> Census:
 
 
 def first_claim(compared: pd.DataFrame) -> str:
-    """Say what each source gets right, and its largest error over κ."""
+    """Say how many outcomes the sources get right, and the largest error over κ."""
     scaled = compared["error"].abs() / conditioning_of(compared)
+    alike: dict[str, list[str]] = {}
+    for source, rows in compared.groupby("source", sort=False):
+        right = out_of(int(rows["agrees"].sum()), len(rows))
+        alike.setdefault(right, []).append(str(source))
     words = [
-        f"{source} gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right, and peaks "
-        f"to {scientific(float(scaled[rows.index].max()))} κ"
-        for source, rows in compared.groupby("source", sort=False)
+        f"{listed(names)} get{'s' if len(names) == 1 else ''} {right} outcomes right"
+        for right, names in alike.items()
     ]
-    return f"On random cases that nothing was tuned on {listed(words)}."
+    return (
+        f"On random cases that nothing was tuned on {', '.join(words)}; the largest error of a "
+        f"peak is {scientific(float(scaled.max()))} κ."
+    )
 
 
 def claims(compared: pd.DataFrame, counted: Census) -> str:

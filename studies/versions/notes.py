@@ -50,6 +50,11 @@ NOTES: Mapping[str, tuple[Note, ...]] = {
             "FCL, the default detector, collides exact primitive shapes; more bodies at rest sleep",
             DART.format("6.20.0"),
         ),
+        Note(
+            "6.20.0",
+            "DARTCollisionDetector, that of our other presets, has a new engine",
+            "https://github.com/dartsim/dart/pull/3381",
+        ),
     ),
 }
 """Engine -> notes on its releases, in their order."""

@@ -5,7 +5,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from analytic.kernels.polynomial import MAX_DEPTH, ORDER, next_root, slope, to_bernstein, value
+from analytic.kernels.polynomial import (
+    MAX_DEPTH,
+    ORDER,
+    next_root,
+    slope,
+    to_bernstein,
+    value,
+    value_and_slope,
+)
 
 
 def all_roots(coefficients):
@@ -51,7 +59,18 @@ def test_value_slope_and_bernstein_form():
     p = Polynomial(a)
     assert abs(value(a, ORDER, 0.7) - p(0.7)) < 1e-12
     assert abs(slope(a, ORDER, 0.7) - p.deriv()(0.7)) < 1e-10
+    both = value_and_slope(a, ORDER, 0.7)
+    np.testing.assert_allclose(both, (value(a, ORDER, 0.7), slope(a, ORDER, 0.7)), rtol=1e-12)
     b = np.empty(ORDER + 1)
     to_bernstein(a, ORDER, b)
     assert b[0] == a[0]
     assert abs(b[-1] - p(1.0)) < 1e-11
+
+
+def test_monotone_polynomials_have_one_root_or_none():
+    rising = (Polynomial([-0.2, 1.0, 0.0, 0.3])).coef
+    (found,) = all_roots(rising)
+    assert abs(Polynomial(rising)(found)) < 1e-16
+    assert all_roots(rising + np.array([0.3, 0, 0, 0])) == []
+    assert all_roots([-1.0, 0.75, 0.25]) == [1.0]
+    assert all_roots([0.0, 1.0, 0.5]) == []  # a root at the begin is not in (0, 1]

@@ -31,9 +31,9 @@ def test_some_of_the_sweep() -> None:
 
 
 def test_speed_is_clamped_to_two_units_in_a_step() -> None:
-    from engines.adapters.box2d import imported
+    from engines.parts.quiet import imported
 
-    box2d = imported()
+    box2d = imported("Box2D")
     world = box2d.b2World(gravity=(0.0, 0.0))
     body = world.CreateDynamicBody(position=(0.0, 0.0), linearVelocity=(500.0, 0.0))
     body.CreateCircleFixture(radius=1.0, density=1.0)

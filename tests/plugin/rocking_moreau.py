@@ -159,10 +159,9 @@ ENGINE = Engine(
             step_s=2e-3,
             step_source="a choice of its own",
         ),
-        Preset(name="fixed", title="best at a fixed step", settings=TUNED, step=2.5e-4),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4),
         Preset(
             name="landing",
-            title="steps that land on impacts",
             settings=TUNED,
             stepping=Stepping.LANDING,
             helped_by={Help.STEPS: None},

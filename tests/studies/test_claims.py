@@ -88,6 +88,25 @@ def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
     assert table["ms"].iloc[0] == pytest.approx(100.0)
 
 
+def test_of_many_engines_a_sweep_tells_the_range_and_who_is_at_its_ends():
+    lines = pd.DataFrame(
+        [
+            summary("pybullet:naive", 9, 0.01, 0.4),
+            summary("mujoco:naive", 10, 0.08, 0.9),
+            summary("pymunk:naive", 7, 0.5, 0.8),
+        ]
+    )
+    assert sweep.claims(lines) == (
+        "With the libraries' defaults, 3 engines get 7 (pymunk) to all 10 outcomes right, and "
+        "peaks wrong by 1 % to 50 % in the median and at most by 90 % (mujoco)."
+    )
+    assert "4 of 30 outcomes are wrong, and peaks by up to 90 %" in sweep.first_claim(lines)
+    assert sweep.verdict(sweep.preset_table(lines)) == (
+        "With the libraries' defaults, 3 engines are wrong about whether the block falls in 4 of "
+        "30 cases, and about how far it rocks by up to 90 %."
+    )
+
+
 def work(method, value, kind, median, largest, wall_s):
     return {
         "set": kind,

@@ -8,11 +8,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from engines import ENGINES
 from studies.__main__ import run
 from studies.contact.figure import MATTER, REST, draw_contact
 from studies.drawing.diagrams import ONSETS
 from studies.drawing.labels import spread
-from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS, STYLES
+from studies.drawing.styles import (
+    ENGINE_COLOURS,
+    ENGINE_MARKERS,
+    PRESET_COLOURS,
+    STYLES,
+    preset_style,
+)
 from studies.overturning.figure import DIFFERENCE_COLOURS
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
@@ -103,6 +110,28 @@ def test_names_that_are_too_near_are_moved_apart_alike():
     assert np.diff(moved[:3]) == pytest.approx([0.1, 0.1])
     assert moved[:3].mean() == pytest.approx(np.mean([0.5, 0.5, 0.52]))
     assert moved[3] == 0.9
+
+
+@pytest.mark.parametrize("preset", ["naive", "fixed", "landing", "error-controlled"])
+def test_every_preset_has_a_look_of_its_own(preset):
+    declared = {each.name for engine in ENGINES.values() for each in engine.presets}
+    assert set(PRESET_COLOURS) == declared
+    others = [preset_style(name) for name in declared - {preset}]
+    assert preset_style(preset) not in others
+    assert preset_style(preset).colour not in [style.colour for style in others]
+
+
+def test_a_contact_of_an_engine_with_steps_of_its_own_is_drawn():
+    lines = pd.read_csv(
+        PUBLISHED / "contact" / "variants.csv", keep_default_na=False, na_values="nan"
+    )
+    mine = lines[(lines["engine"] == "dart") & (lines["preset"] == "landing")]
+    drawn = draw_contact(mine.assign(engine="drake", preset="error-controlled"))
+    told = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert "one help of the engine's own steps" in told
+    assert "one help of landing left out" not in told
+    colours = {label.get_color() for label in drawn.axes[0].get_yticklabels()}
+    assert colours == {PRESET_COLOURS["error-controlled"]}
 
 
 def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():

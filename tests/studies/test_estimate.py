@@ -12,7 +12,7 @@ from studies import respond
 from studies.__main__ import run
 from studies.cases.drawn import draw
 from studies.estimate import study
-from studies.estimate.calibration import beside_errors, factors
+from studies.estimate.calibration import beside_errors, factors, told
 from studies.kit.jobs import Job
 from studies.measures.halving import (
     ELSEWHERE,
@@ -130,8 +130,35 @@ def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
     rows = pd.read_csv(tmp_path / "estimate.csv")
     assert list(rows["half"]) == [0, 1] * 4
     assert study.headline(tmp_path).startswith("The difference from half the step")
-    assert "survivors" in study.paragraph(tmp_path)
+    words = study.paragraph(tmp_path)
+    assert words.startswith("With the libraries' defaults 3 and 10 estimates bound")
     assert (tmp_path / "estimate.png").stat().st_size > 20_000
+
+
+def test_cases_that_do_not_rock_calibrate_nothing(tmp_path, capsys):
+    """The first case of this seed overturns."""
+    one = ["estimate", "--sources", "mujoco", "--jobs", "1", "--cases", "1"]
+    assert run([*one, "--out", str(tmp_path)]) == 0
+    assert (
+        "With steps that land on impacts no case rocked at both steps." in capsys.readouterr().out
+    )
+    assert (tmp_path / "estimate.png").exists()
+
+
+def test_a_preset_is_told_engine_by_engine_the_worst_first():
+    lines = pd.DataFrame(
+        {
+            "source": ["mujoco", "pybullet", "mujoco:naive"],
+            **{"survivors": [20, 20, 20], "within_3": [0.9, 0.8, 0.1]},
+            **{"within_10": [1.0, 0.95, 0.4], "wrong": [0, 0, 7], "told": [0, 0, 1]},
+        }
+    )
+    assert told(lines) == (
+        "With the libraries' defaults 3 and 10 estimates bound, of the errors of mujoco 10 % and "
+        "40 %; of their wrong outcomes half the step tells 1 of 7. With steps that land on impacts "
+        "3 and 10 estimates bound, of the errors of pybullet 80 % and 95 % and mujoco 90 % and "
+        "100 %."
+    )
 
 
 def test_pairs_are_asked_at_another_step(tmp_path):

@@ -54,6 +54,27 @@ def said(root):
     return pages[root / "README.md"], pages[root / readme.PUBLISHED / "engines.md"]
 
 
+def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
+    lines = pd.DataFrame(
+        [
+            ("naive", "pybullet", 9),
+            ("naive", "drake", 10),
+            ("naive", "newton", 10),
+            ("landing", "pybullet", 10),
+            ("landing", "mujoco", 10),
+            ("error-controlled", "drake", 10),
+        ],
+        columns=["preset", "engine", "right"],
+    ).assign(cases=10, median=0.01, p90=0.02, max=0.5, ms=2.0)
+    heads, _, *rows = facts.presets_short(lines).replace("\N{NO-BREAK SPACE}", " ").splitlines()
+    assert heads.count("|") == 4 and "`:error-controlled`" not in heads
+    assert rows[0].startswith(
+        "| **PyBullet** | **1 wrong**<br>1 %, max 50 %<br>2 ms | none wrong<br>"
+    )
+    assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
+    assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+
+
 def test_the_readme_is_short():
     """Two screens of text before its example; the numbers are on the pages that it leads to."""
     assert len((ROOT / "README.md").read_bytes()) < 11_500

@@ -19,6 +19,7 @@ def test_every_solver_answers_the_same_cases(tmp_path, monkeypatch, capsys):
     assert (table["wrong"] == 0).all()
     alone = table[(table["source"] == "exact") & (table["threads"] == 1)]
     assert alone["times_exact"].to_numpy() == pytest.approx([1.0, 1.0])
+    assert table["busy"].between(0.0, 1.1).all()
     rates = table["cases"] / table["seconds"]
     assert table["cases_a_second"].to_numpy() == pytest.approx(rates.to_numpy())
 
@@ -35,3 +36,17 @@ def test_steps_are_counted():
     rows = pd.DataFrame(timings(Window(), 400, 1, 1)).set_index("source")
     assert rows.loc["exact", "steps"] > 2.0
     assert "dop853 (SciPy)" in peer_solvers()
+
+
+def test_heyoka_answers_alone_and_in_a_batch():
+    reason = "heyoka, of the extra peers, is not installed"
+    peer = pytest.importorskip("studies.throughput.heyoka_peer", reason=reason)
+    window = Window(onsets=6.0)
+    x, onsets = points(window, 400)
+    right = (window.modes(x, onsets).mode >= 0).tolist()
+    assert 0 < sum(right) < len(right)
+    assert peer.HeyokaSolver()(window, x, onsets) == right
+    batch = peer.HeyokaBatch()
+    assert batch(window, x, onsets) == right
+    assert batch(window, x[:3], onsets[:3]) == right[:3]  # lanes without a case
+    assert batch.integrating_s > 0.0
