@@ -20,7 +20,7 @@ from engines.adapters.bullet_calls import (
     block_shape,
     engine_call,
 )
-from engines.adapters.bullet_clients import given_back, taken
+from engines.adapters.bullet_clients import given_back, held_for_all, taken
 from engines.adapters.bullet_drop import BOUNCING
 from engines.adapters.bullet_loop import (
     Client,
@@ -74,14 +74,15 @@ class BulletWorld:
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
-        self._set_engine(scene)
         self._ground = base_place(scene, settings)
-        floor = self._do(base_shape(scene, settings))
-        self._base = int(self._do(base_body(floor, self._ground)))
-        shape = self._do(block_shape(scene, settings))
-        self._body = int(self._do(block_body(scene, settings, shape)))
-        self._fault = self._set_bodies(scene)
-        self._take_inertia(scene)
+        with held_for_all:
+            self._set_engine(scene)
+            floor = self._do(base_shape(scene, settings))
+            self._base = int(self._do(base_body(floor, self._ground)))
+            shape = self._do(block_shape(scene, settings))
+            self._body = int(self._do(block_body(scene, settings, shape)))
+            self._fault = self._set_bodies(scene)
+            self._take_inertia(scene)
         self._put(scene)
         self._holds = Hold.blank()
         self._held = self._holds[0]

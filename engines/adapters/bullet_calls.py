@@ -32,13 +32,16 @@ class Call:
 
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
+    block, threshold = scene.block, s.breaking_threshold
+    if s.gap_by_step:
+        threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * dt_s) ** 2
     wanted = {
         "numSolverIterations": s.iterations,
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,
         "contactSlop": s.contact_slop,
-        "contactBreakingThreshold": kept_gap(scene, s, dt_s),
+        "contactBreakingThreshold": threshold,
         "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),
         "warmStartingFactor": s.warm_starting,
         "useSplitImpulse": s.split_impulse,
@@ -47,13 +50,6 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
         "restitutionVelocityThreshold": s.restitution_threshold,
     }
     return Call("setPhysicsEngineParameter", given(wanted))
-
-
-def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
-    """Return the gap, over a body's size, up to which a contact is kept."""
-    if not s.gap_by_step:
-        return s.breaking_threshold
-    return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
 
 
 def base_shape(scene: Scene, s: BulletSettings) -> Call:

@@ -3,6 +3,7 @@
 A reset gives a client a new world with a solver and settings of its own; what it keeps is put back.
 """
 
+from threading import Lock
 from typing import Any
 
 from engines.adapters.bullet_settings import LIBRARY_BREAKING_THRESHOLD, LIBRARY_STEP_S
@@ -10,6 +11,10 @@ from engines.parts.quiet import silence
 
 RENDERER = "tinyRendererPlugin"
 """The library's name of what draws, or would."""
+
+held_for_all = Lock()
+"""Whose gap it is up to which contacts are kept: the library holds it for the whole process, and
+looks at it when two bodies meet first, on a plane while a scene is built."""
 
 idle: list[int] = []
 """Clients of this process whose run has ended."""
@@ -33,9 +38,10 @@ def connected(p: Any) -> int:
 def given_back(p: Any, client: int) -> None:
     """Empty a client, and give the library back what it holds for the process."""
     p.resetSimulation(physicsClientId=client)
-    p.setPhysicsEngineParameter(
-        contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
-        fixedTimeStep=LIBRARY_STEP_S,
-        physicsClientId=client,
-    )
+    with held_for_all:
+        p.setPhysicsEngineParameter(
+            contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
+            fixedTimeStep=LIBRARY_STEP_S,
+            physicsClientId=client,
+        )
     idle.append(client)

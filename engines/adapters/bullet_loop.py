@@ -19,7 +19,7 @@ from numba import types
 from numpy.typing import NDArray
 
 from engines.adapters.bullet_addresses import spans
-from engines.adapters.bullet_calls import base_place, kept_gap
+from engines.adapters.bullet_calls import base_place
 from engines.adapters.bullet_clients import given_back, taken
 from engines.adapters.bullet_settings import BulletSettings
 from engines.compiled import FloatArray, State, exclusive, fill, shared
@@ -41,7 +41,6 @@ put_time_step = c_function("b3PhysicsParamSetTimeStep", NUMBER, HANDLE, REAL)
 put_gravity = c_function("b3PhysicsParamSetGravity", NUMBER, HANDLE, REAL, REAL, REAL)
 put_contact_erp = c_function("b3PhysicsParamSetDefaultContactERP", NUMBER, HANDLE, REAL)
 put_friction_erp = c_function("b3PhysicsParamSetDefaultFrictionERP", NUMBER, HANDLE, REAL)
-put_kept_gap = c_function("b3PhysicsParamSetContactBreakingThreshold", NUMBER, HANDLE, REAL)
 pose = c_function("b3CreatePoseCommandInit", HANDLE, HANDLE, NUMBER)
 put_place = c_function("b3CreatePoseCommandSetBasePosition", NUMBER, HANDLE, REAL, REAL, REAL)
 put_turn = c_function(
@@ -54,7 +53,7 @@ state_in = c_function("b3GetStatusActualState", NUMBER, HANDLE, *7 * (HANDLE,))
 
 FUNCTIONS = (
     *(submit, parameters, put_time_step, put_gravity, put_contact_erp, put_friction_erp),
-    *(put_kept_gap, pose, put_place, put_turn, put_velocity, advance, state, state_in),
+    *(pose, put_place, put_turn, put_velocity, advance, state, state_in),
 )
 
 EXPORTED, CLIENTS, DIRECT = "b3ConnectPhysicsDirect", "sPhysicsClients1", "_ZTV13PhysicsDirect"
@@ -77,8 +76,6 @@ class Hold(State):
         velocity.
     contact_erp, friction_erp : float
         Part of a position error that an ordinary step corrects.
-    kept_gap : float
-        Gap up to which a contact is kept, which the library holds for the whole process.
     level : float
         Height of the base's centre [m].
     ordinary, dt : float
@@ -92,7 +89,6 @@ class Hold(State):
     base_velocity: bool
     contact_erp: float
     friction_erp: float
-    kept_gap: float
     level: float
     ordinary: float
     dt: float
@@ -107,7 +103,6 @@ def begin_hold(held: Hold, scene: Scene, s: BulletSettings, dt_s: float) -> None
         base_velocity=s.base_velocity,
         contact_erp=s.contact_erp or 0.0,
         friction_erp=s.friction_erp or 0.0,
-        kept_gap=kept_gap(scene, s, dt_s),
         level=base_place(scene, s)[2],
         ordinary=dt_s,
     )
@@ -158,7 +153,6 @@ def take(held: Hold, client: Client, step: Step) -> None:
     command = parameters(client.handle)
     put_time_step(command, step.dt_s)
     put_gravity(command, step.pull_x, 0.0, step.pull_z)
-    put_kept_gap(command, held.kept_gap)
     if held.by_phase:
         part = corrected(step.grip, step.dt_s, held.ordinary)
         put_contact_erp(command, part * held.contact_erp)

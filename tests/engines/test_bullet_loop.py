@@ -5,6 +5,7 @@ import multiprocessing
 import signal
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from analytic.response import Reason
 from engines import ENGINES, Scene, run
 from engines.adapters import bullet, bullet_loop
 from engines.adapters.bullet_addresses import spans
-from engines.drive import build
+from engines.drive import build, simulate_world
 
 p = pytest.importorskip("pybullet")
 
@@ -116,8 +117,22 @@ def answer(number: int) -> str:
     return all_but_times(run("pybullet", apart(number)))
 
 
+@pytest.mark.parametrize("compiled", [True, False])
+def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
+    """The library holds that up to which contacts are kept for the whole process, and looks at it
+    when two bodies meet first: on a plane, while a scene is built."""
+    alone, asked = answer(1), replace(apart(1), compiled=compiled)
+    world = build(ENGINES["pybullet"], asked)
+    other = build(ENGINES["pybullet"], replace(asked, preset="naive"))
+    engine = ENGINES["pybullet"]
+    dt_s, resolution = engine.best.ordinary_step_s(asked), engine.resolution(asked.block)
+    response = simulate_world(world, asked, dt_s, resolution=resolution)
+    world.close()
+    other.close()
+    assert all_but_times(response) == alone
+
+
 def test_threads_do_not_disturb_each_other() -> None:
-    """The library holds the gap up to which contacts are kept for the whole process."""
     alone = [answer(number) for number in range(6)]
     with ThreadPoolExecutor(3) as pool:
         assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
