@@ -1,7 +1,5 @@
 """How many of the errors so many estimates bound: to the right of 10, an estimate is blind."""
 
-from textwrap import fill
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
