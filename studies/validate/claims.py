@@ -59,8 +59,9 @@ def first_claim(compared: pd.DataFrame) -> str:
 def _sizes(largest: "pd.Series[float]") -> str:
     """Return each source's number over κ, or the least and the largest of many."""
     if len(largest) > FEW:
-        ends = (largest.idxmin(), largest.idxmax())
-        return listed([f"{scientific(largest[name])} κ ({name})" for name in ends], "to")
+        by_size = largest.sort_values().items()
+        least, *_, most = [f"{scientific(size)} κ ({name})" for name, size in by_size]
+        return listed([least, most], "to")
     return f"{listed([scientific(size) for size in largest])} κ"
 
 
