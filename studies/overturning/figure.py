@@ -1,6 +1,7 @@
 """The pictures of an overturning map: the modes, and where the sources differ from exact."""
 
 import math
+from textwrap import fill
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,8 @@ from studies.measures.differences import conditioning_of
 from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
 
 AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
+LETTERS = 32
+"""In a line of a title, for each panel under it."""
 PIXELS = 900
 KAPPA_SHOWN = 1e2
 """Upper end of the colours of κ: what is beyond needs no telling apart."""
@@ -125,7 +128,8 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     alike = [str(name) for name in parts if not off[name]]
     words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
     drawing.supylabel(AMPLITUDE, fontsize=10)
-    drawing.suptitle(f"Beside the exact map, {window.title}{words}", fontsize=11)
+    title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * across)
+    drawing.suptitle(title, fontsize=11)
     shown = [name for name in DIFFERENCE_COLOURS if name != "failed" or _any_failed(cells)]
     drawing.legend(
         handles=[
