@@ -150,6 +150,9 @@ class Engine:
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
+    scatter : float
+        Part by which the peak of its best preset was seen to move when what should not matter was
+        changed a little: the radius of its corners, the steps over which it corrects a depth.
     shortest_step : float
         p dt below which a step has no effect that is resolved.
     script : callable or None
@@ -185,6 +188,7 @@ class Engine:
     geometries: tuple[str, ...] = ("box",)
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
+    scatter: float = 0.0
     shortest_step: float = 1e-12
     script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None

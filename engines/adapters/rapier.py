@@ -183,6 +183,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     precision=Precision.SINGLE,
+    scatter=6e-3,
     shortest_step=3e-6,
     script=script,
     bouncing=BOUNCING,

@@ -55,16 +55,17 @@ def speed_band(engine: str) -> float:
 
     It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
     """
-    return max(band(engine), 17.0 * noise(engine, 5e-3))
+    return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].scatter))
 
 
 def band(engine: str) -> float:
     """Return within what landing steps at the default accuracy, p dt = 5e-3, meet a closed form.
 
     Core engines are of second order, (p dt)^2 = 2.5e-5 times a factor of a few; of others it is
-    asked that no impact falls inside an ordinary step, which would cost some p dt.
+    asked that no impact falls inside an ordinary step, which would cost some p dt, or what an
+    engine declares to scatter.
     """
-    return 1e-4 if engine in core_engines() else 1e-3
+    return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].scatter)
 
 
 def pulse(

@@ -56,7 +56,7 @@ def within(name):
     if source.kind == "model":
         return 1e-5 if name in MISSED else 1e-11
     if source.lands:
-        return 1e-4
+        return max(1e-4, ENGINES[source.engine].scatter)
     # out of the box an engine is wrong by a quarter; an impact inside an equal step costs 1e-2
     return 0.3 if source.preset == "naive" else 2e-2
 
