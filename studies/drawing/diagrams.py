@@ -152,7 +152,9 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     for number, engine in enumerate(engines):
         rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
         places = np.arange(len(names)) + 0.7 * ((number + 0.5) / len(engines) - 0.5)
-        factor, look = rows["wall_s"] / rows["wall_s"].iloc[0], style_of(engine).points(6.5)
+        # what an engine has not takes no time
+        taken, look = rows["wall_s"].where(rows["error"].notna()), style_of(engine).points(6.5)
+        factor = taken / taken.iloc[0]
         costs.hlines(places, 1.0, factor, color=look["color"], linewidth=1.2)
         costs.plot(factor, places, **look)
         errors.plot(rows["error"].abs().clip(lower=LOWEST), places, **look, label=engine)

@@ -13,7 +13,6 @@ from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
-from studies.kit.provenance import NOT_INSTALLED
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
@@ -238,11 +237,18 @@ def counts(published: Path) -> dict[str, int]:
 
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
-    record = json.loads((published / "sweep" / "provenance.json").read_text(encoding="utf-8"))
+    records = {
+        name: json.loads((published / name / "provenance.json").read_text(encoding="utf-8"))
+        for name in PRESETS_FROM
+        if (published / name).is_dir()
+    }
+    record = records["sweep"]
     machine = record["machine"]
-    used = [each for each in record["engines"].items() if each[1] != NOT_INSTALLED]
+    versions = next(iter(records.values()))["engines"]
+    asked = presets(published)["engine"].unique()
+    packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
     return {
-        "engines": listed([f"{name} {version}" for name, version in used]),
+        "engines": listed([f"{name} {versions[name]}" for name in packages]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
         "date": record["runs"][-1]["start"][:10],
         "sweep": f"{record['runs'][-1]['duration_s']:.0f} s",
