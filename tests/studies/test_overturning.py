@@ -18,6 +18,7 @@ from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
 from studies.overturning.report import model_differences
 from studies.overturning.study import mapped
+from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
@@ -236,6 +237,7 @@ def test_every_edge_is_found_at_the_limits_of_a_window(over, end):
 @pytest.mark.slow
 def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "20", "--rows", "100"]
+    arguments += ["--sources", "exact", *core_sources()]
     assert run([*arguments, "--quick"]) == 0
     capsys.readouterr()
     edges = read(tmp_path, "edges")
