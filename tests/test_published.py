@@ -8,7 +8,7 @@ import pytest
 from declared import equal_to
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
-from engines import ENGINES
+from engines import ENGINES, installed_engines
 from studies import respond
 from studies.cases.paper import Case
 from studies.linearizations.study import errors_on, summarize
@@ -16,8 +16,15 @@ from studies.linearizations.study import errors_on, summarize
 PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
 
 
+def is_here(source):
+    """Return whether a source can be asked: all but engines that are not installed."""
+    engine = source.partition(":")[0]
+    return engine not in ENGINES or engine in installed_engines()
+
+
 def sample(name, count):
     table = pd.read_csv(PUBLISHED / name / "sweep.csv")
+    table = table[table["source"].map(is_here)]
     parts = [rows.sample(count, random_state=7) for _, rows in table.groupby("source")]
     return [row for part in parts for row in part.to_dict("records")]
 
@@ -49,6 +56,7 @@ def published(name, **options):
 def test_random_cases_are_what_comes_out_today():
     table = published("validate/errors.csv")
     well = table[(table["exact_outcome"] == "rocked") & (table["kappa"].abs() < 10)]
+    well = well[well["source"].map(is_here)]
     for row in well.groupby("source").sample(3, random_state=7).itertuples():
         block = RigidBlock(width=row.width_m, height=row.aspect * row.width_m)
         pulse = SinePulse(
@@ -56,8 +64,9 @@ def test_random_cases_are_what_comes_out_today():
             omega=row.omega_over_p * block.p,
             half_cycles=row.half_cycles,
         )
+        within = equal_to(row.source, 1e-6)
         assert respond(row.source, block, pulse).peak_ratio == pytest.approx(
-            row.peak_ratio, rel=1e-6
+            row.peak_ratio, rel=within
         )
         assert simulate(block, pulse).peak_ratio == pytest.approx(row.exact_peak, rel=1e-9)
         found = conditioning(block, pulse)
