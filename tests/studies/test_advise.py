@@ -149,10 +149,10 @@ def wider(tmp_path):
     """The published tables, with ladders of further engines that are made up of MuJoCo's."""
     for name in TABLES:
         (tmp_path / name).parent.mkdir(exist_ok=True)
-        table = pd.read_csv(PUBLISHED / name)
+        table = pd.read_csv(PUBLISHED / name, keep_default_na=False, na_values=["nan"])
         # what is published of Drake itself would tell more than the ladder that is made up
         mine = table.get("source", pd.Series("", table.index)).str.startswith("drake")
-        table[~mine].to_csv(tmp_path / name, index=False)
+        table[~mine].to_csv(tmp_path / name, index=False, na_rep="nan")
     ladder = pd.read_csv(tmp_path / TABLES[0])
     fixed, landing = (ladder[ladder["method"] == f"mujoco {name}"] for name in ("fixed", "landing"))
     steps = sorted(landing["value"].unique(), reverse=True)
@@ -160,7 +160,7 @@ def wider(tmp_path):
     own = landing[landing["value"].isin(list(dial))].assign(method="drake error-controlled")
     rows = [fixed.assign(method=f"{name} fixed") for name in ("drake", "newton", "dart")]
     whole = pd.concat([ladder, *rows, own.assign(value=own["value"].map(dial))])
-    whole.to_csv(tmp_path / TABLES[0], index=False)
+    whole.to_csv(tmp_path / TABLES[0], index=False, na_rep="nan")
     return tmp_path
 
 
