@@ -6,6 +6,7 @@ import pandas as pd
 
 from studies.measures.words import listed
 from studies.restitution import drops, strikes
+from studies.restitution.asked import PHASES
 
 GOOD = 0.05
 """A coefficient that comes out within this is kept."""
@@ -23,7 +24,7 @@ def findings_text(lines: pd.DataFrame, blocks: pd.DataFrame) -> str:
     return f"""\
 Largest difference of the speed of a dropped sphere after over before its impact from
 the coefficient that is wanted, 0 to 1, at {drop.dt_s:g} s, {drop.speed:g} m/s and a radius of
-{drop.radius:g} m, wherever in a step the impact falls ({len(drops.PHASES)} places); over steps,
+{drop.radius:g} m, wherever in a step the impact falls ({len(PHASES)} places); over steps,
 speeds and sizes:
 {kept_text(lines)}
 
