@@ -6,7 +6,7 @@ import pandas as pd
 
 from analytic.response import Reason
 from studies.measures.differences import scientific
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
 from studies.measures.words import each_out_of, listed, out_of
 from studies.sources.registry import resolve
@@ -42,7 +42,7 @@ def first_claim(matrix: pd.DataFrame) -> str:
     for source, good in right:
         counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
     parts = [f"{in_words(name)} {_counted(counts[name])}" for name in in_order(counts)]
-    engines = list(dict.fromkeys(source.partition(":")[0] for source in asked["source"]))
+    engines = list(dict.fromkeys(map(engine_of, asked["source"])))
     named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
     verb = "get" if len(engines) > 1 else "gets"
     return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
