@@ -8,7 +8,7 @@ from analytic.response import Reason
 from studies.measures.differences import scientific
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import each_out_of, listed, out_of
+from studies.measures.words import NAMED, each_out_of, listed, out_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -21,9 +21,6 @@ REFERENCE = "exact"
 """The source that all others are held against."""
 
 ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
-
-NAMED = 2
-"""Engines up to which a headline names each; more are counted together."""
 
 
 def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
-from studies.measures.words import alike, capital, each_out_of, listed, out_of, part
+from studies.measures.words import NAMED, alike, capital, each_out_of, listed, out_of, part
 from studies.sources.registry import resolve
 
 
@@ -26,10 +26,6 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     rows = lines.assign(preset=lines["source"].map(preset_of))
     rows = rows[rows["preset"] != ""]
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
-
-
-NAMED = 2
-"""Engines up to which a sentence names each; of more it says the range."""
 
 
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
