@@ -1,6 +1,5 @@
 """What README.md and the page of the published results say, from the published tables alone."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
+from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
@@ -241,9 +241,9 @@ def counts(published: Path) -> dict[str, int]:
 
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
-    sweep = _record(published / "sweep")
+    sweep = provenance.record_of(published / "sweep")
     machine, run = sweep["machine"], sweep["runs"][-1]
-    versions = _record(_with_presets(published)[0])["engines"]
+    versions = provenance.record_of(_with_presets(published)[0])["engines"]
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
     return {
@@ -252,12 +252,6 @@ def made(published: Path) -> dict[str, str]:
         "date": run["start"][:10],
         "sweep": f"{run['duration_s']:.0f} s",
     }
-
-
-def _record(folder: Path) -> dict[str, Any]:
-    """Return the record of how a folder's tables were made."""
-    found: dict[str, Any] = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
-    return found
 
 
 def glossary() -> list[tuple[str, str]]:
