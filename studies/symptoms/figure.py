@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from studies.drawing.styles import engine_style
 from studies.measures.words import listed
+from studies.symptoms.seen import HULL
 
 STAGES = {"before": "as seen", "after": "one setting", "tuned": "tuned", "landing": "landing"}
 MEASURES = {
@@ -19,6 +20,8 @@ MEASURES = {
     "off": "off by  [–]",
 }
 """Column -> what it is called at an axis."""
+WHY = {HULL: "adapters with a hull"}
+"""Symptom -> why only some engines are asked."""
 FLOOR = 1e-12
 """Sizes below are drawn here."""
 BROKEN = 10.0
@@ -42,7 +45,8 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
     for axes, (symptom, group) in zip(panels, groups, strict=False):
         _panel(axes, group)
         asked = list(group["engine"].unique())
-        only = "" if len(asked) > len(engines) // 2 else f" (asked: {listed(asked)})"
+        why = WHY.get(str(symptom), "asked")
+        only = "" if len(asked) > len(engines) // 2 else f" ({why}: {listed(asked)})"
         axes.set_title(_broken(f"{symptom}{only}"), fontsize=10)
         axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8.5)
     handles = [

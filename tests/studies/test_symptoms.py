@@ -68,6 +68,12 @@ def test_a_base_without_velocity_gives_no_result_and_a_hull_another(lines):
     assert hull.loc["mujoco", "before"] == pytest.approx(hull.loc["mujoco", "after"], rel=1e-3)
 
 
+def test_a_hull_is_missing_only_where_an_adapter_has_none():
+    published = study._read(PUBLISHED / "symptoms")
+    able = [name for name in published["engine"].unique() if "hull" in ENGINES[name].geometries]
+    assert list(published.loc[published["symptom"] == HULL, "engine"]) == able
+
+
 def test_a_change_is_told_in_the_library_s_words():
     damping = changed("pybullet", DEFAULT, "damping", "as in the best")
     assert damping == "linearDamping=0.0, angularDamping=0.0"
