@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.advise.evidence import in_words
 from studies.drawing.labels import Name, around, beside
-from studies.drawing.styles import PRESET_LINES, engine_style
+from studies.drawing.styles import engine_style, preset_line
 from studies.measures.words import listed, per_cent
 
 WORDS = {
@@ -65,7 +65,7 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Nam
         errors,
         times,
         color=style.colour,
-        linestyle=PRESET_LINES.get(preset, "-"),
+        linestyle=preset_line(preset),
         marker=style.marker,
         fillstyle=style.fill,
         markersize=6,

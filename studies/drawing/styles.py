@@ -102,4 +102,9 @@ def style_of(source: str) -> Style:
 
 def line_of(source: str) -> str:
     """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
-    return style_of(source).line or PRESET_LINES.get(source.partition(":")[2], "-")
+    return style_of(source).line or preset_line(source.partition(":")[2])
+
+
+def preset_line(preset: str) -> str:
+    """Return the line of an engine with a preset."""
+    return PRESET_LINES.get(preset, "-")

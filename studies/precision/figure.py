@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from analytic.motion import FloatArray
 from engines import ENGINES
 from studies.drawing.labels import Name, around, beside
-from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style
+from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style, preset_line
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),
@@ -49,7 +49,7 @@ def style_of(method: str) -> Style:
     if dial:
         return Style(look.colour, "-.", "+", 0.8)
     width = 1.4 if preset in PRESET_LINES else 2.0
-    return Style(look.colour, PRESET_LINES.get(preset, "-"), look.marker, width, look.fill)
+    return Style(look.colour, preset_line(preset), look.marker, width, look.fill)
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:

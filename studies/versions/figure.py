@@ -3,13 +3,17 @@
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from studies.drawing.labels import Name, beside
-from studies.drawing.styles import engine_style, line_of
+from studies.drawing.styles import line_of, preset_line, preset_style, style_of
+from studies.measures.presets import in_order, in_words, preset_of
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
 """Panels side by side."""
+
+ALONE = 0.05
+"""Half of the line of a median where there is one release."""
 
 FLOOR = 1e-8
 """Errors below are drawn here."""
@@ -27,10 +31,9 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     rows = -(-len(engines) // COLUMNS)
     drawing = Figure(figsize=(12.4, 3.6 * rows), layout="constrained")
     panels = drawing.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
-    names = []
     for axes, engine in zip(panels, engines, strict=False):
         mine = lines[lines["engine"] == engine]
-        names.append(_panel(axes, mine, changes[changes["engine"] == engine]))
+        _panel(axes, mine, changes[changes["engine"] == engine])
         axes.set_title(f"{engine} by release", fontsize=10)
     for axes in panels[len(engines) :]:
         axes.set_axis_off()
@@ -40,13 +43,20 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     drawing.suptitle(key, fontsize=9, color="#555555")
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("relative error of the peak  [–]")
-    for axes, mine in zip(panels, names, strict=False):
-        beside(axes, mine, 8.0)
+    presets = in_order(map(preset_of, lines.loc[lines["source"] != "", "source"]))
+    handles = [_handle(preset) for preset in presets]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawing
 
 
-def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> list[Name]:
-    """Draw medians and largest errors over both sets of cases; return the names of the presets."""
+def _handle(preset: str) -> Line2D:
+    """Return what stands for a preset, whatever its engine."""
+    look = {**preset_style(preset).points(6.0), "color": "#555555"}
+    return Line2D([], [], **{**look, "linestyle": preset_line(preset)}, label=in_words(preset))
+
+
+def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
+    """Draw medians and largest errors over both sets of cases."""
     releases = [str(name) for name in lines["release"].unique()]
     place = {name: number for number, name in enumerate(releases)}
     axes.set(yscale="log", xlim=(-0.5, len(releases) - 0.5), ylim=(FLOOR, 30.0))
@@ -58,18 +68,20 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> list[Name]
         at = place[release]
         axes.axvspan(at - 0.5, at + 0.5, color="#EEEEEE", linewidth=0.0)
         axes.text(at, 1e-4, "no answer", rotation=90, fontsize=8, color="#555555", ha="center")
-    names = []
     for source, rows in lines[lines["source"] != ""].groupby("source", sort=False):
-        engine, _, preset = str(source).partition(":")
-        style = engine_style(engine, preset)
+        style = style_of(str(source))
         both = rows.groupby("release", sort=False)
         median = both["median_error"].max().clip(lower=FLOOR)
         largest = both["max_error"].max().clip(lower=FLOOR)
         x = [place[str(name)] for name in median.index]
-        axes.plot(x, median, color=style.colour, linestyle=line_of(str(source)), linewidth=1.3)
+        alone = len(x) == 1  # a line needs two ends
+        ends = [x[0] - ALONE, x[0] + ALONE] if alone else x
+        axes.plot(
+            ends,
+            [*median] * (1 + alone),
+            color=style.colour,
+            linestyle=line_of(str(source)),
+            linewidth=1.3,
+        )
         axes.plot(x, largest, **style.points(4.0))
-        shown = median.dropna()
-        if len(shown):
-            names.append(Name(preset, place[str(shown.index[-1])], shown.iloc[-1], style.colour))
     axes.grid(alpha=0.25)
-    return names
