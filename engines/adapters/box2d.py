@@ -152,18 +152,13 @@ class Box2DWorld:
         )
 
 
-def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
-    """Build a scene."""
-    return Box2DWorld(scene, settings, dt_s)
-
-
 ENGINE = Engine(
     name="box2d",
     title="Box2D",
     library="Box2D",
     packages=("Box2D",),
     install="rocking[box2d]",
-    build=build,
+    build=Box2DWorld,
     presets=(
         Preset(
             name="naive",
