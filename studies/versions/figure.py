@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.drawing.styles import line_of, preset_line, preset_style, style_of
-from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.presets import in_words
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
@@ -43,7 +43,7 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     drawing.suptitle(key, fontsize=9, color="#555555")
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("relative error of the peak  [–]")
-    presets = in_order(map(preset_of, lines.loc[lines["source"] != "", "source"]))
+    presets = lines.loc[lines["source"] != "", "source"].str.partition(":")[2].unique()
     handles = [_handle(preset) for preset in presets]
     drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawing
