@@ -53,6 +53,8 @@ TRIAL = (
     Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, Grip.SWING, 1.0),
     Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, Grip.SWING, 1.0),
     Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, Grip.APPROACH, 1.0),
+    Step(1e-5, 4.51e-3, 5.05e-4, 0.0, -495.4, 0.006, 0.054, 1.22e-4, Grip.STRIKE, 1.0),
+    Step(1e-3, 5.51e-3, 5.05e-4, 0.0, -4.95, 0.006, 0.060, 1.82e-4, Grip.REST, 0.0),
 )
 """Steps by which a compiled loop is held against Python."""
 
