@@ -13,7 +13,7 @@ from engines.adapters.mujoco_contact import (
     prepare_step,
 )
 from engines.adapters.mujoco_drop import BOUNCING
-from engines.adapters.mujoco_loop import drive, memory_of
+from engines.adapters.mujoco_loop import drive, memory_of, obstacle
 from engines.adapters.mujoco_model import OPTIONS, coordinates, model_xml
 from engines.adapters.mujoco_models import given_back, taken
 from engines.adapters.mujoco_script import script
@@ -79,6 +79,11 @@ class MujocoWorld:
         if self._memory is None:
             return None
         return partial(drive, self._holds, self._arrays, self._memory)
+
+    @property
+    def obstacle(self) -> str:
+        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        return obstacle()
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
