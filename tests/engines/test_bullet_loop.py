@@ -173,3 +173,21 @@ def test_a_signal_ends_a_loop() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert driven(ROCKS)
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
+    """More iterations change nothing: places that contradict each other would use them all up."""
+    block = RigidBlock(width=0.5, height=1.0)
+    motion = pulse(1.3, 0.1, 2, block)
+    times = [0.1 * i for i in range(20)]  # the block lifts after 2.5 s
+    enough, more = (
+        run("pybullet", Scene(block=block, motion=motion, times=times, **options))
+        for options in (
+            {"compiled": compiled, "settings": {"iterations": iterations}}
+            for iterations in (1000, 3000)
+        )
+    )
+    assert enough.history is not None
+    assert more.history is not None
+    assert (enough.history.theta == more.history.theta).all()
