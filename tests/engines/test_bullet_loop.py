@@ -20,6 +20,7 @@ from engines import ENGINES, Scene, run
 from engines.adapters import bullet, bullet_loop
 from engines.adapters.bullet_addresses import spans
 from engines.drive import build, simulate_world
+from engines.world import Grip
 
 p = pytest.importorskip("pybullet")
 
@@ -108,6 +109,36 @@ def test_a_loop_that_steps_otherwise_is_not_used(
         patch.setattr(bullet, "begin_hold", otherwise)
         assert not bullet.loop_agrees()
     assert run("pybullet", ROCKS).driver == "python: its loop does not step as Python does"
+
+
+@pytest.mark.parametrize("grip", Grip)
+def test_both_drivers_correct_alike_whatever_a_step_is_for(
+    grip: Grip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bullet, "TRIAL", [step._replace(grip=grip) for step in bullet.TRIAL])
+    assert bullet.loop_agrees()
+    bullet.loop_agrees.cache_clear()
+    monkeypatch.setattr(
+        bullet, "corrected", lambda *_: (0.0, 0.0) if grip < Grip.APPROACH else (1.0, 1.0)
+    )
+    assert not bullet.loop_agrees()  # what is corrected is seen in the trial
+
+
+@pytest.mark.parametrize(
+    ("grip", "dt_s", "normal", "across"),
+    [
+        (Grip.SWING, 1e-3, 1.0, 1.0),
+        (Grip.SWING, 2e-3, 1.0, 1.0),  # no more than there is
+        (Grip.SWING, 5e-4, 0.25, 0.25),
+        (Grip.REST, 5e-4, 0.25, 0.0),
+        (Grip.APPROACH, 1e-3, 0.0, 0.0),
+        (Grip.STRIKE, 1e-3, 0.0, 0.0),
+    ],
+)
+def test_what_is_corrected_of_a_position(
+    grip: Grip, dt_s: float, normal: float, across: float
+) -> None:
+    assert bullet_loop.corrected(grip, dt_s, 1e-3) == (normal, across)
 
 
 def apart(number: int) -> Scene:
