@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar, cast, get_args, get_origin, get_type_hints
 
+import numba
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
@@ -25,6 +26,15 @@ exclusive = keeper(Path(__file__).parent, nogil=False)
 no other thread of Python runs meanwhile."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+SWITCHED_OFF = "numba is switched off"
+
+
+def switched_off() -> bool:
+    """Return whether compiled functions run as Python."""
+    settings: Any = numba.config
+    return bool(settings.DISABLE_JIT)
 
 
 def shared(function: Function) -> Function:

@@ -66,9 +66,10 @@ def run(engine: str, scene: Scene) -> Response:
             preset.stepping,
             asked.resolution(scene.block),
         )
+        driver = driver_of(world, scene)
     finally:
         world.close()
-    return replace(response, setup_s=built - began)
+    return replace(response, setup_s=built - began, driver=driver)
 
 
 def build(engine: Engine, scene: Scene) -> World:
@@ -131,6 +132,16 @@ def driven(look: Look, world: World) -> Callable[[int], int] | None:
     look.make_room(0)
     drive(look.runs, look.lists, 0)  # what is not compiled yet is so before the clock runs
     return lambda most: drive(look.runs, look.lists, most)
+
+
+def driver_of(world: World, scene: Scene) -> str:
+    """Say what takes the steps of a world; see `analytic.response.Response`."""
+    if not scene.compiled:
+        return "python"
+    obstacle = getattr(world, "obstacle", "")
+    if obstacle:
+        return f"python: {obstacle}"
+    return "compiled" if hasattr(world, "drive") else "python"
 
 
 class Walk:

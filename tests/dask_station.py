@@ -46,6 +46,14 @@ def held(block, motion, *, duration, times, until="/nowhere"):
     return simulate(block, motion, duration=duration, times=times)
 
 
+def slow_at_first(block, motion, *, duration, times, marker):
+    """Take four seconds where nothing was compiled yet."""
+    if not Path(marker).exists():
+        time.sleep(4.0)
+        Path(marker).touch()
+    return simulate(block, motion, duration=duration, times=times)
+
+
 @contextmanager
 def process(*arguments, **environment):
     with subprocess.Popen(

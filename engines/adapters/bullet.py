@@ -42,6 +42,7 @@ from engines.adapters.bullet_settings import (
     BulletSettings,
     spring,
 )
+from engines.compiled import SWITCHED_OFF, switched_off
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
@@ -108,6 +109,15 @@ class BulletWorld:
     def drive(self) -> Driver | None:
         """What takes many steps at once; see `engines.world.DrivenWorld`."""
         return None if self._lent is None else partial(drive, *self._lent)
+
+    @property
+    def obstacle(self) -> str:
+        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        if switched_off():
+            return SWITCHED_OFF
+        if not clients(self._p).size:
+            return "the library is another build, whose clients are not known"
+        return "" if loop_agrees() else "its loop does not step as Python does"
 
     def lent(self) -> tuple[Sequence[Hold], Client]:
         """Return what a compiled loop steps by."""

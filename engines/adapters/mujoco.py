@@ -13,7 +13,7 @@ from engines.adapters.mujoco_contact import (
     prepare_step,
 )
 from engines.adapters.mujoco_drop import BOUNCING
-from engines.adapters.mujoco_loop import drive, memory_of
+from engines.adapters.mujoco_loop import drive, memory_of, obstacle
 from engines.adapters.mujoco_model import OPTIONS, coordinates, model_xml
 from engines.adapters.mujoco_models import given_back, taken
 from engines.adapters.mujoco_script import script
@@ -80,6 +80,11 @@ class MujocoWorld:
             return None
         return partial(drive, self._holds, self._arrays, self._memory)
 
+    @property
+    def obstacle(self) -> str:
+        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        return obstacle()
+
     def pose(self) -> Pose:
         """Read the block's pose back."""
         return Pose(*pose_now(self._holds, self._arrays))
@@ -88,9 +93,11 @@ class MujocoWorld:
         """Say which setting was not taken, or what the engine warned of."""
         if self._fault:
             return self._fault
-        for kind, warning in zip(self._mj.mjtWarning.__members__, self._data.warning, strict=False):
-            if warning.number:
-                return f"MuJoCo warned: {kind.removeprefix('mjWARN_')}"
+        # all at once: to ask each kind by itself takes as long as fifty steps
+        warned = self._data.warning.number.nonzero()[0]
+        if warned.size:
+            kind = list(self._mj.mjtWarning.__members__)[warned[0]]
+            return f"MuJoCo warned: {kind.removeprefix('mjWARN_')}"
         return disagreement({"time": (self._held.time, self._data.time)})
 
     def close(self) -> None:

@@ -7,20 +7,18 @@ cannot be found, runs are stepped from Python.
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import llvmlite.binding
-import numba
 import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
 from engines.adapters.mujoco_contact import Arrays, Forces, Hold, notice, pose_of, prepare
-from engines.compiled import FloatArray, kernel, shared
+from engines.compiled import SWITCHED_OFF, FloatArray, kernel, shared, switched_off
 from engines.look import Lists, Run, onward, undecided
 
 mj_step: Any = types.ExternalFunction(
@@ -111,24 +109,27 @@ def forces_in(memory: Memory) -> Forces:
 
 def memory_of(model: Any, data: Any) -> Memory | None:
     """Return the memory of a model and its data; None where it is not what it should be."""
-    return _memory(model, data) if reachable() else None
+    return None if obstacle() else _memory(model, data)
 
 
 @cache
-def reachable() -> bool:
-    """Return whether the library's function and memory are where they should be."""
-    compiled: Any = numba.config
-    with suppress(Exception):  # whatever is different about another build
+def obstacle() -> str:
+    """Say why the library's function or memory cannot be used from compiled code, if so."""
+    if switched_off():
+        return SWITCHED_OFF
+    try:
         mj: Any = import_module("mujoco")
         (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
         llvmlite.binding.load_library_permanently(str(library))
-        if compiled.DISABLE_JIT or llvmlite.binding.address_of_symbol("mj_step") is None:
-            return False
+        if llvmlite.binding.address_of_symbol("mj_step") is None:
+            return "the library has no mj_step"
         model = mj.MjModel.from_xml_string(PROBE)
         data = mj.MjData(model)
         memory = _memory(model, data)
-        return all(_agrees(mj, model, data, memory, dt) for dt in (0.002, 0.0007))
-    return False
+        agrees = all(_agrees(mj, model, data, memory, dt) for dt in (0.002, 0.0007))
+    except Exception as error:  # whatever is different about another build
+        return f"the library is another build ({type(error).__name__})"
+    return "" if agrees else "its memory is not what Python reads"
 
 
 def _agrees(mj: Any, model: Any, data: Any, memory: Memory, dt: float) -> bool:

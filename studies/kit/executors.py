@@ -1,28 +1,20 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Protocol
 
 from analytic.response import Response
-from engines.look import compile_look
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
-from studies.kit.jobs import Job, ask, short
-from studies.kit.processes import ask_loaded, outcome_of
+from studies.kit.jobs import Job, ask
+from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
 from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
-
-if TYPE_CHECKING:
-    from pebble import ProcessPool
-
-COMPILING_S = 1800.0
-"""Nothing takes longer to compile [s]."""
 
 
 class Executor(Protocol):
@@ -77,7 +69,10 @@ class Local:
         # engines hold state of their own: no fork of a process that has loaded them
         pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
         try:
-            self._compile(pool, jobs.values())
+            firsts: dict[str, Job] = {}
+            for job in jobs.values():
+                firsts.setdefault(job.source, job)
+            compile_ahead(pool, self.ask, [(job, resolve(job.source)) for job in firsts.values()])
             with left_to_this_process():
                 # the source travels with the job, so that a worker needs no registry of its own
                 tasks: dict[Future[Response], int] = {
@@ -96,25 +91,6 @@ class Local:
         finally:
             pool.stop()  # type: ignore[no-untyped-call]
             pool.join()
-
-    def _compile(self, pool: "ProcessPool", jobs: Iterable[Job]) -> None:
-        """Compile what engines need on a machine, before any time limit holds."""
-        tasks: list[Future[Any]] = []
-        with left_to_this_process():
-            for name in dict.fromkeys(job.source for job in jobs):
-                source = resolve(name)
-                if not source.engine or not source.declared.installed:
-                    continue
-                if not tasks:
-                    tasks.append(pool.schedule(compile_look, timeout=COMPILING_S))
-                if source.declared.compiles:
-                    job = short(next(job for job in jobs if job.source == name))
-                    tasks.append(
-                        pool.schedule(ask_loaded, args=(self.ask, job, source), timeout=COMPILING_S)
-                    )
-        for task in tasks:
-            with suppress(Exception):  # the cases will say what is wrong
-                task.result()
 
 
 def choose(

@@ -19,7 +19,7 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study
 from studies.kit.tables import write_table
-from studies.sources.registry import Source
+from studies.sources.registry import Source, resolve
 
 Tables = Mapping[str, pd.DataFrame]
 """Tables by the names of their files, without .csv."""
@@ -95,18 +95,31 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
         record = provenance.begin(path, identity, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
         with _going_on(journal, out, len(jobs)):
-            rows = run_jobs(jobs, executor=executor, reduce=plan.reduce, journal=journal)
+            drivers: dict[str, set[str]] = {}
+
+            def reduce(job: Job, response: Response) -> Row:
+                if response.driver:
+                    drivers.setdefault(resolve(job.source).engine, set()).add(response.driver)
+                return plan.reduce(job, response)
+
+            rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
             journal.check()
             tabulate = plan.tabulate or partial(_whole, study.name)
             for name, table in tabulate(rows).items():
                 write_table(out / f"{name}.csv", table)
-            counted = {"rows": len(rows)} if jobs else {}
-            provenance.finish(path, record, began, **counted)
+            found: dict[str, Any] = {"rows": len(rows)} if jobs else {}
+            found |= {"drivers": _listed(drivers)} if drivers else {}
+            provenance.finish(path, record, began, **found)
     return rows
 
 
 def _whole(name: str, rows: Sequence[Row]) -> Tables:
     return {name: pd.DataFrame(rows)}
+
+
+def _listed(drivers: Mapping[str, set[str]]) -> dict[str, str]:
+    """Return for each engine that this run asked what took its steps."""
+    return {engine: ", ".join(sorted(found)) for engine, found in sorted(drivers.items())}
 
 
 def _short(values: Sequence[Any]) -> Any:

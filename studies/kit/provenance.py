@@ -147,9 +147,9 @@ def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
     raise FolderError(path.parent, f"{problem} (its provenance.json says otherwise)")
 
 
-def finish(path: Path, record: dict[str, Any], began: float, **counted: int) -> None:
+def finish(path: Path, record: dict[str, Any], began: float, **found: Any) -> None:
     """Add to the last run how long it took since `began` (`time.perf_counter`), and what it did."""
-    record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **counted}
+    record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **found}
     write_text(path, json.dumps(record, indent=2) + "\n")
 
 

@@ -7,6 +7,7 @@ own, so that a crash or the time limit is a failed row and costs no worker.
 import atexit
 import multiprocessing
 import platform
+import threading
 from collections.abc import Callable
 from functools import cache
 
@@ -17,7 +18,7 @@ from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.fingerprint import EVERY_STUDY, fingerprint
 from studies.kit.jobs import Job
-from studies.kit.processes import ask_loaded, outcome_of
+from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
 from studies.sources.registry import Source
 
 START = "dask worker ADDRESS --no-nanny --nthreads 1"
@@ -74,6 +75,10 @@ def work(
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
     if job.needs_process(source):
+        with _compiling:  # a case of another thread's waits for what it needs, too
+            if job.source not in _compiled:
+                compile_ahead(_processes(), ask, [(job, source)])
+                _compiled.add(job.source)
         task = _processes().schedule(ask_loaded, args=(ask, job, source), timeout=time_limit_s)
         return outcome_of(task.result, time_limit_s)
     if job.source not in _loaded:
@@ -84,6 +89,8 @@ def work(
 
 
 _loaded: set[str] = set()
+_compiled: set[str] = set()
+_compiling = threading.Lock()
 
 
 @cache

@@ -71,17 +71,15 @@ def plan(numbers: Sequence[int], sources: Sequence[str], effort: Effort = OWN_EF
 
 def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
-    return [
-        Job(
-            labels=asdict(case),
-            block=case.block,
-            motion=case.motion,
-            source=source,
-            options=effort.options(source),
-        )
-        for case in sweep_cases(numbers)
-        for source in sources
-    ]
+    options = {source: effort.options(source) for source in sources}
+    jobs = []
+    for case in sweep_cases(numbers):
+        labels, block, motion = asdict(case), case.block, case.motion
+        jobs += [
+            Job(labels=labels, block=block, motion=motion, source=source, options=options[source])
+            for source in sources
+        ]
+    return jobs
 
 
 def report(folder: Path) -> str:

@@ -60,7 +60,9 @@ def test_another_build_is_stepped_from_python(
     bullet.loop_agrees.cache_clear()
     monkeypatch.setattr(bullet_loop, name, other)
     assert not driven(ROCKS)
-    assert all_but_times(run("pybullet", ROCKS)) == compiled
+    stepped = run("pybullet", ROCKS)
+    assert stepped.driver == "python: the library is another build, whose clients are not known"
+    assert all_but_times(stepped) == compiled
 
 
 def test_a_library_without_symbols_is_left_alone(tmp_path: Path) -> None:
@@ -103,8 +105,10 @@ def test_a_loop_that_steps_otherwise_is_not_used(
         if next(looped):
             setattr(held, name, other)
 
-    monkeypatch.setattr(bullet, "begin_hold", otherwise)
-    assert not bullet.loop_agrees()
+    with monkeypatch.context() as patch:
+        patch.setattr(bullet, "begin_hold", otherwise)
+        assert not bullet.loop_agrees()
+    assert run("pybullet", ROCKS).driver == "python: its loop does not step as Python does"
 
 
 @pytest.mark.parametrize("grip", Grip)

@@ -60,11 +60,11 @@ EACH = [
 
 
 def all_but_times(response: Response) -> str:
-    """Return all fields to the last bit, run times apart."""
+    """Return all fields to the last bit, apart from run times and what took the steps."""
     found = asdict(response)
     history = found.pop("history")
     parts = [] if history is None else [array.tolist() for array in history.values()]
-    return repr({**found, "wall_s": 0.0, "setup_s": 0.0}) + repr(parts)
+    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
 
 
 def shaken(**options: object) -> Scene:
@@ -81,6 +81,7 @@ def test_a_compiled_loop_answers_as_python_does(engine: str, options: dict[str, 
         run(engine, shaken(compiled=compiled, **options)) for compiled in (True, False)
     )
     assert all_but_times(at_once) == all_but_times(one_by_one)
+    assert (at_once.driver, one_by_one.driver) == ("compiled", "python")
 
 
 def test_what_is_compiled_is_so_ahead() -> None:
@@ -95,7 +96,8 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
         "from uses import pulse, scene\n"
         "from engines import run\n"
         f"asked = scene(pulse(1.3, 3.0, 2), accuracy='loose', times={TIMES!r})\n"
-        f"print(all_but_times(run({engine!r}, asked)))\n"
+        f"found = run({engine!r}, asked)\n"
+        "print(found.driver, all_but_times(found), sep='\\n')\n"
     )
     places = os.pathsep.join(path for path in sys.path if path)
     found = [
@@ -105,11 +107,13 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
             capture_output=True,
             text=True,
             check=True,
-        ).stdout
+        ).stdout.split("\n", 1)
         for switch in ("0", "1")
     ]
-    assert "rocked" in found[0]
-    assert found[0] == found[1]
+    (compiled, first), (python, second) = found
+    assert (compiled, python) == ("compiled", "python: numba is switched off")
+    assert "rocked" in first
+    assert first == second
 
 
 def test_memory_that_is_not_where_it_should_be_is_left_alone(
@@ -124,15 +128,16 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(
     moved.ncon, moved.nefc = found.nefc, found.ncon
     elsewhere = {"mjData": moved, "mjOption": mujoco_loop.layout("mjOption")}
     monkeypatch.setattr(mujoco_loop, "layout", elsewhere.__getitem__)
-    mujoco_loop.reachable.cache_clear()
+    mujoco_loop.obstacle.cache_clear()
     try:
-        assert not mujoco_loop.reachable()
         world = build(ENGINES["mujoco"], asked)
         world.close()
         assert world.drive is None  # type: ignore[attr-defined]
-        assert all_but_times(run("mujoco", asked)) == all_but_times(compiled)
+        stepped = run("mujoco", asked)
+        assert stepped.driver == "python: its memory is not what Python reads"
+        assert all_but_times(stepped) == all_but_times(compiled)
     finally:
-        mujoco_loop.reachable.cache_clear()
+        mujoco_loop.obstacle.cache_clear()
 
 
 def test_a_run_has_room_for_all_that_it_writes_down() -> None:

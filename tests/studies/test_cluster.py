@@ -4,6 +4,7 @@ import json
 import signal
 import time
 from contextlib import ExitStack
+from dataclasses import replace
 
 import grimp
 import pandas as pd
@@ -17,6 +18,7 @@ from dask_station import (
     refusal,
     scheduler,
     slow,
+    slow_at_first,
     stopped,
     sweeping,
     wait_for_workers,
@@ -32,7 +34,7 @@ from studies.kit.jobs import summary
 from studies.kit.options import Running
 from studies.kit.plan import fill
 from studies.kit.runner import run_jobs
-from studies.sources.registry import SOURCES, Source
+from studies.sources.registry import SOURCES, Source, resolve
 from studies.validate import STUDY
 from studies.validate.study import plan
 
@@ -75,6 +77,18 @@ def test_crashes_and_time_limits_are_rows_and_cost_no_worker(station, monkeypatc
     assert [row["outcome"] for row in rows] == ["failed", "failed", "rocked"]
     assert "exit code 3" in rows[0]["message"]
     assert "time limit of 6 s" in rows[1]["message"]
+
+
+def test_what_compiles_itself_does_so_outside_the_time_limit(station, monkeypatch, tmp_path):
+    source = Source("engine", slow_at_first, resolve("mujoco").engine)
+    assert source.declared.compiles
+    monkeypatch.setitem(SOURCES, "slow_at_first", source)
+    asked = [
+        replace(job, options={"marker": str(tmp_path / "compiled")})
+        for job in jobs_of("slow_at_first", 2)
+    ]
+    rows = run_jobs(asked, executor=Cluster(station[0], 3.0), reduce=summary)
+    assert [(row["outcome"], row["message"]) for row in rows] == [("rocked", "")] * 2
 
 
 def test_a_worker_of_another_version_is_refused(station, monkeypatch, tmp_path, capsys):
