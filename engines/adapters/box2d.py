@@ -37,7 +37,9 @@ class Box2DWorld:
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
         self._half = (0.5 * block.width * self._unit, 0.5 * block.height * self._unit)
+        self._sunk = settings.sunk_of(scene)
         self._reach = settings.reach_of(scene, dt_s)
+        self._iterations = settings.iterations_of(scene)
         self._world = self._box2d.b2World(gravity=(0.0, 0.0), doSleep=False)
         self._world.continuousPhysics = settings.continuous
         self._far = FLOOR_HEIGHTS * block.height * self._unit
@@ -56,7 +58,7 @@ class Box2DWorld:
         felt = base if self.settings.base_velocity else 0.0
         for side, floor in zip((-1.0, 1.0), self._floors, strict=False):
             pivot = step.grip is Grip.REST or step.side in (side, 0.0)
-            floor.position = (at, self._reach if pivot else -self._reach)
+            floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
             velocity = (felt, 0.0)
             if back and pivot and step.side:
                 x, z = self._body.GetLinearVelocityFromLocalPoint(
@@ -64,14 +66,17 @@ class Box2DWorld:
                 )
                 velocity = (felt - back * (x - self._speed), -back * z)
             floor.linearVelocity = velocity
-        self._world.Step(step.dt_s, self.settings.iterations, self.settings.position_iterations)
+        self._world.Step(step.dt_s, self._iterations, self.settings.position_iterations)
         self._speed, self._place = felt, step.base_x if self._moving else 0.0
 
     def pose(self) -> Pose:
         """Read the block's pose back."""
         body, (x, z) = self._body, self._body.position
         return Pose(
-            x / self._unit - self._place, z / self._unit, -body.angle, -body.angularVelocity
+            x / self._unit - self._place,
+            (z + self._sunk) / self._unit,
+            -body.angle,
+            -body.angularVelocity,
         )
 
     def fault(self) -> str:
@@ -90,7 +95,7 @@ class Box2DWorld:
     def _built(self, scene: Scene) -> Any:
         b2, s, begin, unit = self._box2d, self.settings, scene.beginning, self._unit
         body = self._world.CreateDynamicBody(
-            position=(begin.x * unit, begin.z * unit), angle=-begin.theta
+            position=(begin.x * unit, begin.z * unit - self._sunk), angle=-begin.theta
         )
         if s.geometry == "box":
             body.CreateFixture(
@@ -147,18 +152,13 @@ class Box2DWorld:
         )
 
 
-def build(scene: Scene, settings: Box2DSettings, dt_s: float) -> Box2DWorld:
-    """Build a scene."""
-    return Box2DWorld(scene, settings, dt_s)
-
-
 ENGINE = Engine(
     name="box2d",
     title="Box2D",
     library="Box2D",
     packages=("Box2D",),
     install="rocking[box2d]",
-    build=build,
+    build=Box2DWorld,
     presets=(
         Preset(
             name="naive",
@@ -186,7 +186,7 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     precision=Precision.SINGLE,
-    shortest_step=1e-5,
+    shortest_step=3e-6,
     script=script,
     bouncing=BOUNCING,
     factors=FACTORS,

@@ -14,6 +14,9 @@ from engines.parts.quiet import imported
 SMALL = 20.0
 """Units of length in a metre by which speeds of 0.05 to 10 m/s bounce."""
 
+ITERATIONS = 100
+"""More than a single contact needs."""
+
 
 def _dropped(drop: Drop, unit: float) -> float:
     """Drop a disc; unit is the units of length in a metre."""
@@ -30,7 +33,7 @@ def _dropped(drop: Drop, unit: float) -> float:
     body.linearVelocity = (0.0, -drop.speed * unit)
 
     def step() -> tuple[float, float]:
-        world.Step(drop.dt_s, TUNED.iterations, TUNED.position_iterations)
+        world.Step(drop.dt_s, ITERATIONS, TUNED.position_iterations)
         return (body.position[1] - radius) / unit, body.linearVelocity[1] / unit
 
     return rebound(drop, step)

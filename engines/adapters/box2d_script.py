@@ -14,7 +14,7 @@ def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
         f"world.continuousPhysics = {s.continuous}",
     )
     shape = _corner(scene, unit, reach) if paired else _box(scene, unit)
-    rough, take = f"friction={float(s.friction)!r}", _take(s)
+    rough, take = f"friction={float(s.friction)!r}", _take(scene, s)
     block_meets = ", filter=Box2D.b2Filter(categoryBits=1 << n, maskBits=4 << n)" if paired else ""
     floor_meets = ", filter=Box2D.b2Filter(categoryBits=4 << n, maskBits=1 << n)" if paired else ""
     return Script(
@@ -22,7 +22,7 @@ def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
         settings=(f"world.Step({dt_s!r}, {take})", *world, shape, rough, *_floor(scene, s, unit)),
         build=(
             *world,
-            *_beginning(scene, unit),
+            *_beginning(scene, s),
             f"for n, side in enumerate({(-1.0, 1.0) if paired else (0.0,)}):",
             f"    {shape}",
             f"    block.CreateFixture(shape=shape, {rough}, restitution=0.0{block_meets})",
@@ -34,7 +34,7 @@ def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
             "    floor = world.CreateKinematicBody(position=(0.0, 0.0))",
             "    ground = Box2D.b2PolygonShape(vertices=corners)",
             f"    floor.CreateFixture(shape=ground, {rough}{floor_meets})",
-            f"    floor.position = 0.0, {reach!r}",
+            f"    floor.position = 0.0, {reach - s.sunk_of(scene)!r}",
         ),
         step=(
             f"world.gravity = pull_x * {unit!r}, pull_z * {unit!r}",
@@ -44,9 +44,9 @@ def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
     )
 
 
-def _take(s: Box2DSettings) -> str:
+def _take(scene: Scene, s: Box2DSettings) -> str:
     """Return how often the solver goes through velocities and positions."""
-    return f"{s.iterations}, {s.position_iterations}"
+    return f"{s.iterations_of(scene)}, {s.position_iterations}"
 
 
 def _box(scene: Scene, unit: float) -> str:
@@ -59,9 +59,9 @@ def _corner(scene: Scene, unit: float, reach: float) -> str:
     return f"shape = Box2D.b2CircleShape(pos=(side * {x!r}, {-z!r}), radius={reach!r})"
 
 
-def _beginning(scene: Scene, unit: float) -> tuple[str, ...]:
-    at = scene.beginning
-    place = at.x * unit, at.z * unit
+def _beginning(scene: Scene, s: Box2DSettings) -> tuple[str, ...]:
+    at, unit = scene.beginning, s.unit_of(scene)
+    place = at.x * unit, at.z * unit - s.sunk_of(scene)
     return (f"block = world.CreateDynamicBody(position={place}, angle={-at.theta!r})",)
 
 

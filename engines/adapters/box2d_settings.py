@@ -2,10 +2,23 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, MOVING_BASE, Rule, factor, level
+from engines.factors import (
+    AS_BEST,
+    BEST,
+    BY_DEFAULT,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM, fall
+from engines.parts.shapes import NO_JAM, fall, iterations_for
 from engines.scene import Scene
+
+MANUAL_ITERATIONS = 6
+"""For velocities: of the library's own hello world."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,9 +33,14 @@ class Box2DSettings:
     friction : float
         Coefficient between block and base.
     iterations, position_iterations : int
-        Of the solver, for velocities and for positions.
+        Of the solver, for velocities and for positions; the manual's 6 for the velocities if None.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
     units : float or None
         Units of length in the height of the block; None counts in metres.
+    centred : bool
+        Count heights from where the block's centre is at rest, not from the base: in single
+        precision the least heights are told apart near 0.
     skins_below : bool
         Lower a floor by the skins that the library gives polygons, so that it acts where it is.
     continuous : bool
@@ -40,9 +58,11 @@ class Box2DSettings:
 
     geometry: str = setting("box", names=("box", "corners"))
     friction: float = setting(1.0, least=0.0)
-    iterations: int = setting(6, least=1)
+    iterations: int | None = setting(None, least=1)
     position_iterations: int = setting(2, least=0)
+    sweeps: float | None = setting(None, above=0.0)
     units: float | None = setting(None, above=0.0)
+    centred: bool = False
     skins_below: bool = False
     continuous: bool = True
     margin: float | None = setting(None, above=0.0)
@@ -53,9 +73,17 @@ class Box2DSettings:
     def __post_init__(self) -> None:
         check(self)
 
+    def iterations_of(self, scene: Scene) -> int:
+        """Return how often the solver goes through the contacts."""
+        return iterations_for(scene, self.iterations, self.sweeps) or MANUAL_ITERATIONS
+
     def unit_of(self, scene: Scene) -> float:
         """Return the units of length in a metre."""
         return 1.0 if self.units is None else self.units / scene.block.height
+
+    def sunk_of(self, scene: Scene) -> float:
+        """Return how far below the origin the base is, in units of length."""
+        return 0.5 * scene.block.height * self.unit_of(scene) if self.centred else 0.0
 
     def reach_of(self, scene: Scene, dt_s: float) -> float:
         """Return half of the gap, in units of length, up to which the pivot is kept in contact."""
@@ -65,9 +93,10 @@ class Box2DSettings:
 TUNED = Box2DSettings(
     geometry="corners",
     friction=NO_JAM,
-    iterations=100,
+    sweeps=10.0,
     position_iterations=0,
     units=50.0,
+    centred=True,
     skins_below=True,
     continuous=False,
     margin=10.0,
@@ -76,9 +105,18 @@ LANDING = replace(TUNED, reflection=True)
 
 FACTORS = (
     factor("geometry"),
-    factor("iterations", level("6", iterations=6), level("1000", iterations=1000)),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (
+            level("6", iterations=6),
+            level("100", iterations=100),
+            level("1000", iterations=1000),
+        ),
+    ),
     factor("position_iterations", level("2", position_iterations=2)),
     factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
+    factor("centred", name="origin"),
     factor("skins_below"),
     factor("continuous"),
     factor("margin", level("1", margin=1.0), level("100", margin=100.0)),

@@ -161,8 +161,11 @@ class BulletWorld:
     def _erp(self, step: Step) -> dict[str, float]:
         """Return what a step corrects of positions."""
         held = self._held
-        part = corrected(step.grip, step.dt_s, held.ordinary)
-        return {"contactERP": part * held.contact_erp, "frictionERP": part * held.friction_erp}
+        normal, across = corrected(step.grip, step.dt_s, held.ordinary)
+        return {
+            "contactERP": normal * held.contact_erp,
+            "frictionERP": across * held.friction_erp,
+        }
 
     def _set_engine(self, scene: Scene) -> None:
         # the library announces a solver past Python

@@ -154,9 +154,9 @@ def take(held: Hold, client: Client, step: Step) -> None:
     put_time_step(command, step.dt_s)
     put_gravity(command, step.pull_x, 0.0, step.pull_z)
     if held.by_phase:
-        part = corrected(step.grip, step.dt_s, held.ordinary)
-        put_contact_erp(command, part * held.contact_erp)
-        put_friction_erp(command, part * held.friction_erp)
+        normal, across = corrected(step.grip, step.dt_s, held.ordinary)
+        put_contact_erp(command, normal * held.contact_erp)
+        put_friction_erp(command, across * held.friction_erp)
     submit(client.handle, command)
     if held.moving:
         move_base(held, client, step)
@@ -165,15 +165,17 @@ def take(held: Hold, client: Client, step: Step) -> None:
 
 
 @shared
-def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> float:
-    """Return the part of a position's error to correct: none in a step around an impact.
+def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> tuple[float, float]:
+    """Return the parts of a position's error to correct, along a contact's normal and across it.
 
-    A short step would make a velocity of it.
+    None in a step around an impact: a short step would make a velocity of it. None across at rest,
+    where the places that two corners are held at contradict each other by a rounding, and the
+    solver would look for a compromise until its iterations end.
     """
     if grip == Grip.APPROACH or grip == Grip.STRIKE:
-        return 0.0
+        return 0.0, 0.0
     part = min(1.0, dt_s / ordinary_s)
-    return part * part
+    return part * part, 0.0 if grip == Grip.REST else part * part
 
 
 @shared

@@ -73,7 +73,7 @@ class BulletSettings:
     gap_by_step : bool
         Keep contacts up to a gap of 4 (p dt sin(alpha))^2 half diagonals instead.
     by_phase : bool
-        Correct no positions in the short steps around an impact.
+        Correct no positions in the short steps around an impact, and no slip at rest.
     base_geometry : str
         "plane" or "box".
     base_velocity : bool

@@ -153,18 +153,13 @@ def _stay(body: Any, dt: float) -> None:
     """Leave a body where it is: the adapter moves it."""
 
 
-def build(scene: Scene, settings: PymunkSettings, dt_s: float) -> PymunkWorld:
-    """Build a scene."""
-    return PymunkWorld(scene, settings, dt_s)
-
-
 ENGINE = Engine(
     name="pymunk",
     title="pymunk",
     library="pymunk",
     packages=("pymunk",),
     install="rocking[pymunk]",
-    build=build,
+    build=PymunkWorld,
     presets=(
         Preset(
             name="naive",

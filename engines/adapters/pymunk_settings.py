@@ -36,7 +36,7 @@ class PymunkSettings:
     iterations, slop, bias : optional
         `Space.iterations`, `collision_slop` [m] and `collision_bias`.
     sweeps : float or None
-        Iterations over 1/sin^2(alpha), in place of `iterations`.
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
     positions : bool
         Move the positions after the velocities, by the adapter.
     margin : float or None
@@ -68,7 +68,7 @@ class PymunkSettings:
 
     def iterations_of(self, scene: Scene) -> int | None:
         """Return how often the solver goes through the contacts; None leaves that to it."""
-        return self.iterations if self.sweeps is None else iterations_for(scene, self.sweeps)
+        return iterations_for(scene, self.iterations, self.sweeps)
 
     def margin_of(self, scene: Scene, dt_s: float) -> float:
         """Return the gap [m] up to which the pivot is kept in contact."""
@@ -94,7 +94,7 @@ FACTORS = (
     Factor(
         "iterations",
         ("iterations", "sweeps"),
-        (level("100", iterations=100, sweeps=None),),
+        (level("100", iterations=100),),
     ),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),

@@ -45,7 +45,7 @@ class RapierSettings:
         Of the solver: substeps in a step, iterations in each, and those that take out of the
         velocities what the correction of positions has put in.
     sweeps : float or None
-        Iterations over 1/sin^2(alpha), in place of `iterations`.
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
     frequency, damping_ratio : float or None
         Natural frequency [Hz] and damping ratio of the contact; both or neither. The library's are
         30 and 10, and 60 Hz on what does not move.
@@ -98,7 +98,7 @@ class RapierSettings:
 
     def iterations_of(self, scene: Scene) -> int | None:
         """Return how often the solver goes through the contacts; None leaves that to it."""
-        return self.iterations if self.sweeps is None else iterations_for(scene, self.sweeps)
+        return iterations_for(scene, self.iterations, self.sweeps)
 
     def spring_of(self, dt_s: float) -> tuple[float, float] | None:
         """Return a contact's frequency [Hz] and damping ratio; None leaves both to the library.
@@ -167,8 +167,8 @@ FACTORS = (
         "iterations",
         ("iterations", "sweeps"),
         (
-            level("10", BOTH, iterations=10, sweeps=None),
-            level("1000", iterations=1000, sweeps=None),
+            level("10", BOTH, iterations=10),
+            level("1000", iterations=1000),
         ),
     ),
     factor("warm_starting"),

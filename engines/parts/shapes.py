@@ -20,12 +20,15 @@ def fall(scene: Scene, dt_s: float) -> float:
     return (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
 
 
-def iterations_for(scene: Scene, sweeps: float) -> int:
-    """Return sweeps / sin^2(alpha), rounded up: how often a solver goes through the contacts.
+def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -> int | None:
+    """Return how often a solver goes through the contacts; None leaves that to it.
 
-    The impulses of the two corners on which a block stands converge the slower, the more slender it
-    is, and as fast for every block by this.
+    Where no `iterations` are asked for it is sweeps / sin^2(alpha), rounded up: the impulses of the
+    two corners on which a block stands converge the slower, the more slender it is, and as fast for
+    every block by this.
     """
+    if iterations is not None or sweeps is None:
+        return iterations
     return math.ceil(sweeps / math.sin(scene.block.alpha) ** 2)
 
 

@@ -25,8 +25,9 @@ about twenty minutes on one core, --quick less than one.""",
     captions={
         "contact": (
             "Error of the peak, median to largest, of each preset of an engine, and with one "
-            "setting of its contact changed or one help of landing left out: those six that matter "
-            "most, the others counted, and beside them how far the impact is from Housner's."
+            "setting of its contact changed or one help of landing left out: the ten that matter "
+            "most, of each preset in turn, the others in one line, and beside them how far the "
+            "impact is from Housner's."
         ),
     },
 )

@@ -1,6 +1,5 @@
 """The largest error of each contact variant, a panel for each engine."""
 
-import math
 from typing import Any
 
 import pandas as pd
@@ -10,6 +9,7 @@ from matplotlib.lines import Line2D
 
 from engines.factors import BEST, DEFAULT
 from studies.drawing.styles import PRESET_COLOURS
+from studies.measures.words import part
 
 TITLES = {
     "landing": "one help of landing left out",
@@ -18,9 +18,10 @@ TITLES = {
     DEFAULT: "one from the defaults",
 }
 """Preset -> what is changed of it, in the order in which they stand."""
-MATTER = 6
-"""How many variants of a preset are drawn one by one."""
-REST = "the rest"
+MATTER = 10
+"""How many variants of an engine are drawn one by one."""
+ROW, HEAD, FOOT = 0.148, 0.3, 1.15
+"""Heights [in] of a line, of what is above a panel, and of the key."""
 LOWEST, BROKEN, HIGHEST = 1e-6, 2.0, 4.0
 """Errors below are drawn at the first; failed variants and wrong outcomes at the second."""
 
@@ -34,25 +35,26 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         The columns of variants.csv.
     """
     engines = list(lines["engine"].unique())
-    shown = {engine: _ordered(lines[lines["engine"] == engine]) for engine in engines}
-    heights = [0.6 + 0.19 * len(ordered) for ordered in shown.values()]
-    drawing = Figure(figsize=(8.6, 1.3 + sum(heights)), layout="constrained")
+    shown = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
+    heights = [HEAD + ROW * (len(ordered) + 1) for ordered, _ in shown]
+    drawing = Figure(figsize=(8.6, FOOT + sum(heights)), layout="constrained")
     panels = drawing.subplots(len(engines), 1, squeeze=False, sharex=True, height_ratios=heights)
-    for axes, (engine, ordered) in zip(panels[:, 0], shown.items(), strict=True):
-        _one_engine(axes, ordered)
-        axes.set_title(engine, fontsize=11)
-    panels[-1, 0].set_xlabel("relative error  [–]")
+    for axes, engine, (ordered, others) in zip(panels[:, 0], engines, shown, strict=True):
+        _one_engine(axes, ordered, others)
+        axes.set_title(engine, fontsize=10, pad=3.0)
+    panels[-1, 0].set_xlabel("relative error  [–]", fontsize=9)
     drawing.suptitle(
-        f"The {MATTER} changes of each preset that matter most, from the smallest error down",
-        fontsize=11,
+        f"{MATTER} changes to each engine, those of each preset that matter most, from the "
+        "smallest error down",
+        fontsize=10,
     )
     handles = _handles(set(lines["preset"]))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     return drawing
 
 
-def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
-    axes.set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST), ylim=(len(ordered) - 0.3, -0.7))
+def _one_engine(axes: Axes, ordered: pd.DataFrame, others: pd.DataFrame) -> None:
+    axes.set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST), ylim=(len(ordered) + 0.5, -0.7))
     axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
     for place, (_, line) in enumerate(ordered.iterrows()):
         _one_variant(axes, place, line)
@@ -63,45 +65,52 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
         text.set(fontsize=8, color=PRESET_COLOURS[str(line["preset"])])
         if not line["factor"]:
             text.set_fontweight("bold")
-        elif line["factor"] == REST:
-            text.set_fontstyle("italic")
+    axes.axhline(len(ordered) - 0.5, color="#999999", linewidth=0.8)
+    axes.text(0.7 * LOWEST, len(ordered), _summed(others), fontsize=8, style="italic", va="center",
+              color="#555555")  # fmt: skip
     axes.grid(axis="x", alpha=0.25)
 
 
-def _ordered(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return what is drawn, by preset: it, its variants that matter, and a line for the rest.
+def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return an engine's presets with the variants that matter, and the other variants.
 
-    First come those that break it, then those that move a peak or an impact most; they stand from
-    the most accurate in peak and impact to the failed.
+    Of each preset in turn the one that breaks most cases, or else moves a peak or an impact most;
+    they stand by preset, from the most accurate in peak and impact to the failed.
     """
     broken = lines["worse"] | lines["max_error"].isna()
     lines = lines.assign(
-        matter=lines[["moved", "ratio_moved"]].max(axis=1).mask(broken, math.inf).fillna(0.0)
+        broken=broken,
+        lost=(lines["failed"] + lines["wrong"]).where(broken, 0),
+        matter=lines[["moved", "ratio_moved"]].max(axis=1).fillna(0.0),
     )
-    parts = []
-    for _, part in lines.groupby("preset", sort=False):
-        varied = part[part["factor"] != ""].sort_values("matter", ascending=False, kind="stable")
-        parts += [part[part["factor"] == ""], varied.head(MATTER)]
-        if len(varied) > MATTER:
-            parts.append(_rest(varied.iloc[MATTER:]))
-    return _by_error(pd.concat(parts, ignore_index=True))
-
-
-def _rest(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return one line that stands for many: the one among them with the largest error."""
-    worst = lines.loc[[lines["max_error"].fillna(math.inf).idxmax()]]
-    return worst.assign(factor=REST, level=f"{len(lines)} changes that matter less", trap="")
+    varied = lines[lines["factor"] != ""].sort_values(
+        ["broken", "lost", "matter"], ascending=False, kind="stable"
+    )
+    turn = varied.groupby("preset").cumcount().sort_values(kind="stable")
+    varied = varied.loc[turn.index]
+    drawn = pd.concat([lines[lines["factor"] == ""], varied.head(MATTER)])
+    return _by_error(drawn), varied.iloc[MATTER:]
 
 
 def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
-    broken = lines["worse"] | lines["max_error"].isna()
     keyed = lines.assign(
         first=lines["preset"].map({name: place for place, name in enumerate(TITLES)}),
-        own=(lines["factor"] != "").astype(int) - (lines["factor"] == REST) * 0.5,
-        broken=broken,
+        own=lines["factor"] != "",
         worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
     )
     return keyed.sort_values(["first", "own", "broken", "worst"])
+
+
+def _summed(others: pd.DataFrame) -> str:
+    """Return one line on the variants that are not drawn."""
+    if others.empty:
+        return "no other changes"
+    kept, lost = others[~others["broken"]], int(others["broken"].sum())
+    words = [f"{lost} break a case"] * bool(lost)
+    if len(kept):
+        moved = part(float(kept["moved"].max()))
+        words.append(f"{len(kept) if lost else 'they'} move a peak by {moved} at most")
+    return f"{len(others)} others matter less: {', '.join(words)}"
 
 
 def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
@@ -132,8 +141,6 @@ def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
 
 
 def _label(line: "pd.Series[Any]") -> str:
-    if line["factor"] == REST:
-        return f"{line['level']}, at worst"
     name = f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
     return f"{name}  [trap]" if line["trap"] else name
 

@@ -8,6 +8,7 @@ import pandas as pd
 from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from studies.cases.paper import PULSES
+from studies.measures.presets import engine_of
 from studies.measures.words import alike, listed, part
 
 CLOSE = 0.1
@@ -91,7 +92,7 @@ def first_claim(table: pd.DataFrame) -> str:
     sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
     parts = (sums["close"] / sums["cases"]).sort_values()
     ends = dict.fromkeys(
-        f"{_whole(parts[name])} ({_engine(name)})" for name in parts.index[[0, -1]]
+        f"{_whole(parts[name])} ({engine_of(str(name))})" for name in parts.index[[0, -1]]
     )
     return (
         f"As the libraries come, outcome and peak (within {part(CLOSE)}) are right in "
@@ -100,15 +101,12 @@ def first_claim(table: pd.DataFrame) -> str:
     )
 
 
-def _engine(source: object) -> str:
-    return str(source).partition(":")[0]
-
-
 def _each(table: pd.DataFrame) -> str:
     """Say what part of all pulses each engine gets right."""
     sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
     words = [
-        f"{_engine(name)} {_whole(row['close'] / row['cases'])}" for name, row in sums.iterrows()
+        f"{engine_of(str(name))} {_whole(row['close'] / row['cases'])}"
+        for name, row in sums.iterrows()
     ]
     return (
         f"Outcome right and peak within {part(CLOSE)}, as the libraries come: {listed(words)} of "
@@ -136,7 +134,7 @@ def claims(table: pd.DataFrame, rows: pd.DataFrame) -> str:
             )
             if row[column]
         ]
-        words.append(f"{_engine(name)} {listed(wrong)}")
+        words.append(f"{engine_of(str(name))} {listed(wrong)}")
     return f"{_each(table)} Of the rest: {'; '.join(words)}. {similarity(rows)}"
 
 
@@ -154,7 +152,7 @@ def similarity(rows: pd.DataFrame) -> str:
     differ &= ~(small.isna() & large.isna())
     of = differ.groupby(level="source", sort=False).mean()
     engines = of[of.index != "exact"]
-    words = alike([f"{name.partition(':')[0]} {value:.0%}" for name, value in engines.items()])
+    words = alike([f"{engine_of(name)} {value:.0%}" for name, value in engines.items()])
     return (
         f"By similarity a block of {widths[-1]:g} m answers as one of {widths[0]:g} m: the exact "
         f"solution does; with the defaults an outcome differs, or a peak by more than "

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from studies.defaults.claims import CLOSE, FAILED, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.measures.presets import engine_of
 from studies.measures.words import part
 
 # the palette of Okabe and Ito, lightened where most of an area is filled
@@ -94,7 +95,7 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
-    name = str(rows["source"].iloc[0]).partition(":")[0]
+    name = engine_of(str(rows["source"].iloc[0]))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
 
 

@@ -6,8 +6,8 @@ import pandas as pd
 
 from studies.measures.differences import scientific, with_reference
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, estimates_of
-from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import listed, out_of, part
+from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.words import capital, listed, out_of, part
 
 RESOLVED = 1e-9
 """Errors below are as good as none: no estimate has to bound them."""
@@ -121,8 +121,7 @@ def told(table: pd.DataFrame) -> str:
 
 
 def _of_preset(preset: str, lines: pd.DataFrame) -> str:
-    head = in_words(preset)
-    head = head[0].upper() + head[1:]
+    head = capital(in_words(preset))
     ordered = lines[lines["survivors"] > 0].sort_values("within_10", kind="stable")
     if ordered.empty:
         return f"{head} no case rocked at both steps."
@@ -136,8 +135,3 @@ def _of_preset(preset: str, lines: pd.DataFrame) -> str:
         seen = out_of(int(lines["told"].sum()), wrong)
         sentence += f"; of their wrong outcomes half the step tells {seen}"
     return f"{sentence}."
-
-
-def engine_of(source: str) -> str:
-    """Return the engine that a source is a preset of."""
-    return source.partition(":")[0]

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import style_of
-from studies.estimate.calibration import engine_of
-from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import part
 
 LEAST, MOST = 0.1, 1e4

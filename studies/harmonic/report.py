@@ -1,6 +1,5 @@
 """What the steady states say: branches, doubled periods, overturning, and the engines on them."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,8 +35,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
 
 def settings_of(folder: Path) -> dict[str, object]:
     """Return what a folder's sweep was asked for, from its provenance."""
-    record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
-    return dict(record["settings"])
+    return dict(provenance.record_of(folder)["settings"])
 
 
 def branches_text(table: pd.DataFrame) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any
 
 from studies.kit.drafts import draft
 from studies.kit.fingerprint import ROOT, fingerprint
-from studies.kit.journal import FolderError
+from studies.kit.journal import PROVENANCE, FolderError
 
 NOT_INSTALLED = "not installed"
 """What stands for the version of a package that is not there."""
@@ -127,6 +127,11 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     }
     write_text(path, json.dumps(record, indent=2) + "\n")
     return record
+
+
+def record_of(folder: Path) -> dict[str, Any]:
+    """Return the provenance of a results folder."""
+    return dict(json.loads((folder / PROVENANCE).read_text(encoding="utf-8")))
 
 
 def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:

@@ -24,6 +24,11 @@ def preset_of(source: str) -> str:
     return str(resolve(source).preset)
 
 
+def engine_of(source: str) -> str:
+    """Return the engine that a source is a preset of; any other source is its own."""
+    return source.partition(":")[0]
+
+
 def in_words(preset: str) -> str:
     """Return a preset as part of a sentence."""
     return WORDS.get(preset, f"with the preset {preset}")

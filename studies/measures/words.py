@@ -5,6 +5,9 @@ from collections.abc import Iterable, Sequence
 
 from studies.measures.differences import scientific
 
+NAMED = 2
+"""Engines up to which a sentence names each; of more it says the sum or the range."""
+
 WHOLE = 0.1
 """From this part on a number is given in whole per cent."""
 

@@ -1,6 +1,5 @@
 """A folder's map read back: its tables, its window, and the mode at any point of it."""
 
-import json
 import math
 from pathlib import Path
 
@@ -11,12 +10,12 @@ from analytic.criteria import overturning_amplitude
 from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import Window
+from studies.kit import provenance
 
 
 def window_of(folder: Path) -> Window:
     """Return the window that a folder's map is of, from its provenance."""
-    record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
-    return Window(**record["settings"]["window"])
+    return Window(**provenance.record_of(folder)["settings"]["window"])
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:

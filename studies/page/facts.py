@@ -1,6 +1,5 @@
 """What README.md and the page of the published results say, from the published tables alone."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from engines.registry import OWN
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
+from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
@@ -92,9 +92,13 @@ def missing(published: Path) -> list[str]:
 
 def presets(published: Path) -> pd.DataFrame:
     """Return a line for each preset and engine over the paper's cases, of what a folder holds."""
-    held = [name for name in PRESETS_FROM if (published / name / "summary.csv").is_file()]
-    lines = pd.concat([preset_table(whole(published / name)) for name in held])
+    lines = pd.concat([preset_table(whole(folder)) for folder in _with_presets(published)])
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
+
+
+def _with_presets(published: Path) -> list[Path]:
+    folders = [published / name for name in PRESETS_FROM]
+    return [folder for folder in folders if (folder / "summary.csv").is_file()]
 
 
 def shared(lines: pd.DataFrame) -> list[str]:
@@ -237,21 +241,16 @@ def counts(published: Path) -> dict[str, int]:
 
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
-    records = {
-        name: json.loads((published / name / "provenance.json").read_text(encoding="utf-8"))
-        for name in PRESETS_FROM
-        if (published / name).is_dir()
-    }
-    record = records["sweep"]
-    machine = record["machine"]
-    versions = next(iter(records.values()))["engines"]
+    sweep = provenance.record_of(published / "sweep")
+    machine, run = sweep["machine"], sweep["runs"][-1]
+    versions = provenance.record_of(_with_presets(published)[0])["engines"]
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
     return {
         "engines": listed([f"{name} {versions[name]}" for name in packages]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
-        "date": record["runs"][-1]["start"][:10],
-        "sweep": f"{record['runs'][-1]['duration_s']:.0f} s",
+        "date": run["start"][:10],
+        "sweep": f"{run['duration_s']:.0f} s",
     }
 
 

@@ -3,7 +3,6 @@
 import base64
 import io
 import itertools
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -174,7 +173,7 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
 
 def _provenance(folder: Path) -> list[tuple[str, str]]:
     """Return what the page says of versions and machine."""
-    record = json.loads((folder / "provenance.json").read_text())
+    record = provenance.record_of(folder)
     versions = {
         **record["engines"],
         "python": record["python"],

@@ -1,12 +1,12 @@
 """Draw a results folder again, from its CSVs alone."""
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
 
 from studies.catalogue import STUDIES
+from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place
 from studies.kit.jobs import one_line
 from studies.kit.study import Study
@@ -35,9 +35,8 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
 
 def _recorded(folder: Path) -> str:
     """Return the name of the study that left a folder, which may hold its smaller tables only."""
-    path = folder / "provenance.json"
     try:
-        return str(json.loads(path.read_text(encoding="utf-8"))["study"])
+        return str(provenance.record_of(folder)["study"])
     except (OSError, ValueError, KeyError, TypeError):
         return ""
 

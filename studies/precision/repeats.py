@@ -2,8 +2,6 @@
 
 import time
 from collections.abc import Callable, Sequence
-from heapq import nsmallest
-from itertools import pairwise
 
 from analytic.response import Response
 
@@ -33,9 +31,8 @@ def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
         return True
     if len(times) < RUNS or spent_s < LEAST_S:
         return False
-    return all(
-        longer <= (1.0 + AGREED) * shorter for shorter, longer in pairwise(nsmallest(2, times))
-    )
+    shortest, next_shortest = sorted(times)[:2]
+    return next_shortest <= (1.0 + AGREED) * shortest
 
 
 def best_of(action: Callable[[], Response], most_s: float) -> tuple[Response, float]:

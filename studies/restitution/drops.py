@@ -1,39 +1,24 @@
 """Drops that vary one thing at a time, and what each engine makes of them."""
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Sequence
+from dataclasses import asdict
 
 import pandas as pd
 
 from engines import ENGINES
 from engines.drop import Drop
 from studies.kit.journal import Row
-
-WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
-"""Coefficients of restitution."""
-
-PHASES = (0.1, 0.5, 0.9)
-"""Parts of a step after which the sphere meets the base."""
+from studies.restitution.asked import one_at_a_time
 
 BASE = Drop(restitution=0.0)
 """From which one thing at a time is varied."""
 
-VARIED = {"": (math.nan,), "dt_s": (1e-4, 1 / 240), "speed": (0.1, 10.0), "radius": (0.01, 1.0)}
-"""What is varied -> its other values; the empty name is none of it."""
-
+VARIED = {"dt_s": (1e-4, 1 / 240), "speed": (0.1, 10.0), "radius": (0.01, 1.0)}
+"""What is varied -> its other values."""
 
 BROKEN = 10.0
 """A sphere that comes back so many times as fast was thrown by a contact that is unstable."""
-
-
-def drops() -> Iterator[tuple[str, Drop]]:
-    """Yield what is varied, and the drop."""
-    for varied, values in VARIED.items():
-        for value, wanted, phase in itertools.product(values, WANTED, PHASES):
-            drop = replace(BASE, restitution=wanted, phase=phase)
-            yield varied, replace(drop, **{varied: value}) if varied else drop
 
 
 def measured(engines: Sequence[str]) -> pd.DataFrame:
@@ -41,7 +26,7 @@ def measured(engines: Sequence[str]) -> pd.DataFrame:
     rows: list[Row] = []
     for engine in engines:
         for way in ENGINES[engine].bouncing:
-            for varied, drop in drops():
+            for varied, drop in one_at_a_time(BASE, VARIED):
                 rows.append(
                     {
                         "engine": engine,
@@ -77,14 +62,10 @@ def kept(rows: pd.DataFrame) -> pd.DataFrame:
     """
     table = []
     for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
-        off = (
-            (group["speed_ratio"] - group["wanted"])
-            .abs()
-            .where(group["speed_ratio"] < 10.0, math.inf)
-        )
-        mine = {
-            f"off_{name}" if name else "off": off[group["varied"] == name].max() for name in VARIED
-        }
+        off = (group["speed_ratio"] - group["wanted"]).abs()
+        off = off.where(group["speed_ratio"] < BROKEN, math.inf)
+        names = {"": "off", **{name: f"off_{name}" for name in VARIED}}
+        mine = {column: off[group["varied"] == name].max() for name, column in names.items()}
         shown = group[(group["wanted"] == 0.6) & (group["varied"] == "")].iloc[0]
         broken = int((off == math.inf).sum())
         table.append(

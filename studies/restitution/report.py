@@ -1,11 +1,14 @@
 """What was found of restitution, in words and as a table."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import pandas as pd
 
 from studies.measures.words import listed
 from studies.restitution import drops, strikes
+from studies.restitution.asked import PHASES
 
 GOOD = 0.05
 """A coefficient that comes out within this is kept."""
@@ -23,7 +26,7 @@ def findings_text(lines: pd.DataFrame, blocks: pd.DataFrame) -> str:
     return f"""\
 Largest difference of the speed of a dropped sphere after over before its impact from
 the coefficient that is wanted, 0 to 1, at {drop.dt_s:g} s, {drop.speed:g} m/s and a radius of
-{drop.radius:g} m, wherever in a step the impact falls ({len(drops.PHASES)} places); over steps,
+{drop.radius:g} m, wherever in a step the impact falls ({len(PHASES)} places); over steps,
 speeds and sizes:
 {kept_text(lines)}
 
@@ -37,30 +40,35 @@ approach from e; and its largest speed along the base, over the same:
 
 def struck_text(blocks: pd.DataFrame) -> str:
     """Return what blocks keep, engine by engine."""
-    parts = []
-    for engine, group in blocks.groupby("engine", sort=False):
-        rows = [
-            f"  {row['way']}: {_off(row['off'])}; over steps {_off(row['off_p_dt'])}, rates "
+    return _by_engine(
+        blocks,
+        lambda row: (
+            f"{_off(row['off'])}; over steps {_off(row['off_p_dt'])}, rates "
             f"{_off(row['off_rate_over_alpha_p'])}, heights {_off(row['off_height_m'])}, "
             f"slenderness {_off(row['off_aspect'])}; corner {_off(row['corner'])}, along "
             f"{_off(row['slide'])}"
-            for row in group.to_dict("records")
-        ]
-        parts.append("\n".join([str(engine), *rows]))
-    return "\n".join(parts)
+        ),
+    )
 
 
 def kept_text(lines: pd.DataFrame) -> str:
     """Return how far off each way is, engine by engine, and what is set."""
-    parts = []
-    for engine, group in lines.groupby("engine", sort=False):
-        rows = [
-            f"  {row['way']}: {_off(row['off'])}; over steps {_off(row['off_dt_s'])}, speeds "
+    return _by_engine(
+        lines,
+        lambda row: (
+            f"{_off(row['off'])}; over steps {_off(row['off_dt_s'])}, speeds "
             f"{_off(row['off_speed'])}, sizes {_off(row['off_radius'])}{_broken(row['broken'])}\n"
             f"    for 0.6: {row['literal']}"
-            for row in group.to_dict("records")
-        ]
-        parts.append("\n".join([str(engine), *rows]))
+        ),
+    )
+
+
+def _by_engine(lines: pd.DataFrame, words: Callable[["pd.Series[Any]"], str]) -> str:
+    """Return what is said of each way, below the name of its engine."""
+    parts = []
+    for engine, group in lines.groupby("engine", sort=False):
+        ways = [f"  {row['way']}: {words(row)}" for _, row in group.iterrows()]
+        parts += [str(engine), *ways]
     return "\n".join(parts)
 
 

@@ -1,39 +1,28 @@
 """Blocks that strike their base with a corner, one thing varied at a time, and what they keep."""
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
 import pandas as pd
 
 from engines import ENGINES
 from engines.strike import Strike, strike
 from studies.kit.journal import Row
-from studies.restitution.drops import PHASES, WANTED
+from studies.restitution.asked import one_at_a_time
 
 BASE = Strike(restitution=0.0)
 """From which one thing at a time is varied."""
 
 VARIED = {
-    "": (math.nan,),
     "step": (1e-4, 4e-3),
     "rate": (0.1, 2.0),
     "height": (0.1, 10.0),
     "aspect": (4.0,),
 }
-"""What is varied -> its other values; the empty name is none of it."""
+"""What is varied -> its other values."""
 
 COLUMNS = {"step": "p_dt", "rate": "rate_over_alpha_p", "height": "height_m", "aspect": "aspect"}
 """Names of what is varied in the table."""
-
-
-def strikes() -> Iterator[tuple[str, Strike]]:
-    """Yield what is varied, and the strike."""
-    for varied, values in VARIED.items():
-        for value, wanted, phase in itertools.product(values, WANTED, PHASES):
-            asked = replace(BASE, restitution=wanted, phase=phase)
-            yield varied, replace(asked, **{varied: value}) if varied else asked
 
 
 def measured(engines: Sequence[str]) -> pd.DataFrame:
@@ -43,7 +32,7 @@ def measured(engines: Sequence[str]) -> pd.DataFrame:
         for way in ENGINES[engine].bouncing:
             if way.block is None:
                 continue
-            for varied, asked in strikes():
+            for varied, asked in one_at_a_time(BASE, VARIED):
                 found = strike(ENGINES[engine], asked, way.block(asked.restitution))
                 rows.append(
                     {

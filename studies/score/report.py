@@ -1,6 +1,5 @@
 """An engine's page, from its three tables and the published ones."""
 
-import json
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -11,7 +10,6 @@ from engines import ENGINES
 from engines.declaration import Engine, Precision
 from studies.advise.evidence import LADDER
 from studies.kit import provenance
-from studies.kit.journal import PROVENANCE
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, out_of, part
@@ -55,8 +53,7 @@ def report(folder: Path) -> str:
 
 def engine_of(folder: Path) -> str:
     """Return the name of the engine that a folder is about."""
-    record = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-    return str(record["settings"]["engine"])
+    return str(provenance.record_of(folder)["settings"]["engine"])
 
 
 def headline(folder: Path) -> str:

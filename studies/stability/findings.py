@@ -6,9 +6,9 @@ import pandas as pd
 
 from analytic.response import Reason
 from studies.measures.differences import scientific
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import each_out_of, listed, out_of
+from studies.measures.words import NAMED, each_out_of, listed, out_of
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -21,9 +21,6 @@ REFERENCE = "exact"
 """The source that all others are held against."""
 
 ACCEPTED_WORDS = tuple(verdict.value for verdict in ACCEPTED)
-
-NAMED = 2
-"""Engines up to which a headline names each; more are counted together."""
 
 
 def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> str:
@@ -42,7 +39,7 @@ def first_claim(matrix: pd.DataFrame) -> str:
     for source, good in right:
         counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
     parts = [f"{in_words(name)} {_counted(counts[name])}" for name in in_order(counts)]
-    engines = list(dict.fromkeys(source.partition(":")[0] for source in asked["source"]))
+    engines = list(dict.fromkeys(map(engine_of, asked["source"])))
     named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
     verb = "get" if len(engines) > 1 else "gets"
     return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."

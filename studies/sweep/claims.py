@@ -5,8 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import alike, capital, each_out_of, listed, out_of, part
+from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.words import NAMED, alike, capital, each_out_of, listed, out_of, part
 from studies.sources.registry import resolve
 
 
@@ -28,15 +28,11 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
 
 
-NAMED = 2
-"""Engines up to which a sentence names each; of more it says the range."""
-
-
 def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
     if len(lines) > NAMED:
         return capital(_range(preset, lines))
-    names = listed([source.partition(":")[0] for source in lines["source"]])
+    names = listed([engine_of(source) for source in lines["source"]])
     right = each_out_of(list(lines["agree"]), list(lines["cases"]))
     verb = "get" if len(lines) > 1 else "gets"
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
@@ -51,7 +47,7 @@ def _range(preset: str, lines: pd.DataFrame) -> str:
     by_count, cases = lines.sort_values("agree").iloc[[0, -1]], float(lines["cases"].iloc[0])
     few, most = by_count["agree"]
     fewest, worst = (
-        str(found["source"].iloc[0]).partition(":")[0]
+        engine_of(str(found["source"].iloc[0]))
         for found in (by_count, lines.sort_values("max_error", ascending=False))
     )
     right = out_of(few, cases) if few == most else f"{few} ({fewest}) to {out_of(most, cases)}"
@@ -125,7 +121,7 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "preset": found["preset"],
-            "engine": found["source"].str.partition(":")[0],
+            "engine": found["source"].map(engine_of),
             "source": found["source"],
             "right": found["agree"],
             "cases": found["cases"],

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from engines import ENGINES
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import preset_style, style_of
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.words import capital, per_cent
 
 LEAST, MOST = 1e-8, 1e1
@@ -76,7 +76,7 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
     rows = rows[rows["source"].map(is_engine)]
     rows = rows.assign(preset=rows["source"].map(preset_of))
     aspects, presets = sorted(rows["aspect"].unique()), in_order(rows["preset"])
-    engines = list(dict.fromkeys(source.partition(":")[0] for source in rows["source"]))
+    engines = list(dict.fromkeys(map(engine_of, rows["source"])))
     drawing = Figure(figsize=(9.0, 2.4 * len(presets) + 1.2), layout="constrained")
     grid = drawing.subplots(len(presets), len(aspects), sharex=True, sharey=True, squeeze=False)
     for line, preset in zip(grid, presets, strict=True):
@@ -116,7 +116,7 @@ def _panel(axes: Axes, rows: pd.DataFrame, engines: list[str]) -> None:
         known = points[points["error"].notna()].sort_values("omega_over_p")
         error = known["error"].abs().clip(LEAST, MOST)
         axes.plot(known["omega_over_p"], error, **look, alpha=0.3 if pale else 1.0)
-        row = engines.index(str(source).partition(":")[0])
+        row = engines.index(engine_of(str(source)))
         level = (MOST / LEAST) ** (1.0 + ROW * (row + 1)) * LEAST
         wrong = points.loc[~points["agrees"], "omega_over_p"]
         axes.plot(wrong, [level] * len(wrong), "s", color=look["color"], markersize=2.6)

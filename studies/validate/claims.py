@@ -6,14 +6,10 @@ import pandas as pd
 
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.measures.differences import conditioning_of, scientific
-from studies.measures.words import gathered, listed, out_of, part
+from studies.measures.words import NAMED, gathered, listed, out_of, part
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
-
-
-FEW = 3
-"""Of more sources than these a headline names the best and the worst."""
 
 
 class Census(NamedTuple):
@@ -58,7 +54,7 @@ def first_claim(compared: pd.DataFrame) -> str:
 
 def _sizes(largest: "pd.Series[float]") -> str:
     """Return each source's number over κ, or the least and the largest of many."""
-    if len(largest) > FEW:
+    if len(largest) > NAMED:
         by_size = largest.sort_values().items()
         least, *_, most = [f"{scientific(size)} κ ({name})" for name, size in by_size]
         return listed([least, most], "to")

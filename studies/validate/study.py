@@ -1,6 +1,5 @@
 """Random cases that no setting was tuned on: sources beside the exact solution and κ."""
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -177,7 +176,7 @@ def leaning_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
 
 def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     """Say what the estimates bound, and if their factors were found at other steps."""
-    settings = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))["settings"]
+    settings = provenance.record_of(folder)["settings"]
     own = Effort(step=settings["step"], accuracy=settings["accuracy"]).own
     text = "\nOf the errors of the peak the relative difference from that at half the step,"
     return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
@@ -197,9 +196,9 @@ def headline(folder: Path) -> str:
 
 def paragraph(folder: Path) -> str:
     """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
-    record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     compared = pd.read_csv(folder / "errors.csv")
-    return claims(compared, census(record["settings"]["seed"], compared["case"].nunique()))
+    seed = provenance.record_of(folder)["settings"]["seed"]
+    return claims(compared, census(seed, compared["case"].nunique()))
 
 
 def summary_text(compared: pd.DataFrame) -> str:

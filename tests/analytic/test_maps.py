@@ -91,6 +91,18 @@ def test_the_mode_is_the_number_of_impacts_of_the_fall(alpha, excess, omega, hal
         assert found.mode == SURVIVES
 
 
+def test_impacts_beyond_sixteen_bits_are_counted():
+    """A pulse hardly above the onset sets an elastic block rattling, and throws it much later."""
+    block, omega = RigidBlock(width=1.0, height=4.0, restitution=1.0), 0.01
+    amplitude = (1.0 + 2e-5) * onset_of("housner", block.alpha)
+    found = overturning_modes(block.alpha, amplitude, omega, 2, "housner", 1.0)
+    pulse = SinePulse(amplitude=amplitude * block.gravity, omega=omega * block.p, half_cycles=2)
+    fall = simulate(block, pulse, "housner")
+    assert fall.outcome is Outcome.OVERTURNED
+    assert found.mode == len(fall.impacts) > 2**16
+    assert found.steps > found.mode
+
+
 @settings(max_examples=100, deadline=None)
 @given(
     alpha=st.floats(0.05, 0.8),

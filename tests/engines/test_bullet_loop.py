@@ -20,6 +20,7 @@ from engines import ENGINES, Scene, run
 from engines.adapters import bullet, bullet_loop
 from engines.adapters.bullet_addresses import spans
 from engines.drive import build, simulate_world
+from engines.world import Grip
 
 p = pytest.importorskip("pybullet")
 
@@ -106,6 +107,36 @@ def test_a_loop_that_steps_otherwise_is_not_used(
     assert not bullet.loop_agrees()
 
 
+@pytest.mark.parametrize("grip", Grip)
+def test_both_drivers_correct_alike_whatever_a_step_is_for(
+    grip: Grip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bullet, "TRIAL", [step._replace(grip=grip) for step in bullet.TRIAL])
+    assert bullet.loop_agrees()
+    bullet.loop_agrees.cache_clear()
+    monkeypatch.setattr(
+        bullet, "corrected", lambda *_: (0.0, 0.0) if grip < Grip.APPROACH else (1.0, 1.0)
+    )
+    assert not bullet.loop_agrees()  # what is corrected is seen in the trial
+
+
+@pytest.mark.parametrize(
+    ("grip", "dt_s", "normal", "across"),
+    [
+        (Grip.SWING, 1e-3, 1.0, 1.0),
+        (Grip.SWING, 2e-3, 1.0, 1.0),  # no more than there is
+        (Grip.SWING, 5e-4, 0.25, 0.25),
+        (Grip.REST, 5e-4, 0.25, 0.0),
+        (Grip.APPROACH, 1e-3, 0.0, 0.0),
+        (Grip.STRIKE, 1e-3, 0.0, 0.0),
+    ],
+)
+def test_what_is_corrected_of_a_position(
+    grip: Grip, dt_s: float, normal: float, across: float
+) -> None:
+    assert bullet_loop.corrected(grip, dt_s, 1e-3) == (normal, across)
+
+
 def apart(number: int) -> Scene:
     """Return a scene in which contacts are kept up to a gap of its own."""
     block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
@@ -169,3 +200,21 @@ def test_a_signal_ends_a_loop() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert driven(ROCKS)
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
+    """More iterations change nothing: places that contradict each other would use them all up."""
+    block = RigidBlock(width=0.5, height=1.0)
+    motion = pulse(1.3, 0.1, 2, block)
+    times = [0.1 * i for i in range(20)]  # the block lifts after 2.5 s
+    enough, more = (
+        run("pybullet", Scene(block=block, motion=motion, times=times, **options))
+        for options in (
+            {"compiled": compiled, "settings": {"iterations": iterations}}
+            for iterations in (1000, 3000)
+        )
+    )
+    assert enough.history is not None
+    assert more.history is not None
+    assert (enough.history.theta == more.history.theta).all()

@@ -93,6 +93,16 @@ def test_frames_agree(engine: str, preset: str) -> None:
     assert peaks[0] > 0.1
 
 
+@pytest.mark.parametrize(
+    "engine", [name for name in FIXED if hasattr(HERE[name].preset("fixed").settings, "iterations")]
+)
+def test_iterations_that_are_asked_for_are_taken(engine: str) -> None:
+    """Also where a preset derives them from the block."""
+    asked = scene(pulse(1.3, 3.0, 2), preset="fixed", step=1e-2)
+    peak = run(engine, asked).peak_ratio
+    assert run(engine, replace(asked, settings={"iterations": 1})).peak_ratio != peak
+
+
 @every_fixed_use
 def test_peak_without_impact(engine: str) -> None:
     """A peak before any impact: a fixed step is of first order only where the uplift falls in a

@@ -10,7 +10,7 @@ import pytest
 
 from engines import ENGINES
 from studies.__main__ import run
-from studies.contact.figure import MATTER, REST, draw_contact
+from studies.contact.figure import MATTER, draw_contact
 from studies.drawing.diagrams import ONSETS
 from studies.drawing.labels import spread
 from studies.drawing.styles import (
@@ -142,15 +142,16 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     axes = next(panel for panel in drawn.axes if panel.get_title() == "mujoco")
     words = [label.get_text() for label in axes.get_yticklabels()]
     mine = lines[(lines["engine"] == "mujoco") & (lines["factor"] != "")]
-    counts = mine.groupby("preset").size()
-    rest = [word for word in words if "matter less" in word]
-    assert sorted(int(word.split()[0]) for word in rest) == sorted(
-        n - MATTER for n in counts if n > MATTER
-    )
-    assert len(words) == sum(1 + min(n, MATTER) + (n > MATTER) for n in counts)
-    broken = mine[mine["max_error"].isna()]
+    assert len(words) == MATTER + mine["preset"].nunique()
+    (rest,) = [text.get_text() for text in axes.texts if "matter less" in text.get_text()]
+    assert rest.startswith(f"{len(mine) - MATTER} others")
+    broken = mine[mine["failed"] == mine["cases"]]
     assert all(any(level in word for word in words) for level in broken["level"])
-    assert REST not in "".join(words)
+    turns = [sum(label.get_color() == colour for label in axes.get_yticklabels())
+             for colour in PRESET_COLOURS.values()]  # fmt: skip
+    assert sorted(turn for turn in turns if turn) == [4, 4, 5]  # each preset, and in turn its own
+    width, height = drawn.get_size_inches()
+    assert height < 2.0 * width
 
 
 @pytest.mark.parametrize("study", ["contact", "validate", "precision"])

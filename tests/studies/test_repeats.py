@@ -17,8 +17,8 @@ MOST_S = 4.0 * LEAST_S
         ([1.0, 1.0, 1.0], LEAST_S, True),
         ([1.0, 1.0], LEAST_S, False),  # too few
         ([1.0, 1.0, 1.0], 0.9 * LEAST_S, False),  # too cold
-        ([1.3, 1.0, 1.2], LEAST_S, False),  # the shortest came once
-        ([1.3, 1.0, 1.2, 1.01], LEAST_S, True),
+        ([1.3, 1.0, 1.03], LEAST_S, False),  # the shortest came once
+        ([1.3, 1.0, 1.03, 1.01], LEAST_S, True),
         ([1.3], MOST_S, True),  # nothing more may be spent
     ],
 )

@@ -15,7 +15,7 @@ from engines.strike import Strike, strike
 from studies.__main__ import run
 from studies.contact.study import newton_e
 from studies.measures.published import PUBLISHED
-from studies.restitution import drops, strikes, study
+from studies.restitution import asked, drops, strikes, study
 
 BOUNCING = {name: engine.bouncing for name, engine in ENGINES.items() if engine.bouncing}
 
@@ -104,9 +104,8 @@ def test_the_published_lines_follow_from_the_published_drops():
 
 
 def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch):
-    for module in (drops, strikes):
-        monkeypatch.setattr(module, "PHASES", (0.5,))
-        monkeypatch.setattr(module, "WANTED", (0.0, 0.6, 1.0))
+    monkeypatch.setattr(asked, "PHASES", (0.5,))
+    monkeypatch.setattr(asked, "WANTED", (0.0, 0.6, 1.0))
     assert run(["restitution", "--engines", "mujoco", "--out", str(tmp_path)]) == 0
     assert "drops broken" in capsys.readouterr().out
     said = study.headline(tmp_path)
