@@ -269,7 +269,7 @@ ENGINE = Engine(
             step_s=1e-3,
             step_source="MultibodyPlantConfig's own time_step, 0.001 s",
         ),
-        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(
             name="error-controlled",
             title="steps of its own, by its own estimate of the error",

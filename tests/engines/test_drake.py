@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_landing import errors_of_sweep
+from test_landing import errors_of_sweep, sweep_cases
 from uses import BLOCK, HERE, pulse, scene
 
-from analytic import simulate
+from analytic import RigidBlock, simulate
+from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
 from engines import Scene, run
+from engines.parts.shapes import NO_JAM
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
 
@@ -30,10 +32,26 @@ def error(preset: str, density: float = 1000.0, **settings: Any) -> float:
 
 
 def test_some_of_the_sweep() -> None:
-    """Some ten thousand steps err by 1e-8 alpha each, and a corner is met half a step late."""
+    """Some twenty thousand steps err by 2e-9 alpha each."""
     errors = errors_of_sweep("drake", every=120)
-    assert np.median(errors) < 5e-4
-    assert max(errors) < 2e-3
+    assert np.median(errors) < 2e-4
+    assert max(errors) < 1e-3
+
+
+def test_the_worst_conditioned_case_of_the_sweep() -> None:
+    """It survives by 3 %, and a part of the pulse more makes its peak 72 parts larger."""
+    block, motion = max(sweep_cases(), key=lambda case: survived(*case))
+    exact = simulate(block, motion)
+    assert exact.peak_ratio == pytest.approx(0.97170219)
+    for preset, largest in ((OWN_STEPS, 3e-3), ("fixed", 1e-2)):
+        response = run("drake", Scene(block=block, motion=motion, preset=preset))
+        assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=largest)
+
+
+def survived(block: RigidBlock, motion: Motion) -> float:
+    """Return the exact peak over alpha, 0 where the block falls."""
+    peak = simulate(block, motion).peak_ratio
+    return peak if peak < np.inf else 0.0
 
 
 def test_smaller_errors_of_a_step_make_smaller_errors() -> None:
@@ -79,10 +97,11 @@ def test_a_soft_contact_hides_the_onset() -> None:
 
 def test_friction_lags_behind_what_dissipates() -> None:
     """It goes by the normal force at the beginning of a step, of which dissipation makes much or
-    nothing: the pivot slides, at equal steps by inches."""
+    nothing: the pivot slides, at equal steps by inches, and more friction hides it in part."""
     assert error("fixed") < 5e-3
-    assert error("fixed", dissipation=1e4) > 0.05
-    assert rocked("fixed", dissipation=1e5).reason is Reason.SLID
+    assert error("fixed", dissipation=1e4) > 0.02
+    assert error("fixed", dissipation=1e4, friction=NO_JAM) > 0.05
+    assert rocked("fixed", dissipation=1e5, friction=NO_JAM).reason is Reason.SLID
 
 
 def test_a_box_touches_a_half_space_in_one_point() -> None:

@@ -80,6 +80,36 @@ def test_a_trial_step_leaves_no_trace() -> None:
     world.close()
 
 
+@installed
+@pytest.mark.parametrize("solver", ["xpbd", "dvi"])
+def test_a_model_is_as_good_as_new_for_the_next_run(solver: str) -> None:
+    """Making it takes as long as hundreds of steps; what a solver remembers would show."""
+    from engines.adapters import newton_models
+
+    asked = scene(MOTION, preset="fixed", settings={"solver": solver})
+    other = replace(asked, motion=pulse(1.6, 2.0, 1), start=(0.4 * BLOCK.alpha, 0.0))
+    newton_models.idle.clear()
+    first = run("newton", asked)
+    [made] = newton_models.idle
+    run("newton", other)
+    again = run("newton", asked)
+    assert list(newton_models.idle) == [made]
+    assert (first.peak_ratio, first.impacts) == (again.peak_ratio, again.impacts)
+
+
+@installed
+def test_two_runs_at_once_have_a_model_each() -> None:
+    first, second = (build(HERE["newton"], scene(MOTION)) for _ in range(2))
+    before = second.pose()
+    look = Look(scene(MOTION), HERE["newton"].best.ordinary_step_s(scene(MOTION)), Stepping.FIXED)
+    look.make_room(1)
+    first.step(look.next(first.pose()))  # type: ignore[attr-defined]
+    assert first.pose() != before
+    assert second.pose() == before
+    for world in (first, second):
+        world.close()
+
+
 def slow_at_first(marker: Path, job: Job, source: Source) -> Response:
     """Take longer than the time limit where nothing was compiled yet."""
     if not marker.exists():
