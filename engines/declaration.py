@@ -4,7 +4,7 @@ import enum
 import importlib.util
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from analytic.block import RigidBlock
@@ -106,6 +106,14 @@ class Preset:
                 f"step, step_s of preset {self.name!r} are {self.step!r}, {self.step_s!r}; "
                 "equal steps need one of them, other steps none"
             )
+
+    def takes(self, **settings: Any) -> bool:
+        """Return whether its settings can be changed so."""
+        try:
+            replace(self.settings, **settings)
+        except (TypeError, ValueError):
+            return False
+        return True
 
     def ordinary_step(self, accuracy: str = "standard") -> float:
         """Return the ordinary p dt; nan where the library has a step of its own in seconds.

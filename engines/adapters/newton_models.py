@@ -7,7 +7,7 @@ which sets out from where its own scene begins.
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
-from engines.adapters.newton_settings import XPBD, NewtonSettings
+from engines.adapters.newton_settings import EXAMPLE_ITERATIONS, XPBD, NewtonSettings
 from engines.parts.settings import given
 from engines.parts.shapes import corner_spheres, half_size
 from engines.scene import Scene
@@ -97,7 +97,7 @@ class Recorded:
         s, solvers = self.settings, self._newton.solvers
         if s.solver == XPBD:
             wanted = {
-                "iterations": s.iterations,
+                "iterations": s.iterations or EXAMPLE_ITERATIONS,
                 "rigid_contact_relaxation": s.relaxation,
                 "rigid_contact_con_weighting": s.weighting,
             }
@@ -108,7 +108,8 @@ class Recorded:
         for name, value in given(own).items():
             setattr(config.constraints, name, value)
         if s.solver == "padmm":
-            config.padmm.max_iterations = s.iterations
+            if s.iterations is not None:
+                config.padmm.max_iterations = s.iterations
             if s.tolerance is not None:
                 for kind in ("primal", "dual", "compl"):
                     setattr(config.padmm, f"{kind}_tolerance", s.tolerance)

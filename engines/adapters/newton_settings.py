@@ -11,6 +11,9 @@ XPBD = "xpbd"
 
 SOLVERS = (XPBD, "padmm", "dvi")
 
+EXAMPLE_ITERATIONS = 5
+"""Of "xpbd", in the library's own example of shapes."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewtonSettings:
@@ -24,8 +27,8 @@ class NewtonSettings:
         Coefficient between block and base.
     solver : str
         "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
-    iterations : int
-        Of "xpbd" and "padmm".
+    iterations : int or None
+        Of "xpbd" and "padmm"; None is the example's 5, and the library's own. "dvi" has none.
     relaxation : float or None
         Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
     weighting : bool or None
@@ -43,7 +46,7 @@ class NewtonSettings:
     geometry: str = setting("box", names=("box", "corners"))
     friction: float = 1.0
     solver: str = setting(XPBD, names=SOLVERS)
-    iterations: int = setting(5, least=1)
+    iterations: int | None = setting(least=1)
     relaxation: float | None = setting(above=0.0, most=2.0)
     weighting: bool | None = None
     baumgarte: float | None = setting(least=0.0, most=1.0)
@@ -53,9 +56,11 @@ class NewtonSettings:
 
     def __post_init__(self) -> None:
         check(self)
+        if self.iterations is not None and self.solver == "dvi":
+            raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
 
 
-TUNED = NewtonSettings(solver="dvi", friction=NO_JAM)
+TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 
 OVERDONE = "both corners correct all of a penetration that they share"
 
@@ -70,7 +75,7 @@ FACTORS = (
     ),
     factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),
     factor("weighting", level("no", (DEFAULT,), OVERDONE, weighting=False), by_default=False),
-    factor("baumgarte", level("0", baumgarte=0.0), level("0.1", baumgarte=0.1)),
+    factor("baumgarte", level("0.1", baumgarte=0.1)),
     factor("geometry", level("corners", BOTH, geometry="corners")),
     factor("friction"),
 )

@@ -101,7 +101,7 @@ def methods_of(engines: Iterable[str]) -> dict[str, Method]:
         **{
             f"{engine} fixed, iterations": _of_iterations(engine, preset)
             for engine, preset in uses
-            if preset.name == "fixed" and hasattr(preset.settings, "iterations")
+            if preset.name == "fixed" and preset.takes(iterations=1)
         },
     }
 

@@ -94,7 +94,7 @@ def test_frames_agree(engine: str, preset: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "engine", [name for name in FIXED if hasattr(HERE[name].preset("fixed").settings, "iterations")]
+    "engine", [name for name in FIXED if HERE[name].preset("fixed").takes(iterations=1)]
 )
 def test_iterations_that_are_asked_for_are_taken(engine: str) -> None:
     """Also where a preset derives them from the block."""

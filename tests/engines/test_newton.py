@@ -43,7 +43,8 @@ def test_some_of_the_sweep() -> None:
 @pytest.mark.parametrize("solver", ["xpbd", "padmm", "dvi"])
 def test_the_base_is_felt_by_each_solver(solver: str) -> None:
     """Below g tan(alpha) nothing lifts, and above it something does."""
-    options = {"preset": "fixed", "settings": {"solver": solver, "iterations": 50}}
+    iterations = None if solver == "dvi" else 50
+    options = {"preset": "fixed", "settings": {"solver": solver, "iterations": iterations}}
     for ratio, outcome in ((0.95, Outcome.AT_REST), (1.05, Outcome.ROCKED)):
         assert run("newton", scene(pulse(ratio, 1.0), **options)).outcome is outcome
 
