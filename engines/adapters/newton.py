@@ -7,6 +7,7 @@ The library compiles them when they are first used on a machine, for minutes, an
 import math
 
 from engines.adapters.newton_models import given_back, taken
+from engines.adapters.newton_script import script
 from engines.adapters.newton_settings import FACTORS, TUNED, NewtonSettings
 from engines.declaration import Engine, Precision, Preset
 from engines.parts.quiet import imported, silence
@@ -92,6 +93,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
+    script=script,
     factors=FACTORS,
     compiles=True,
 )

@@ -7,8 +7,7 @@ which sets out from where its own scene begins.
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
-from engines.adapters.newton_settings import EXAMPLE_ITERATIONS, XPBD, NewtonSettings
-from engines.parts.settings import given
+from engines.adapters.newton_settings import XPBD, NewtonSettings
 from engines.parts.shapes import corner_spheres, half_size
 from engines.scene import Scene
 
@@ -95,24 +94,13 @@ class Recorded:
 
     def _add_solver(self, scene: Scene) -> Any:
         s, solvers = self.settings, self._newton.solvers
+        wanted = s.of_solver(scene)
         if s.solver == XPBD:
-            wanted = {
-                "iterations": s.iterations or EXAMPLE_ITERATIONS,
-                "rigid_contact_relaxation": s.relaxation,
-                "rigid_contact_con_weighting": s.weighting,
-            }
-            return solvers.SolverXPBD(self.model, **given(wanted))
+            return solvers.SolverXPBD(self.model, **wanted)
         config = solvers.SolverKamino.Config.from_model(self.model, dynamics_solver=s.solver)
-        depth = None if s.depth is None else s.depth * scene.block.width
-        own = {"gamma": s.baumgarte, "delta": depth}
-        for name, value in given(own).items():
-            setattr(config.constraints, name, value)
-        if s.solver == "padmm":
-            if s.iterations is not None:
-                config.padmm.max_iterations = s.iterations
-            if s.tolerance is not None:
-                for kind in ("primal", "dual", "compl"):
-                    setattr(config.padmm, f"{kind}_tolerance", s.tolerance)
+        for name, value in wanted.items():
+            part, _, number = name.partition(".")
+            setattr(getattr(config, part), number, value)
         return solvers.SolverKamino(self.model, config=config)
 
 

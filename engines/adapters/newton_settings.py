@@ -1,10 +1,12 @@
 """What Newton can be set to: its settings, the tuned ones, and what the studies try of them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from engines.factors import BOTH, DEFAULT, Factor, factor, level
-from engines.parts.settings import check, setting
+from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM
+from engines.scene import Scene
 
 XPBD = "xpbd"
 """The solver by positions; the other ones are Kamino's, by impulses."""
@@ -58,6 +60,27 @@ class NewtonSettings:
         check(self)
         if self.iterations is not None and self.solver == "dvi":
             raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
+
+    def of_solver(self, scene: Scene) -> dict[str, Any]:
+        """Return what of its solver is set, by the library's own names.
+
+        They are arguments of XPBD, and parts of Kamino's configuration.
+        """
+        if self.solver == XPBD:
+            return given(
+                {
+                    "iterations": self.iterations or EXAMPLE_ITERATIONS,
+                    "rigid_contact_relaxation": self.relaxation,
+                    "rigid_contact_con_weighting": self.weighting,
+                }
+            )
+        depth = None if self.depth is None else self.depth * scene.block.width
+        wanted = {"constraints.gamma": self.baumgarte, "constraints.delta": depth}
+        if self.solver == "padmm":
+            wanted["padmm.max_iterations"] = self.iterations
+            for kind in ("primal", "dual", "compl"):
+                wanted[f"padmm.{kind}_tolerance"] = self.tolerance
+        return given(wanted)
 
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)

@@ -120,7 +120,7 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--engine", "newton", *SHAKEN], "--engine is 'newton'; it must be one that can be"),
+        (["--engine", "bullet", *SHAKEN], "--engine is 'bullet'; it must be one that can be"),
         (
             ["--engine", "mujoco", "--preset", "landing", *SHAKEN],
             "--preset is 'landing'; it must have equal steps: naive, fixed",
