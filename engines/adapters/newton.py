@@ -8,7 +8,7 @@ import math
 
 from engines.adapters.newton_models import given_back, taken
 from engines.adapters.newton_script import script
-from engines.adapters.newton_settings import FACTORS, TUNED, NewtonSettings
+from engines.adapters.newton_settings import FACTORS, RULES, TUNED, NewtonSettings
 from engines.declaration import Engine, Precision, Preset
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
@@ -95,5 +95,6 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
+    rules=RULES,
     compiles=True,
 )

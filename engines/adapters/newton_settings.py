@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from engines.factors import BOTH, DEFAULT, Factor, factor, level
+from engines.factors import AS_BEST, BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
 from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM
 from engines.scene import Scene
@@ -103,3 +103,17 @@ FACTORS = (
     factor("friction"),
 )
 """What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Use Kamino, `SolverKamino` with `dynamics_solver='dvi'`, where XPBD is the example's",
+        *(DEFAULT, "solver", AS_BEST),
+        kept=True,
+    ),
+    Rule(
+        "Set Kamino's `config.constraints.gamma` to 0: it makes speed of a depth, the more of it "
+        "the shorter the step",
+        *(BEST, "baumgarte", BY_DEFAULT),
+    ),
+)
+"""What its users should know first."""
