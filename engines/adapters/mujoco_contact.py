@@ -170,7 +170,7 @@ def arrays_of(model: Any, data: Any, held: Hold) -> Arrays:
         model.pair_solreffriction,
         model.pair_margin,
         model.geom_solref,
-        model.geom_surfacevel,
+        getattr(model, "geom_surfacevel", np.zeros((0, 3))),  # only a base that moves needs it
         data.mocap_pos,
         np.full(pairs, 0.5 * held.yields),
         np.repeat((1.0, -1.0), pairs // 2) if pairs > 1 else np.zeros(pairs),

@@ -7,6 +7,8 @@ and the data reset, before the next.
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
+from engines.compiled import FloatArray
+
 EDITED = (
     "pair_solref",
     "pair_solreffriction",
@@ -14,7 +16,7 @@ EDITED = (
     "geom_solref",
     "geom_surfacevel",
 )
-"""What a run edits of a model, beside two of its options."""
+"""What a run edits of a model, beside two of its options; before 3.11 there is no last one."""
 
 MOST_IDLE = 8
 """Models kept for later runs."""
@@ -33,20 +35,25 @@ idle: "OrderedDict[str, Built]" = OrderedDict()
 """Models of this process whose run has ended, by what they were made of."""
 
 
+def edited(model: Any) -> list[FloatArray]:
+    """Return what a run may edit of a model."""
+    return [getattr(model, name) for name in EDITED if hasattr(model, name)]
+
+
 def taken(mj: Any, xml: str) -> Built:
     """Return a model in the library's own language that no run uses, as good as new."""
     if xml in idle:
         return idle.pop(xml)
     model = mj.MjModel.from_xml_string(xml)
-    new = tuple(getattr(model, name).copy() for name in EDITED)
+    new = tuple(array.copy() for array in edited(model))
     return Built(xml, model, mj.MjData(model), (*new, model.opt.gravity.copy(), model.opt.timestep))
 
 
 def given_back(mj: Any, built: Built) -> None:
     """Make a model as it was."""
     *arrays, gravity, timestep = built.new
-    for name, array in zip(EDITED, arrays, strict=True):
-        getattr(built.model, name)[:] = array
+    for array, new in zip(edited(built.model), arrays, strict=True):
+        array[:] = new
     built.model.opt.gravity[:], built.model.opt.timestep = gravity, timestep
     mj.mj_resetData(built.model, built.data)
     idle[built.xml] = built
