@@ -5,6 +5,7 @@ import subprocess
 import sys
 from dataclasses import asdict
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, run
-from engines.adapters import bullet_clients, mujoco_loop, mujoco_models
+from engines.adapters import bullet_clients, mujoco, mujoco_loop, mujoco_models
 from engines.drive import LOOK_AROUND, build
 from engines.look import roomy
 from studies.cases.motions import noise
@@ -172,3 +173,36 @@ def test_what_was_used_is_as_good_as_new(engine: str, monkeypatch: pytest.Monkey
         again = run(engine, shaken(compiled=compiled, **scenes[name]))
         assert all_but_times(again) == fresh[name], name
     assert 0 < len(kept.idle) <= mujoco_models.MOST_IDLE
+
+
+@pytest.mark.skipif("mujoco" not in HERE, reason="MuJoCo is not installed")
+def test_a_release_that_knows_no_moving_surface_answers_alike(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Before 3.11 `MjModel` has no `geom_surfacevel`; only a base that moves needs it."""
+    library: Any = pytest.importorskip("mujoco")
+
+    class Older:
+        def __init__(self, model: Any) -> None:
+            self.itself = model
+
+        def __getattr__(self, name: str) -> Any:
+            if name == "geom_surfacevel":
+                raise AttributeError(name)
+            return getattr(self.itself, name)
+
+    def taken(mj: Any, xml: str) -> Any:
+        built = taken_now(mj, xml)
+        return built._replace(model=Older(built.model), new=(*built.new[:-3], *built.new[-2:]))
+
+    def given_back(mj: Any, built: Any) -> None:
+        lacking = len(mujoco_models.edited(built.model))
+        assert lacking == len(mujoco_models.EDITED) - 1
+
+    newest = all_but_times(run("mujoco", shaken(compiled=False)))
+    taken_now = mujoco_models.taken
+    monkeypatch.setattr(mujoco, "taken", taken)
+    monkeypatch.setattr(mujoco, "given_back", given_back)
+    step = library.mj_step
+    monkeypatch.setattr(library, "mj_step", lambda model, data: step(model.itself, data))
+    assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
