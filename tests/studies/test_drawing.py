@@ -151,7 +151,7 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
              for colour in PRESET_COLOURS.values()]  # fmt: skip
     assert sorted(turn for turn in turns if turn) == [4, 4, 5]  # each preset, and in turn its own
     width, height = drawn.get_size_inches()
-    assert height < 2.0 * width
+    assert height < width * lines["engine"].nunique() / 3.0
 
 
 @pytest.mark.parametrize("study", ["contact", "validate", "precision"])
