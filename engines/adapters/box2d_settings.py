@@ -32,10 +32,12 @@ class Box2DSettings:
         its own.
     friction : float
         Coefficient between block and base.
-    iterations, position_iterations : int
-        Of the solver, for velocities and for positions; the manual's 6 for the velocities if None.
+    iterations : int or None
+        Of the solver, for velocities.
+    position_iterations : int
+        And for positions.
     sweeps : float or None
-        Iterations over 1/sin^2(alpha), where `iterations` are None.
+        Iterations over 1/sin^2(alpha), where `iterations` are None; the manual's 6 if both are.
     units : float or None
         Units of length in the height of the block; None counts in metres.
     centred : bool

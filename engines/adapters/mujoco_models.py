@@ -16,7 +16,7 @@ EDITED = (
     "geom_solref",
     "geom_surfacevel",
 )
-"""What a run edits of a model, beside two of its options; before 3.11 there is no last one."""
+"""What a run edits of a model, beside two of its options; releases before 3.11 lack the last."""
 
 MOST_IDLE = 8
 """Models kept for later runs."""

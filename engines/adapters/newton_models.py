@@ -85,7 +85,8 @@ class Recorded:
             builder.add_shape_box(builder.add_body(xform=at), hx=x, hy=y, hz=z, cfg=shape)
             return
         shape.density = 0.0
-        inertia = self._warp.mat33(*(v for row in _diagonal(scene.inertia) for v in row))
+        first, second, third = scene.inertia
+        inertia = self._warp.mat33(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third)
         body = builder.add_body(xform=at, mass=scene.mass, inertia=inertia, lock_inertia=True)
         radius = s.corner_radius * scene.block.width
         for corner in corner_spheres(scene, radius, planar=False):
@@ -126,7 +127,3 @@ def given_back(recorded: Recorded) -> None:
     idle[recorded.made_of] = recorded
     if len(idle) > MOST_IDLE:
         idle.popitem(last=False)
-
-
-def _diagonal(values: tuple[float, float, float]) -> list[list[float]]:
-    return [[value if i == j else 0.0 for j in range(3)] for i, value in enumerate(values)]

@@ -13,7 +13,7 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, run
-from engines.adapters import bullet_clients, mujoco, mujoco_loop, mujoco_models
+from engines.adapters import bullet_clients, mujoco_loop, mujoco_models
 from engines.drive import LOOK_AROUND, build
 from engines.look import roomy
 from studies.cases.motions import noise
@@ -183,26 +183,25 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(
     library: Any = pytest.importorskip("mujoco")
 
     class Older:
-        def __init__(self, model: Any) -> None:
-            self.itself = model
+        def __init__(self, xml: str) -> None:
+            self.itself = whole.from_xml_string(xml)
 
         def __getattr__(self, name: str) -> Any:
             if name == "geom_surfacevel":
                 raise AttributeError(name)
             return getattr(self.itself, name)
 
-    def taken(mj: Any, xml: str) -> Any:
-        built = taken_now(mj, xml)
-        return built._replace(model=Older(built.model), new=(*built.new[:-3], *built.new[-2:]))
-
-    def given_back(mj: Any, built: Any) -> None:
-        lacking = len(mujoco_models.edited(built.model))
-        assert lacking == len(mujoco_models.EDITED) - 1
-
     newest = all_but_times(run("mujoco", shaken(compiled=False)))
-    taken_now = mujoco_models.taken
-    monkeypatch.setattr(mujoco, "taken", taken)
-    monkeypatch.setattr(mujoco, "given_back", given_back)
-    step = library.mj_step
-    monkeypatch.setattr(library, "mj_step", lambda model, data: step(model.itself, data))
-    assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
+    whole = library.MjModel
+    monkeypatch.setattr(mujoco_models, "idle", type(mujoco_models.idle)())
+    monkeypatch.setattr(library, "MjModel", SimpleNamespace(from_xml_string=Older))
+    for name in ("MjData", "mj_step", "mj_resetData"):
+        takes = getattr(library, name)
+
+        def given(model: Any, *others: Any, takes: Any = takes) -> Any:
+            return takes(model.itself, *others)
+
+        monkeypatch.setattr(library, name, given)
+    for _ in range(2):  # with a model that is new, and with one that was used
+        assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
+    assert mujoco_models.idle
