@@ -5,15 +5,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.styles import line_of, preset_line, preset_style, style_of
-from studies.measures.presets import in_words
+from engines import ENGINES
+from studies.drawing.styles import preset_line, preset_style
+from studies.measures.presets import in_order, in_words, preset_of
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
 """Panels side by side."""
 
-ALONE = 0.05
+ALONE = 0.3
 """Half of the line of a median where there is one release."""
+
+APART = 0.012
+"""Distance over the panel's width of presets at a release, which are often equally far off."""
 
 FLOOR = 1e-8
 """Errors below are drawn here."""
@@ -34,16 +38,18 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     for axes, engine in zip(panels, engines, strict=False):
         mine = lines[lines["engine"] == engine]
         _panel(axes, mine, changes[changes["engine"] == engine])
-        axes.set_title(f"{engine} by release", fontsize=10)
+        axes.set_title(ENGINES[engine].title, fontsize=10)
+    panels[0].set_ylim(FLOOR, 3.0 * max(1.0, lines["max_error"].max()))
     for axes in panels[len(engines) :]:
         axes.set_axis_off()
-    key = (
-        f"line: median, points: largest error; grey line: an answer moved by more than {CHANGED:g}"
+    drawing.suptitle(
+        "Errors by release: medians (lines) and largest (points); "
+        f"at a grey line an answer moved by more than {CHANGED:g}",
+        fontsize=11,
     )
-    drawing.suptitle(key, fontsize=9, color="#555555")
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("relative error of the peak  [–]")
-    presets = lines.loc[lines["source"] != "", "source"].str.partition(":")[2].unique()
+    presets = in_order(lines.loc[lines["source"] != "", "source"].map(preset_of))
     handles = [_handle(preset) for preset in presets]
     drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawing
@@ -51,15 +57,15 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
 
 def _handle(preset: str) -> Line2D:
     """Return what stands for a preset, whatever its engine."""
-    look = {**preset_style(preset).points(6.0), "color": "#555555"}
-    return Line2D([], [], **{**look, "linestyle": preset_line(preset)}, label=in_words(preset))
+    look = {**preset_style(preset).points(6.0), "linestyle": preset_line(preset)}
+    return Line2D([], [], **look, label=in_words(preset))
 
 
 def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
     """Draw medians and largest errors over both sets of cases."""
     releases = [str(name) for name in lines["release"].unique()]
     place = {name: number for number, name in enumerate(releases)}
-    axes.set(yscale="log", xlim=(-0.5, len(releases) - 0.5), ylim=(FLOOR, 30.0))
+    axes.set(yscale="log", xlim=(-0.5, len(releases) - 0.5))
     axes.set_xticks(range(len(releases)), releases, rotation=60, ha="right", fontsize=8)
     for release in changes["release"]:
         axes.axvline(place[str(release)] - 0.5, color="#999999", linewidth=1.0)
@@ -68,20 +74,22 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
         at = place[release]
         axes.axvspan(at - 0.5, at + 0.5, color="#EEEEEE", linewidth=0.0)
         axes.text(at, 1e-4, "no answer", rotation=90, fontsize=8, color="#555555", ha="center")
-    for source, rows in lines[lines["source"] != ""].groupby("source", sort=False):
-        style = style_of(str(source))
-        both = rows.groupby("release", sort=False)
+    asked = lines[lines["source"] != ""]
+    presets = asked["source"].map(preset_of)
+    for number, preset in enumerate(names := in_order(presets)):
+        style = preset_style(preset)
+        both = asked[presets == preset].groupby("release", sort=False)
         median = both["median_error"].max().clip(lower=FLOOR)
         largest = both["max_error"].max().clip(lower=FLOOR)
         x = [place[str(name)] for name in median.index]
         alone = len(x) == 1  # a line needs two ends
-        ends = [x[0] - ALONE, x[0] + ALONE] if alone else x
         axes.plot(
-            ends,
+            [x[0] - ALONE, x[0] + ALONE] if alone else x,
             [*median] * (1 + alone),
             color=style.colour,
-            linestyle=line_of(str(source)),
+            linestyle=preset_line(preset),
             linewidth=1.3,
         )
-        axes.plot(x, largest, **style.points(4.0))
+        aside = APART * len(releases) * (number - (len(names) - 1) / 2)
+        axes.plot([at + aside for at in x], largest, **style.points(4.5))
     axes.grid(alpha=0.25)
