@@ -5,9 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from engines import ENGINES
 from studies.drawing.styles import preset_line, preset_style
-from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.presets import in_words
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
@@ -38,7 +37,7 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     for axes, engine in zip(panels, engines, strict=False):
         mine = lines[lines["engine"] == engine]
         _panel(axes, mine, changes[changes["engine"] == engine])
-        axes.set_title(ENGINES[engine].title, fontsize=10)
+        axes.set_title(str(engine), fontsize=10)
     panels[0].set_ylim(FLOOR, 3.0 * max(1.0, lines["max_error"].max()))
     for axes in panels[len(engines) :]:
         axes.set_axis_off()
@@ -49,10 +48,15 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     )
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("relative error of the peak  [–]")
-    presets = in_order(lines.loc[lines["source"] != "", "source"].map(preset_of))
+    presets = _presets(lines[lines["source"] != ""]).unique()
     handles = [_handle(preset) for preset in presets]
     drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawing
+
+
+def _presets(lines: pd.DataFrame) -> "pd.Series[str]":
+    """Return the preset of each line, whose engine need not be here."""
+    return lines["source"].str.partition(":")[2]
 
 
 def _handle(preset: str) -> Line2D:
@@ -75,8 +79,8 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
         axes.axvspan(at - 0.5, at + 0.5, color="#EEEEEE", linewidth=0.0)
         axes.text(at, 1e-4, "no answer", rotation=90, fontsize=8, color="#555555", ha="center")
     asked = lines[lines["source"] != ""]
-    presets = asked["source"].map(preset_of)
-    for number, preset in enumerate(names := in_order(presets)):
+    presets = _presets(asked)
+    for number, preset in enumerate(names := list(presets.unique())):
         style = preset_style(preset)
         both = asked[presets == preset].groupby("release", sort=False)
         median = both["median_error"].max().clip(lower=FLOOR)
