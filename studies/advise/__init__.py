@@ -14,7 +14,8 @@ that nothing does. It runs nothing: it reads the published tables, and names the
     captions={
         "advice": (
             "Time of a case over the largest error that is to be kept, a line for each engine and "
-            "preset that keeps it on every published case; beside the points their steps, p dt."
+            "preset that keeps it on every published case; beside the points their steps, p dt, "
+            "or the accuracy of an engine's own."
         ),
     },
     chapters=(

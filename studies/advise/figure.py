@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.advise.evidence import in_words
-from studies.drawing.labels import Name, around, beside
+from studies.drawing.labels import Name, around, beyond
 from studies.drawing.styles import engine_style, preset_line
 from studies.measures.words import listed, per_cent
 
@@ -23,6 +23,8 @@ WORDS = {
 """Preset -> what it is called in the title."""
 LETTERS = 88
 """In a line of the title."""
+BEFORE, AFTER, EDGE = 0.9, 1.3, 0.1
+"""Room for names before and after the points of a panel, and for none, over that of the points."""
 
 
 def draw_advice(lines: pd.DataFrame) -> Figure:
@@ -33,32 +35,55 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     lines : DataFrame
         The columns of advice.csv.
     """
-    drawing = Figure(figsize=(8.4, 5.2), layout="constrained")
-    axes = drawing.subplots()
-    names, steps = [], []
-    for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
-        kept = group[group["message"] == ""]
-        if not kept.empty:
-            name, mine = _draw(axes, str(engine), str(preset), kept)
-            names.append(name)
-            steps += mine
     targets = sorted(lines["target"].unique(), reverse=True)
-    axes.set(xscale="log", yscale="log", xticks=targets)
-    axes.set_xticks([], minor=True)
-    axes.set_xticklabels([per_cent(float(error)) for error in targets])
-    axes.set_xlim(2.0 * targets[0], targets[-1] / 2.0)
-    axes.margins(y=0.15)
-    axes.set_xlabel("largest error of a peak, kept on every published case")
-    axes.set_ylabel("time of a case  [ms]")
-    axes.grid(alpha=0.25)
-    axes.set_title(_title(lines, targets), fontsize=10)
-    around(axes, steps, np.array([(step.x, step.y) for step in steps]).reshape(-1, 2), 7.0)
-    beside(axes, names)
+    landing = lines["preset"] == "landing"
+    parts = {"landing steps": lines[landing], "equal steps, or an engine's own": lines[~landing]}
+    parts = {title: part for title, part in parts.items() if (part["message"] == "").any()}
+    drawing = Figure(figsize=(10.0, 5.6), layout="constrained")
+    panels = drawing.subplots(1, max(len(parts), 1), sharey=True, squeeze=False)[0]
+    panels[0].set(yscale="log", ylabel="time of a case  [ms]")
+    panels[0].margins(y=0.1)
+    drawn = [
+        _panel(axes, part, targets) for axes, part in zip(panels, parts.values(), strict=False)
+    ]
+    for axes, title, (ends, steps) in zip(panels, parts, drawn, strict=False):
+        axes.set_title(title, fontsize=10)
+        alone = [end for end in ends if end.x == targets[0]]
+        beyond(axes, alone, -1 if len(alone) < len(ends) else 1)
+        beyond(axes, [end for end in ends if end not in alone])
+        around(axes, steps, np.array([(at.x, at.y) for at in [*steps, *ends]]).reshape(-1, 2), 7.0)
+    drawing.supxlabel("largest error of a peak, kept on every published case", fontsize=10)
+    drawing.suptitle(_title(lines, targets), fontsize=11)
     return drawing
 
 
+def _panel(
+    axes: Axes, lines: pd.DataFrame, targets: Sequence[float]
+) -> tuple[list[Name], list[Name]]:
+    """Draw the lines of some presets; return their names, and their steps where these change."""
+    ends: list[Name] = []
+    steps: list[Name] = []
+    for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
+        kept = group[group["message"] == ""]
+        if not kept.empty:
+            end, mine = _draw(axes, str(engine), str(preset), kept)
+            ends.append(end)
+            steps += mine
+    shown = [
+        error for error in targets if (lines.loc[lines["message"] == "", "target"] == error).any()
+    ]
+    axes.set(xscale="log", xticks=shown)
+    axes.set_xticks([], minor=True)
+    axes.set_xticklabels([per_cent(float(error)) for error in shown])
+    reach = max(shown[0] / shown[-1], 10.0)
+    first = BEFORE if any(end.x == shown[0] > shown[-1] for end in ends) else EDGE
+    axes.set_xlim(shown[0] * reach**first, shown[-1] / reach**AFTER)
+    axes.grid(alpha=0.25)
+    return ends, steps
+
+
 def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Name, list[Name]]:
-    """Draw a preset's line; return its name, at the end, and its steps where they change."""
+    """Draw a preset's line; return its name, with its last step, and the steps before."""
     style = engine_style(engine, preset)
     errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
     axes.plot(
@@ -71,32 +96,33 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Nam
         markersize=6,
     )
     steps = [_step(engine, preset, value) for value in kept["value"]]
-    name = f"{engine} {preset}"
-    if len(set(steps)) == 1:
-        return Name(f"{name}, {steps[0]}", float(errors[-1]), float(times[-1]), style.colour), []
-    changed = kept["value"].ne(kept["value"].shift())
     marks = [
         Name(step, float(error), float(time), style.colour)
-        for step, error, time, new in zip(steps, errors, times, changed, strict=True)
-        if new
+        for step, before, error, time in zip(steps, ["", *steps], errors, times, strict=False)
+        if step not in (before, steps[-1])
     ]
+    name = f"{engine} {preset}, {steps[-1]}"
     return Name(name, float(errors[-1]), float(times[-1]), style.colour), marks
 
 
 def _step(engine: str, preset: str, value: float) -> str:
-    """Return a setting, of a step the number alone."""
-    return in_words(ENGINES[engine].preset(preset), value).removeprefix("p dt = ")
+    """Return a setting: a number alone where it has one."""
+    return in_words(ENGINES[engine].preset(preset), value).rpartition(" = ")[2]
 
 
 def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
     """Say which presets keep the smallest error, and which keep none at all."""
-    kept = lines[lines["message"] == ""]
+    kept, asked = lines[lines["message"] == ""], list(lines["preset"].unique())
     best = list(kept.loc[kept["target"] == targets[-1], "preset"].unique())
-    none = [name for name in lines["preset"].unique() if name not in set(kept["preset"])]
-    words = f"{per_cent(targets[-1])} is kept by {_named(best)} alone"
-    if none:
+    none = [name for name in asked if name not in set(kept["preset"])]
+    words = f"{per_cent(targets[-1])} is kept by {_named(best) if best else 'none of them'}"
+    if 0 < len(best) < len(asked):
+        words += " alone"
+    if none and len(targets) > 1:
         words += f", and {per_cent(targets[0])} not even by {_named(none)}"
-    return "\n".join([*wrap(words, LETTERS), "(numbers: p dt)"])
+    return "\n".join(
+        [*wrap(words, LETTERS), "(numbers: p dt, or the accuracy of an engine's own steps)"]
+    )
 
 
 def _named(presets: Sequence[str]) -> str:
