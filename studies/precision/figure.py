@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from analytic.motion import FloatArray
 from engines import ENGINES
-from studies.drawing.labels import Name, around, beside
+from studies.drawing.labels import Name, around, beside, beyond
 from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style, preset_line
 
 STYLES = {
@@ -35,6 +35,8 @@ PRESETS_SAID = (
     "engines: full lines land on impacts or choose their own steps,\n"
     "dashed fixed steps, dotted defaults"
 )
+ROOM = 30.0
+"""Factor of the time that names of the fastest take."""
 WRONG = 10.0
 """Where methods that fail or get outcomes wrong are drawn."""
 
@@ -68,6 +70,7 @@ def draw_precision(table: pd.DataFrame) -> Figure:
         axes.set_title(f"{kind} cases")
         axes.set_ylabel("median relative error of the peak  [–]")
     panels[-1].set_xlabel("run time of a case, set-up apart  [s]")
+    panels[-1].set_xlim(left=panels[-1].get_xlim()[0] / ROOM)
     drawing.draw_without_rendering()  # names stand where the panels come to lie
     _name_methods(panels, table)
     return drawing
@@ -81,7 +84,10 @@ def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
     others = table[finite & ~is_engine & (table["set"] == sets[0])]
     first = table[finite & (table["set"] == sets[0])]
     taken = np.vstack([_along(line) for _, line in first.groupby("method", sort=False)])
-    around(panels[0], [_end(*group) for group in others.groupby("method", sort=False)], taken)
+    names = [_end(*group) for group in others.groupby("method", sort=False)]
+    closed = [name for name in names if style_of(name.text).marker == "*"]
+    beyond(panels[0], closed, -1)
+    around(panels[0], [name for name in names if name not in closed], taken)
     _name_the_front(panels[0], pareto(first))
     engines = table[finite & is_engine & (table["set"] == sets[-1])]
     ends = [_end(*group) for group in engines.groupby("method", sort=False)]
@@ -89,7 +95,7 @@ def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
         # the best preset of each stands for all of them, which share its colour and marker
         best = {end.text.partition(" ")[0]: end for end in ends if "," not in end.text}
         ends = [replace(end, text=engine) for engine, end in best.items()]
-        panels[-1].text(0.03, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
+        panels[-1].text(0.32, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
     beside(panels[-1], ends)
 
 
@@ -105,7 +111,7 @@ def _along(line: pd.DataFrame) -> FloatArray:
 def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:
     middle = front.iloc[len(front) // 2]
     spot = (middle["wall_s"], max(middle["median_error"], LOWEST))
-    axes.annotate("nothing is faster\nand more accurate", spot, (0.17, 0.12), fontsize=7.5,
+    axes.annotate("nothing is faster\nand more accurate", spot, (0.3, 0.12), fontsize=7.5,
                   textcoords="axes fraction", color="#8a6d00",
                   arrowprops={"arrowstyle": "-", "color": "#c9a800", "linewidth": 0.8})  # fmt: skip
 
@@ -150,7 +156,7 @@ def _one_set(axes: Axes, table: pd.DataFrame) -> None:
     for level, words in ((AIMS[0], "1e-4"), (AIMS[1], "1 %")):
         axes.text(0.985, level, words, transform=axes.get_yaxis_transform(), fontsize=7.5,
                   color="#5b7a4d", ha="right", va="center")  # fmt: skip
-    axes.text(0.98, 0.985, "failed, or wrong outcomes", ha="right", va="top", fontsize=8,
+    axes.text(0.01, 0.985, "failed or wrong", ha="left", va="top", fontsize=8,
               color="#666666", transform=axes.transAxes)  # fmt: skip
     axes.grid(alpha=0.25)
 
