@@ -59,7 +59,7 @@ class Asked:
 
 def ask(release: Release, how: Asking) -> Asked:
     """Run the short study of a release into its folder, or what is missing there."""
-    name = f"{release.engine}-{release.version}"
+    name = release.folder
     # the one that is installed is asked by this Python, which finds there what is found here
     made, python = None, Path(sys.executable)
     search = {"PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}

@@ -16,7 +16,7 @@ from pathlib import Path
 from engines import ENGINES
 from studies.kit.fingerprint import ROOT
 from studies.kit.provenance import write_text
-from studies.versions.releases import Release
+from studies.versions.releases import MIB, Release, bytes_in
 
 MADE = "made.json"
 """File that a finished environment is known by."""
@@ -29,8 +29,6 @@ OLD_NUMPY = ("numpy<2", "pandas<3")
 
 BUILT_WITH_OLD_NUMPY = "numpy.core.multiarray failed to import"
 """What it says without."""
-
-MIB = 2.0**20
 
 
 class NoEnvironmentError(Exception):
@@ -58,6 +56,11 @@ def python_of(folder: Path) -> Path:
     return folder / "bin" / "python"
 
 
+def is_made(folder: Path) -> bool:
+    """Say whether a folder holds a finished environment."""
+    return (folder / MADE).is_file()
+
+
 def environment(folder: Path, release: Release) -> Environment:
     """Return the environment of a release in a folder, made if it is not there.
 
@@ -67,7 +70,7 @@ def environment(folder: Path, release: Release) -> Environment:
         If the release cannot be installed.
     """
     path = folder / MADE
-    if path.is_file():
+    if is_made(folder):
         share(folder)  # this project may have been moved, or installed elsewhere, since
         return Environment(**json.loads(path.read_text(encoding="utf-8")))
     shutil.rmtree(folder, ignore_errors=True)
@@ -78,7 +81,7 @@ def environment(folder: Path, release: Release) -> Environment:
     _install(folder, f"{release.package}=={release.version}")
     if _needs_old_numpy(folder, ENGINES[release.engine].library):
         _install(folder, *OLD_NUMPY)
-    made = Environment(round(_size(folder) / MIB, 1), round(time.perf_counter() - began, 1))
+    made = Environment(round(bytes_in(folder) / MIB, 1), round(time.perf_counter() - began, 1))
     write_text(path, json.dumps(asdict(made)) + "\n")
     return made
 
@@ -110,9 +113,3 @@ def _run(command: list[str]) -> None:
         said = [line.strip() for line in (done.stderr or done.stdout).splitlines() if line.strip()]
         errors = [line for line in said if line.startswith("ERROR")] or said or ["no reason given"]
         raise NoEnvironmentError(f"cannot be installed: {errors[-1]}")
-
-
-def _size(folder: Path) -> int:
-    """Return the room of the files in a folder [byte], links apart."""
-    files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
-    return sum(path.stat().st_size for path in files)

@@ -1,10 +1,12 @@
-"""Which releases of an engine there are, and which of them are asked."""
+"""Which releases of an engine there are, which of them are asked, and what room they take."""
 
+import importlib.util
 import re
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from engines import ENGINES
 from studies.kit.arguments import BadInputError
@@ -12,6 +14,8 @@ from studies.kit.provenance import version_of
 
 INSTALLED, MINOR, ALL = "installed", "minor", "all"
 """Words for the release that is here, for the last of each minor number, and for all of them."""
+
+MIB = 2.0**20
 
 LISTED = re.compile(r"^Available versions: (.+)$", re.MULTILINE)
 FINAL = re.compile(r"\d+(\.\d+)*(\.post\d+)?")
@@ -48,6 +52,11 @@ class Release:
     def here(self) -> bool:
         """Whether it is the one that is installed."""
         return version_of(self.package) == self.version
+
+    @property
+    def folder(self) -> str:
+        """The name of its folders."""
+        return f"{self.engine}-{self.version}"
 
     def __str__(self) -> str:
         return f"{self.engine}=={self.version}"
@@ -116,3 +125,19 @@ def chosen(engine: str, asked: Sequence[str], known: Mapping[str, list[Release]]
         elif word in (MINOR, ALL):
             found |= set(last_of_minors(every) if word == MINOR else every)
     return sorted(found, key=lambda release: release.order)
+
+
+def room_mib(engine: str) -> float:
+    """Return the room of an engine's library as it is installed here [MiB], others' apart."""
+    spec = importlib.util.find_spec(ENGINES[engine].library)
+    if spec is None:
+        return 0.0
+    if spec.submodule_search_locations:
+        return sum(bytes_in(Path(folder)) for folder in spec.submodule_search_locations) / MIB
+    return Path(spec.origin).stat().st_size / MIB if spec.has_location and spec.origin else 0.0
+
+
+def bytes_in(folder: Path) -> int:
+    """Return the room of the files in a folder [byte], links apart."""
+    files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
+    return sum(path.stat().st_size for path in files)

@@ -1,8 +1,9 @@
 """The releases of each engine, one after the other: how far off, and what changed."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
@@ -17,6 +18,7 @@ from studies.kit.arguments import (
     check_engines,
     refuse_repeats,
     several,
+    several_or_none,
 )
 from studies.kit.journal import Row
 from studies.kit.options import Running
@@ -24,6 +26,7 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.versions import STUDY
 from studies.versions.asked import Asked, Asking, ask
 from studies.versions.cases import jobs_of
+from studies.versions.environments import is_made
 from studies.versions.releases import (
     INSTALLED,
     MINOR,
@@ -33,9 +36,13 @@ from studies.versions.releases import (
     chosen,
     installed,
     listed,
+    room_mib,
 )
 from studies.versions.report import headline, paragraph, pictures, report
 from studies.versions.tables import releases_table
+
+MOST_MIB = 2048.0
+"""An engine whose releases take more room than this [MiB] is asked only if it is named."""
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
@@ -43,7 +50,7 @@ __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 def command(
     *,
     out: Place,
-    engines: Annotated[tuple[str, ...], several] = installed_engines(),
+    engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
     releases: Annotated[tuple[str, ...], several] = (MINOR,),
     quick: bool = False,
     environments: Place | None = None,
@@ -52,15 +59,16 @@ def command(
 ) -> int:
     """Ask the releases of each engine the same cases, each in an environment of its own.
 
-    The release that is installed is always among them. Without a network those of which there is
-    an environment can still be named.
+    The release that is installed is always among them. What is to be fetched is said before it
+    is. Without a network those of which there is an environment can still be named.
 
     Parameters
     ----------
     out
         Folder for the results, with one inside for each release; made if there is none.
     engines
-        Names of engines, without a preset.
+        Names of engines, without a preset; by default all that are installed and take no more
+        than 2 GiB to fetch.
     releases
         "minor": the last one of each minor number; "all"; "installed"; or some by name, as in
         mujoco==3.2.7.
@@ -73,6 +81,7 @@ def command(
     time_limit
         Wall-clock time [s] after which a case is given up.
     """
+    named, engines = engines is not None, installed_engines() if engines is None else engines
     check_engines(engines)
     check_here(engines)
     refuse_repeats("--releases", releases)
@@ -86,14 +95,16 @@ def command(
         environments=environments or out / "environments",
         options=(*limits, *(("--quick",) if quick else ())),
     )
-    unlisted: list[str] = []
+    known, unlisted = _known(engines, releases)
+    wanted = {engine: chosen(engine, releases, known) for engine in engines}
+    kept = _affordable(wanted, how.environments, named)
 
     def tabulate(_: object) -> Tables:
-        asked = [ask(one, how) for one in _progress(_all(engines, releases, unlisted))]
+        asked = [ask(one, how) for one in _progress([one for name in kept for one in wanted[name]])]
         return {"releases": releases_table(asked)}
 
-    named = {"engine": engines, "release": releases}
-    plan = Plan(settings={"quick": quick}, growing=named, tabulate=tabulate)
+    growing = {"engine": kept, "release": releases}
+    plan = Plan(settings={"quick": quick}, growing=growing, tabulate=tabulate)
     code = carry_out(STUDY, plan, out, running, report)
     for problem in unlisted:
         print(f"{problem}; the releases that were not named are missing", file=sys.stderr)
@@ -125,16 +136,37 @@ def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
     return {"answers": answers, "releases": releases_table(asked)}
 
 
-def _all(engines: Sequence[str], asked: Sequence[str], unlisted: list[str]) -> list[Release]:
-    """Return what is asked, engine by engine; note of whom the releases cannot be learnt."""
+def _known(
+    engines: Sequence[str], asked: Sequence[str]
+) -> tuple[dict[str, list[Release]], list[str]]:
+    """Return the releases of each engine, and why those of others cannot be learnt."""
     known: dict[str, list[Release]] = {}
-    for engine in engines:
-        if any("==" not in word and word != INSTALLED for word in asked):
+    unlisted = []
+    if any("==" not in word and word != INSTALLED for word in asked):
+        for engine in engines:
             try:
                 known[engine] = listed(engine)
             except UnlistedError as error:
                 unlisted.append(str(error))
-    return [release for engine in engines for release in chosen(engine, asked, known)]
+    return known, unlisted
+
+
+def _affordable(
+    wanted: Mapping[str, Sequence[Release]], environments: Path, named: bool
+) -> list[str]:
+    """Say what is to be fetched; return the engines, those that take too much only if named."""
+    kept = []
+    for engine, releases in wanted.items():
+        new = [one for one in releases if not (one.here or is_made(environments / one.folder))]
+        room = len(new) * room_mib(engine)
+        fetched = f"{len(new)} releases of {engine}, about {room:.0f} MiB"
+        if named or room <= MOST_MIB:
+            kept.append(engine)
+            if new:
+                print(f"to fetch: {fetched}", file=sys.stderr)
+        else:
+            print(f"left out: {fetched}; --engines {engine} asks them", file=sys.stderr)
+    return kept
 
 
 def _progress(releases: Sequence[Release]) -> "tqdm[Release]":

@@ -127,6 +127,41 @@ def test_without_a_network_there_is_one_line(pretender, tmp_path, capsys):
     assert list(read(tmp_path / "out", "releases")["release"].unique()) == ["1.0"]
 
 
+def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
+    pretender, tmp_path, capsys, monkeypatch
+):
+    """And what is there already is not fetched."""
+    out, asked = tmp_path / "out", []
+    monkeypatch.setattr(study, "installed_engines", lambda: ("pretender",))
+    monkeypatch.setattr(study, "MOST_MIB", 30.0)
+    monkeypatch.setattr(study, "carry_out", lambda _, plan, *__: asked.append(plan.growing) or 0)
+    words = ["versions", "--out", str(out)]
+    for room, named, kept, line in (
+        (14.0, (), ["pretender"], "to fetch: 2 releases of pretender, about 28 MiB\n"),
+        (16.0, (), [], "left out: 2 releases of pretender, about 32 MiB; "
+                       "--engines pretender asks them\n"),
+        (16.0, ("--engines", "pretender"), ["pretender"],
+         "to fetch: 2 releases of pretender, about 32 MiB\n"),
+    ):  # fmt: skip
+        monkeypatch.setattr(study, "room_mib", lambda _, room=room: room)
+        assert run([*words, *named]) == 0
+        assert capsys.readouterr().err == line
+        assert list(asked.pop()["engine"]) == kept
+    for version in ("1.1", "2.0"):
+        folder = out / "environments" / f"pretender-{version}"
+        folder.mkdir(parents=True)
+        (folder / "made.json").write_text("{}")
+    assert run(words) == 0
+    assert capsys.readouterr().err == ""
+    assert list(asked.pop()["engine"]) == ["pretender"]
+
+
+def test_the_room_of_a_library_is_that_of_its_files(pretender, tmp_path):
+    size = (tmp_path / "here" / "pretender.py").stat().st_size
+    assert releases.room_mib("pretender") == size / 2.0**20
+    assert 10.0 < releases.room_mib("mujoco") < 1000.0
+
+
 def test_the_releases_here_are_asked_in_this_process(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("studies.versions.cases.EVERY", 60)
     words = ["versions", "--engines", "box2d", "--releases", "installed", "--quick"]
