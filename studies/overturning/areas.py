@@ -19,9 +19,9 @@ def window_of(folder: Path) -> Window:
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table of a folder; an empty one if it has no such rows."""
-    path = folder / f"{name}.csv"
-    return pd.read_csv(path) if path.is_file() else pd.DataFrame()
+    """Read a table of a folder, also one that was packed; empty if it has no such rows."""
+    paths = (folder / f"{name}.csv", folder / f"{name}.csv.gz")
+    return next((pd.read_csv(path) for path in paths if path.is_file()), pd.DataFrame())
 
 
 def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArray:

@@ -61,11 +61,13 @@ def test_what_is_no_table_is_one_line(content, tmp_path, capsys):
 
 def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
     before = dict(units.registry)
-    for study in ("free", "sweep", "stability", "validity"):
+    for study in ("free", "sweep", "stability", "validity", "overturning"):
         folder = tmp_path / study
         folder.mkdir()
-        for path in (PUBLISHED / study).glob("*.csv"):
-            shutil.copy(path, folder)
+        # a map's window is in its provenance, and its long tables are packed
+        for pattern in ("*.csv", "*.csv.gz", "provenance.json"):
+            for path in (PUBLISHED / study).glob(pattern):
+                shutil.copy(path, folder)
         assert run(["redraw", str(folder), "--suffix", "svg"]) == 0
         drawn = [Path(line) for line in capsys.readouterr().out.splitlines()]
         assert [path.suffix for path in drawn] == [".svg"] * len(drawn) != []
