@@ -70,7 +70,9 @@ def _verdict(line: "pd.Series[Any]") -> str:
     if line["outcome"] != "rocked":
         return str(line["outcome"])
     error = float(line["error"])
-    return f"peak {error:+.0%}" if abs(error) >= 1e-3 else f"peak to {abs(error):.0e}"
+    if abs(error) < 1e-3:
+        return f"peak to {abs(error):.0e}"
+    return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
 
 
 def _outlines(axes: Axes, block: RigidBlock, exact: float, found: float, colour: str) -> None:

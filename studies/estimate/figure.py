@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.labels import Name, beside
 from studies.drawing.styles import style_of
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import part
@@ -15,6 +14,9 @@ LEAST, MOST = 0.1, 1e4
 
 MARKED = 10.0
 """Factor at which engines are named, with the part of their errors that it bounds."""
+
+LINE = 0.062
+"""Distance of two names over the height of a panel."""
 
 
 def draw_estimates(lines: pd.DataFrame) -> Figure:
@@ -27,23 +29,21 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
     """
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
-    drawing = Figure(figsize=(4.3 * len(names), 4.2), layout="constrained")
+    drawing = Figure(figsize=(3.2 * len(names) + 0.6, 4.2), layout="constrained")
     panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
-    named = [_panel(axes, lines[presets == name]) for axes, name in zip(panels, names, strict=True)]
     for axes, preset in zip(panels, names, strict=True):
+        _panel(axes, lines[presets == preset])
         axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
         axes.set_title(in_words(preset), fontsize=9)
         axes.set_xlabel("times the difference to half the step")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("part of the errors that are smaller")
-    drawing.suptitle(f"Named: the part within {MARKED:g} times the difference", fontsize=10)
-    for axes, mine in zip(panels, named, strict=True):
-        beside(axes, mine, 8.0)
+    drawing.suptitle(f"Named: the part within {MARKED:g} times the difference", fontsize=11)
     return drawing
 
 
-def _panel(axes: Axes, lines: pd.DataFrame) -> list[Name]:
-    """Draw a line for each source; return their names, at what ten estimates bound."""
+def _panel(axes: Axes, lines: pd.DataFrame) -> None:
+    """Draw a line for each source, and name them in the order of what ten estimates bound."""
     names = []
     for factor in (1.0, MARKED):
         axes.axvline(factor, color="#999999", linewidth=0.8, linestyle=":")
@@ -54,6 +54,8 @@ def _panel(axes: Axes, lines: pd.DataFrame) -> list[Name]:
             parts = np.arange(len(over) + 1) / len(over)
             axes.step([LEAST, *np.maximum(over, LEAST)], parts, where="post", color=colour)
             within = float((over <= MARKED).mean())
-            text = f"{engine_of(str(source))} {part(within)}"
-            names.append(Name(text, MARKED, within, colour))
-    return names
+            names.append((within, f"{engine_of(str(source))} {part(within)}", colour))
+    # under the lines, which all end above
+    for place, (_, name, colour) in enumerate(sorted(names)):
+        axes.text(0.96, 0.04 + LINE * place, name, transform=axes.transAxes, ha="right",
+                  color=colour, fontsize=9)  # fmt: skip

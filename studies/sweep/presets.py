@@ -1,6 +1,7 @@
 """The presets of the engines beside each other: all cases at once, and along the frequency."""
 
 import math
+from textwrap import fill
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -15,6 +16,8 @@ from studies.measures.words import capital, per_cent
 
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors along the frequency."""
+LETTERS = 26
+"""In a line beside a panel."""
 ROW = 0.045
 """Height of a row of wrong outcomes over that of a panel."""
 
@@ -98,9 +101,8 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
 
 
 def _broken(words: str) -> str:
-    """Return what a preset is in two lines."""
-    first, _, second = capital(words).partition(" and ")
-    return f"{first}\nand {second}" if second else first
+    """Return what a preset is in lines that are no longer than a panel is high."""
+    return fill(capital(words), LETTERS)
 
 
 def _panel(axes: Axes, rows: pd.DataFrame, engines: list[str]) -> None:
