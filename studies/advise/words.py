@@ -135,13 +135,20 @@ def claim(lines: pd.DataFrame) -> str:
 
 def told(lines: pd.DataFrame) -> str:
     """Say of every error which presets keep it, and which keep none."""
-    names = lines["engine"] + " " + lines["preset"]
     kept = lines["message"] == ""
     sentences = [
-        f"An error of {per_cent(float(str(target)))} is kept by {listed(list(names[group.index]))}."
+        f"An error of {per_cent(float(str(target)))} is kept by {_by_preset(group)}."
         for target, group in lines[kept].groupby("target", sort=False)
     ]
-    none = [name for name in names.unique() if not kept[names == name].any()]
+    without = lines[~kept.groupby([lines["engine"], lines["preset"]]).transform("any")]
     return " ".join(
-        [*sentences, f"None of these is kept by {listed(none)}."] if none else sentences
+        [*sentences, f"None of these is kept by {_by_preset(without)}."]
+        if len(without)
+        else sentences
     )
+
+
+def _by_preset(lines: pd.DataFrame) -> str:
+    """Return the presets of some lines, each with its engines in brackets."""
+    engines = lines.groupby("preset", sort=False)["engine"].unique()
+    return listed([f"{preset} ({', '.join(names)})" for preset, names in engines.items()])

@@ -183,7 +183,8 @@ def around(axes: Axes, names: Sequence[Name], taken: FloatArray, size: float = 8
 def _line(anchor: FloatArray, place: tuple[int, int, str, str]) -> FloatArray:
     """Return points along the line that leads to a name at a place; none where there is no line."""
     parts = np.linspace(0.0, 1.0, LINE if max(abs(place[0]), abs(place[1])) >= FAR else 0)
-    return anchor + parts[:, None] * np.array(place[:2])
+    line: FloatArray = anchor + parts[:, None] * np.array(place[:2])
+    return line
 
 
 def _box(
