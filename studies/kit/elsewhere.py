@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from engines import ENGINES
 from studies.kit.jobs import Job
 from studies.kit.journal import (
+    FORMAT,
     JOURNAL,
     PROVENANCE,
     FolderError,
@@ -23,21 +24,69 @@ OPTION = "--also"
 """By which the folders are named."""
 
 
+class Elsewhere(NamedTuple):
+    """What another results folder holds.
+
+    Attributes
+    ----------
+    folder : Path
+    rows : mapping
+        By the keys of their jobs, failures among them.
+    engines : mapping
+        Package of an engine -> its version there.
+    made : mapping
+        What its provenance says of commit and machine.
+    """
+
+    folder: Path
+    rows: Mapping[str, Row]
+    engines: Mapping[str, str]
+    made: Row
+
+
+def read(folder: Path, identity: Mapping[str, Any]) -> Elsewhere:
+    """Read results of what an identity names; versions of engines may differ.
+
+    Raises
+    ------
+    FolderError
+        If the folder holds no such results.
+    """
+    problem = f"it must be a results folder, with its {JOURNAL} and {PROVENANCE}"
+    path = folder / JOURNAL
+    if not (path.is_file() and (folder / PROVENANCE).is_file()):
+        raise FolderError(folder, problem, OPTION)  # on a pipe a run would hang
+    try:
+        found = belongs_to(path)
+        engines = dict(found["engines"])
+        expected = {"journal": FORMAT, **identity, "engines": engines}
+        if found != expected:
+            words = "it must hold results of the same version and settings"
+            raise FolderError(folder, f"{words} ({differences(found, expected)})")
+        record = record_of(folder)
+        return Elsewhere(
+            folder, rows_of(path), engines, {name: record[name] for name in ("git", "machine")}
+        )
+    except FolderError as error:
+        raise FolderError(folder, error.problem, OPTION) from error
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise FolderError(folder, problem, OPTION) from error
+
+
 def take(
-    folder: Path, identity: Mapping[str, Any], jobs: Sequence[Job], journal: Journal
+    other: Elsewhere, jobs: Sequence[Job], journal: Journal, here: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Copy into a journal the rows of its jobs that it has not yet and another folder has.
+    """Copy into a journal the rows of its jobs that it has not yet.
 
     A failure is taken only where its engine is not installed; else it is tried again.
 
     Parameters
     ----------
-    folder : Path
-        Results of the same study, version and settings; versions of engines may differ.
-    identity : mapping
-        What the journal's own folder belongs to.
+    other : Elsewhere
     jobs : sequence of Job
     journal : Journal
+    here : mapping
+        Package of an engine -> its version here.
 
     Returns
     -------
@@ -48,61 +97,29 @@ def take(
     Raises
     ------
     FolderError
-        If the folder holds no such results, or those of an engine that is installed in another
-        version.
+        If there is no row of the jobs, or one of an engine that is installed in another version.
     """
-    try:
-        there, rows = _read(folder, identity)
-        record = record_of(folder)
-        made: Row = {name: record[name] for name in ("git", "machine")}
-    except FolderError as error:
-        raise FolderError(folder, error.problem, OPTION) from error
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        problem = f"it must be a results folder, with its {JOURNAL} and {PROVENANCE}"
-        raise FolderError(folder, problem, OPTION) from error
-    asked = [job.key for job in jobs if job.key in rows]
+    asked = [job.key for job in jobs if job.key in other.rows]
     if not asked:
-        raise FolderError(folder, "it holds no row of what is asked for", OPTION)
-    lacking = {key: rows[key] for key in asked if key not in journal.rows}
-    found = {key: row for key, row in lacking.items() if _taken(row)}
-    versions: Row = {}
-    for row in found.values():
-        versions |= _versions_of(row["source"], there)
-    _refuse_others(folder, versions, identity["engines"])
-    for key, row in found.items():
-        journal.append(key, row)
-    return {**made, "engines": versions, "rows": len(found)}
-
-
-def _read(folder: Path, identity: Mapping[str, Any]) -> tuple[Row, dict[str, Row]]:
-    """Return the versions of a folder's engines, and its rows."""
-    path = folder / JOURNAL
-    found = belongs_to(path)
-    there = dict(found.get("engines", {}))
-    expected = {"journal": found["journal"], **identity, "engines": there}
-    if found != expected:
-        words = "it must hold results of the same version and settings"
-        raise FolderError(folder, f"{words} ({differences(found, expected)})")
-    return there, rows_of(path)
-
-
-def _taken(row: Row) -> bool:
-    """Return whether a row is better than one that could be made here."""
-    engine = resolve(row["source"]).engine
-    return row["outcome"] != "failed" or bool(engine and not ENGINES[engine].installed)
-
-
-def _versions_of(source: str, there: Mapping[str, str]) -> Row:
-    """Return the versions of the packages of a source's engine; of another source none."""
-    engine = resolve(source).engine
-    return {name: there[name] for name in ENGINES[engine].packages} if engine else {}
-
-
-def _refuse_others(folder: Path, versions: Mapping[str, str], here: Mapping[str, str]) -> None:
-    other = [
+        raise FolderError(other.folder, "it holds no row of what is asked for", OPTION)
+    lacking = {key: other.rows[key] for key in asked if key not in journal.rows}
+    found = {key: row for key, row in lacking.items() if _is_wanted(row)}
+    engines = {resolve(row["source"]).engine for row in found.values()} - {""}
+    packages = [name for engine in sorted(engines) for name in ENGINES[engine].packages]
+    versions = {name: other.engines[name] for name in packages}
+    others = [
         f"{name} {version}, and {here[name]} is installed"
         for name, version in versions.items()
         if here[name] not in (version, NOT_INSTALLED)
     ]
-    if other:
-        raise FolderError(folder, f"it holds results of {'; '.join(other)}", OPTION)
+    if others:
+        raise FolderError(other.folder, f"it holds results of {'; '.join(others)}", OPTION)
+    for key, row in found.items():
+        journal.append(key, row)
+    return {**other.made, "engines": versions, "rows": len(found)}
+
+
+def _is_wanted(row: Row) -> bool:
+    """Return whether a row is as good as one that could be made here."""
+    engine = resolve(row["source"]).engine
+    return row["outcome"] != "failed" or bool(engine and not ENGINES[engine].installed)

@@ -83,18 +83,19 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     Raises
     ------
     FolderError
-        If the folder cannot be used: results of another version or of other settings are refused.
+        If a folder cannot be used: results of another version or of other settings are refused.
     """
     executor = running.executor(plan.ask)
     began = time.perf_counter()
     identity = provenance.identity(study.name, study.module, **plan.settings)
+    others = [elsewhere.read(folder, identity) for folder in running.also]
     with open_journal(out, identity, study.products) as journal:
         _refuse_a_part(out, journal.rows.values(), plan.growing)
         path = out / PROVENANCE
         asked = {column: _short(values) for column, values in plan.growing.items()}
         record = provenance.begin(path, identity, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
-        taken = [elsewhere.take(folder, identity, jobs, journal) for folder in running.also]
+        taken = [elsewhere.take(other, jobs, journal, identity["engines"]) for other in others]
         with _going_on(journal, out, len(jobs)):
             drivers: dict[str, set[str]] = {}
 
