@@ -36,7 +36,7 @@ PRESETS_SAID = (
     "dashed fixed steps, dotted defaults"
 )
 ROOM = 30.0
-"""Factor of the time that names of the fastest take."""
+"""Factor of the time that the names of the closed forms take, and words that no marker is under."""
 WRONG = 10.0
 """Where methods that fail or get outcomes wrong are drawn."""
 
