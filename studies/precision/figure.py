@@ -35,7 +35,7 @@ PRESETS_SAID = (
     "engines: full lines land on impacts or choose their own steps,\n"
     "dashed fixed steps, dotted defaults"
 )
-ROOM = 30.0
+ROOM = 60.0
 """Factor of the time that the names of the closed forms take, and words that no marker is under."""
 WRONG = 10.0
 """Where methods that fail or get outcomes wrong are drawn."""
