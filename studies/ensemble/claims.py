@@ -33,10 +33,11 @@ def first_claim(agreed: pd.DataFrame) -> str:
     words: dict[bool, list[str]] = {True: [], False: []}
     for source, rows in agreed.groupby("source", sort=False):
         words[bool(rejections(rows))].append(str(source))
-    return (
-        f"Of many records, tests tell the statistics by {listed(words[True])} from the exact ones, "
-        f"and those by {listed(words[False])} they do not."
-    )
+    told, untold = listed(words[True]), listed(words[False])
+    if not words[True]:
+        return f"Of many records, tests tell no statistics from the exact ones: not by {untold}."
+    rest = f", and those by {untold} they do not" if words[False] else ""
+    return f"Of many records, tests tell the statistics by {told} from the exact ones{rest}."
 
 
 def verdict(agreed: pd.DataFrame) -> str:

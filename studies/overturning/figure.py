@@ -86,9 +86,10 @@ def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[str]:
     x, y = window.centres(codes.shape[0]), window.amplitudes(codes.shape[1])
     for code, (mode, words) in enumerate(MODE_WORDS.items()):
         # what is beyond the picture is another area
-        depth = distance_transform_edt(np.pad(codes == code, 1))[1:-1, 1:-1]
+        size = tuple(1.0 / count for count in codes.shape)
+        depth = distance_transform_edt(np.pad(codes == code, 1), sampling=size)[1:-1, 1:-1]
         column, row = np.unravel_index(int(depth.argmax()), depth.shape)
-        if depth.max() > ROOM * max(codes.shape):
+        if depth.max() > ROOM:
             axes.text(x[column], y[row], words.replace(" ", "\n", 1), ha="center", va="center",
                       fontsize=11, color="#333333")  # fmt: skip
             named.add(mode)

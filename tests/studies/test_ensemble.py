@@ -13,6 +13,7 @@ from studies import respond
 from studies.__main__ import run
 from studies.cases.motions import FAMILIES
 from studies.ensemble.agreement import agreement, confusion
+from studies.ensemble.claims import first_claim
 from studies.ensemble.fragility import (
     Fit,
     bounds,
@@ -338,3 +339,22 @@ def test_a_block_that_leans_in_a_soft_contact_comes_to_rest():
     exact = simulate(case.block, motion)
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
     assert response.steps < 10 * (motion.samples.size + 200 * case.block.p * motion.duration)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "words"),
+    [
+        ((1.2, 1.0), "by housner from the exact ones, and those by modified they do not."),
+        ((1.2, 1.2), "by housner and modified from the exact ones."),
+        ((1.0, 1.0), "tests tell no statistics from the exact ones: not by housner and modified."),
+    ],
+)
+def test_whose_statistics_are_told_from_the_exact_ones(ratios, words):
+    agreed = pd.DataFrame(
+        {
+            **{"source": ["housner", "modified"], "width_m": 0.5, "height_m": 1.5},
+            **{"capacity_ratio": ratios, "mcnemar_p": 1.0, "ks_rejected": 0},
+            **{"ratio_low": [r - 0.1 for r in ratios], "ratio_high": [r + 0.1 for r in ratios]},
+        }
+    )
+    assert first_claim(agreed).endswith(words)
