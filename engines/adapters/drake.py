@@ -275,7 +275,7 @@ ENGINE = Engine(
             title="steps of its own, by its own estimate of the error",
             settings=CONTROLLED,
             stepping=Stepping.OWN,
-            dial=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)),
+            dial=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
     frames=("base",),

@@ -18,7 +18,7 @@ from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
+from studies.kit.options import DEFAULT_ASKING, OWN_EFFORT, Asking, EffortOptions
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
@@ -42,7 +42,7 @@ def command(
     estimate: bool = False,
     plot: Place | None = None,
     json: bool = False,
-    running: Running = DEFAULT_RUNNING,
+    asking: Asking = DEFAULT_ASKING,
 ) -> int:
     """Compare the sources on one block, and one pulse, record or release.
 
@@ -80,7 +80,7 @@ def command(
         times=np.linspace(0.0, window, 1501) if plot else None,
         effort=effort,
         estimate=estimate,
-        executor=running.executor(),
+        executor=asking.executor(),
     )
     if json:
         print(json_lines(rows, note))

@@ -29,10 +29,10 @@ WORDS = {
     OFF: f"survives, peak off by more than {part(CLOSE)}",
     FALSE: "overturns falsely",
     MISSED: "overturning missed",
-    FAILED: "slid or slept: no result",
+    FAILED: "slid, sank or slept: no result",
     INVALID: "not judged: it should slide or lift off",
 }
-ACROSS = 3
+ACROSS = 4
 SHOWN_PULSE, SHOWN_ASPECT = "full-sine", 3.0
 
 
@@ -49,7 +49,7 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
     sources = list(rows["source"].unique())
     across = min(ACROSS, len(sources))
     down = math.ceil(len(sources) / across)
-    drawing = Figure(figsize=(2.9 * across + 0.3, 2.7 * down + 1.2), layout="constrained")
+    drawing = Figure(figsize=(2.3 * across + 0.4, 2.4 * down + 1.3), layout="constrained")
     panels = list(drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat)
     for place, (axes, source) in enumerate(zip(panels, sources, strict=False)):
         _map(axes, rows[rows["source"] == source])
@@ -72,7 +72,7 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
             if name in set(rows["verdict"])
         ],
         loc="outside lower center",
-        ncols=2,
+        ncols=3 if across == ACROSS else 2,
         frameon=False,
         fontsize=9,
     )

@@ -24,8 +24,9 @@ JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
 class FolderError(Exception):
     """A results folder that cannot be used; the message is one line that says why."""
 
-    def __init__(self, folder: Path, problem: str) -> None:
-        super().__init__(f"--out is {str(folder)!r}; {problem}")
+    def __init__(self, folder: Path, problem: str, option: str = "--out") -> None:
+        super().__init__(f"{option} is {str(folder)!r}; {problem}")
+        self.problem = problem
 
 
 class Journal:
@@ -151,39 +152,54 @@ def _begin(path: Path, header: Mapping[str, Any]) -> None:
 
 def _finished(path: Path, header: Mapping[str, Any]) -> dict[str, Row]:
     """Read the finished rows, and cut off a last line that a killed run left incomplete."""
+    found = belongs_to(path)
+    if found != header:
+        words = "it must be new, or hold results of the same version and settings"
+        raise FolderError(path.parent, f"{words} ({differences(found, header)})")
+    rows = rows_of(path)
     content = path.read_bytes()
-    *lines, torn = content.split(b"\n")
-    _refuse_others(path.parent, lines[0] if lines else b"", header)
-    rows: dict[str, Row] = {}
-    for number, line in enumerate(lines[1:], start=2):
-        key, row = _row(path.parent, number, line)
-        rows.pop(key, None)
-        if row["outcome"] != "failed":
-            rows[key] = row
-    if torn:
-        os.truncate(path, len(content) - len(torn))
-    return rows
+    whole = content.rfind(b"\n") + 1
+    if whole < len(content):
+        os.truncate(path, whole)
+    return {key: row for key, row in rows.items() if row["outcome"] != "failed"}
 
 
-def _refuse_others(folder: Path, line: bytes, header: Mapping[str, Any]) -> None:
-    """Refuse a folder whose journal has another first line than ours."""
+def belongs_to(path: Path) -> Row:
+    """Return a journal's first line.
+
+    Raises
+    ------
+    FolderError
+        If the file is no journal, or its first line is damaged.
+    """
+    line = path.read_bytes().partition(b"\n")[0]
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict) or "journal" not in found:
-        raise FolderError(folder, f"its {JOURNAL} is not a journal of results")
-    if "crc" in found:
-        found = _entry(folder, 1, line)
-    if found != header:
-        raise FolderError(
-            folder,
-            "it must be new, or hold results of the same version and settings "
-            f"({_differences(found, dict(header))})",
-        )
+        raise FolderError(path.parent, f"its {path.name} is not a journal of results")
+    return _entry(path.parent, 1, line) if "crc" in found else found
 
 
-def _differences(found: Row, here: Row) -> str:
+def rows_of(path: Path) -> dict[str, Row]:
+    """Return a journal's rows by their keys, failures among them.
+
+    Raises
+    ------
+    FolderError
+        If one that was completed is damaged.
+    """
+    rows: dict[str, Row] = {}
+    for number, line in enumerate(path.read_bytes().split(b"\n")[1:-1], start=2):
+        key, row = _row(path.parent, number, line)
+        rows.pop(key, None)
+        rows[key] = row
+    return rows
+
+
+def differences(found: Mapping[str, Any], here: Mapping[str, Any]) -> str:
+    """Return where what a folder belongs to is not what is asked for, in words."""
     there, ours = _leaves(found), _leaves(here)
     names = [name for name in (*ours, *there) if there.get(name) != ours.get(name)]
     return "; ".join(

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from analytic.response import Response
-from studies.kit.arguments import Count, Positive
+from studies.kit.arguments import Count, Place, Positive, several
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, ask
@@ -15,8 +16,8 @@ from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source
 
 @Parameter(name="*")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Running:
-    """Where a study's jobs run, and for how long at most.
+class Asking:
+    """Where jobs run, and for how long at most.
 
     Attributes
     ----------
@@ -77,8 +78,27 @@ class Running:
         refuse_days(asked, seconds, yes)
 
 
-DEFAULT_RUNNING = Running()
+DEFAULT_ASKING = Asking()
 """On all cores of this machine."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Running(Asking):
+    """Where a study's jobs run, and which of its rows there are already.
+
+    Attributes
+    ----------
+    also
+        Folders of the same command's results, whose rows are taken over: of engines that are
+        installed elsewhere, or of another machine.
+    """
+
+    also: Annotated[tuple[Place, ...], several] = ()
+
+
+DEFAULT_RUNNING = Running()
+"""On all cores of this machine, from the beginning."""
 
 
 @Parameter(name="*")

@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from analytic.response import Response
-from studies.kit import provenance
+from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import PROVENANCE, FolderError, Journal, Row, open_journal
@@ -83,17 +83,19 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     Raises
     ------
     FolderError
-        If the folder cannot be used: results of another version or of other settings are refused.
+        If a folder cannot be used: results of another version or of other settings are refused.
     """
     executor = running.executor(plan.ask)
     began = time.perf_counter()
     identity = provenance.identity(study.name, study.module, **plan.settings)
+    others = [elsewhere.read(folder, identity) for folder in running.also]
     with open_journal(out, identity, study.products) as journal:
         _refuse_a_part(out, journal.rows.values(), plan.growing)
         path = out / PROVENANCE
         asked = {column: _short(values) for column, values in plan.growing.items()}
         record = provenance.begin(path, identity, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
+        taken = [elsewhere.take(other, jobs, journal, identity["engines"]) for other in others]
         with _going_on(journal, out, len(jobs)):
             drivers: dict[str, set[str]] = {}
 
@@ -109,6 +111,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
                 write_table(out / f"{name}.csv", table)
             found: dict[str, Any] = {"rows": len(rows)} if jobs else {}
             found |= {"drivers": _listed(drivers)} if drivers else {}
+            found |= {"also": taken} if taken else {}
             provenance.finish(path, record, began, **found)
     return rows
 

@@ -5,7 +5,7 @@ import os
 import platform
 import subprocess
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -132,6 +132,15 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
 def record_of(folder: Path) -> dict[str, Any]:
     """Return the provenance of a results folder."""
     return dict(json.loads((folder / PROVENANCE).read_text(encoding="utf-8")))
+
+
+def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
+    """Return the versions of a record's engines, also of those that answered elsewhere."""
+    versions = dict(record["engines"])
+    for run in record["runs"]:
+        for taken in run.get("also", ()):
+            versions |= taken["engines"]
+    return versions
 
 
 def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:

@@ -243,7 +243,7 @@ def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
     sweep = provenance.record_of(published / "sweep")
     machine, run = sweep["machine"], sweep["runs"][-1]
-    versions = provenance.record_of(_with_presets(published)[0])["engines"]
+    versions = provenance.engines_of(provenance.record_of(_with_presets(published)[0]))
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
     return {

@@ -177,7 +177,7 @@ def _provenance(folder: Path) -> list[tuple[str, str]]:
     """Return what the page says of versions and machine."""
     record = provenance.record_of(folder)
     versions = {
-        **record["engines"],
+        **provenance.engines_of(record),
         "python": record["python"],
         **record["packages"],
         **record["tools"],

@@ -35,6 +35,8 @@ PRESETS_SAID = (
     "engines: full lines land on impacts or choose their own steps,\n"
     "dashed fixed steps, dotted defaults"
 )
+CLEAR = 0.12
+"""Where across a panel words stand: slower than the models, faster than the engines."""
 WRONG = 10.0
 """Where methods that fail or get outcomes wrong are drawn."""
 
@@ -89,7 +91,7 @@ def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
         # the best preset of each stands for all of them, which share its colour and marker
         best = {end.text.partition(" ")[0]: end for end in ends if "," not in end.text}
         ends = [replace(end, text=engine) for engine, end in best.items()]
-        panels[-1].text(0.03, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
+        panels[-1].text(CLEAR, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
     beside(panels[-1], ends)
 
 
@@ -150,7 +152,7 @@ def _one_set(axes: Axes, table: pd.DataFrame) -> None:
     for level, words in ((AIMS[0], "1e-4"), (AIMS[1], "1 %")):
         axes.text(0.985, level, words, transform=axes.get_yaxis_transform(), fontsize=7.5,
                   color="#5b7a4d", ha="right", va="center")  # fmt: skip
-    axes.text(0.98, 0.985, "failed, or wrong outcomes", ha="right", va="top", fontsize=8,
+    axes.text(CLEAR, 0.985, "failed, or wrong outcomes", ha="left", va="top", fontsize=8,
               color="#666666", transform=axes.transAxes)  # fmt: skip
     axes.grid(alpha=0.25)
 
