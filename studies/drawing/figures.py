@@ -14,6 +14,8 @@ from studies.drawing.styles import LOWEST, Style, line_of, style_of
 from studies.kit.drafts import draft
 
 OVERTURNED = "overturned"
+DPI = 130
+"""Points of a picture to the inch."""
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
@@ -153,10 +155,22 @@ def _handle(source: str) -> Line2D:
     return handle
 
 
+def lay_out(drawing: Figure) -> None:
+    """Give the panels of a figure their places for good.
+
+    As long as a figure has a layout to find, matplotlib draws it twice to write it once.
+    """
+    if layout := drawing.get_layout_engine():
+        layout.execute(drawing)
+        drawing.set_layout_engine(None)
+
+
 def save(drawing: Figure, path: Path) -> None:
     """Write a figure in one piece, in the format of the file's suffix."""
+    drawing.set_dpi(DPI)
+    lay_out(drawing)
     with draft(path) as file:
-        drawing.savefig(file, format=path.suffix[1:], dpi=130)
+        drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
 
@@ -13,6 +14,10 @@ from analytic.motion import FloatArray
 
 LINE_HEIGHT = 1.25
 """Distance of two names over the size of their letters."""
+LETTER = 0.62
+"""Width of a letter over the size of letters, about."""
+BEGINNING = 1.03
+"""Where names beside axes begin, over the width of these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,24 +65,16 @@ def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     levels = spread(np.clip(places[:, 1], 0.0, 1.0).tolist(), LINE_HEIGHT * size / points)
     levels -= max(float(levels.max()) - 1.0, 0.0)
     for name, (x, y), level in zip(names, places, levels, strict=True):
-        axes.annotate(
-            name.text,
-            xy=(min(x, 1.0), min(max(y, 0.0), 1.0)),
-            xycoords="axes fraction",
-            xytext=(1.03, level),
-            textcoords="axes fraction",
-            color=name.colour,
-            fontsize=size,
-            va="center",
-            annotation_clip=False,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": name.colour,
-                "linewidth": 0.5,
-                "shrinkB": 1.5,
-                "relpos": (0.0, 0.5),
-            },
-        )
+        line = [(min(x, 1.0), BEGINNING - 0.01), (min(max(y, 0.0), 1.0), level)]
+        axes.add_artist(Line2D(*line, color=name.colour, linewidth=0.5, transform=axes.transAxes,
+                               clip_on=False))  # fmt: skip
+        axes.text(BEGINNING, level, name.text, color=name.colour, fontsize=size, va="center",
+                  transform=axes.transAxes)  # fmt: skip
+
+
+def breadth(names: Sequence[str], size: float = 8.0) -> float:
+    """Return about how much room [in] names need beside axes of a few inches."""
+    return 0.12 + LETTER * size * max(map(len, names)) / 72.0
 
 
 BEYOND = 10.0
@@ -122,8 +119,6 @@ LINE = 12
 """Points by which such a line is known to others."""
 PARTS = {"left": 0.0, "bottom": 0.0, "center": 0.5, "right": 1.0, "top": 1.0}
 """Alignment -> part of the name's size at which its place is, and its line ends."""
-LETTER = 0.62
-"""Width of a letter over the size of letters, about."""
 CLEAR = 4.0
 """Distance that a name keeps from the points of others, and the line that leads to it [points]."""
 ROUNDS = 3

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.catalogue import CHAPTERS
+from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.presets import in_words
@@ -131,9 +132,10 @@ LARGE = 150_000
 def embedded(drawing: Figure) -> str:
     """Return a figure as the address of an image that holds it, sharp and not large."""
     lines, points = io.BytesIO(), io.BytesIO()
+    lay_out(drawing)
     drawing.savefig(lines, format="svg", metadata={"Date": None})
     if lines.tell() > LARGE:
-        drawing.savefig(points, format="png", dpi=130)
+        drawing.savefig(points, format="png", dpi=DPI)
     return (
         _address("png", points) if 0 < points.tell() < lines.tell() else _address("svg+xml", lines)
     )

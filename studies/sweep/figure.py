@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.labels import Name, beside
+from studies.drawing.labels import Name, beside, breadth
 from studies.drawing.styles import Style, line_of, style_of
 
 OVERTURNED = "overturned"
@@ -15,6 +14,15 @@ TOP, ROW = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors."""
+MARKS = {1e-8: "10⁻⁸", 1e-6: "10⁻⁶", 1e-4: "10⁻⁴", 1e-2: "10⁻²", 1.0: "1"}
+"""What stands along it."""
+
+WIDTH, HEIGHT = 9.4, 6.6
+"""Of a figure [in]."""
+LEFT, BOTTOM, ABOVE = 0.67, 0.47, 0.47
+"""What the words around the panels need [in]."""
+BETWEEN = 0.15
+"""From one panel to the next [in]."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
@@ -25,26 +33,67 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     rows : DataFrame
         Of one figure, from `studies.measures.differences.with_reference`.
     """
-    aspects, widths = sorted(rows["aspect"].unique()), sorted(rows["width_m"].unique())
-    sources = list(rows["source"].unique())
-    drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
+    first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
+    sources, panels = list(rows["source"].unique()), _by_aspect(rows)
+    # places are given, of panels and titles: to find them takes longer than all that is drawn
+    drawing = Figure(figsize=(WIDTH, HEIGHT))
     grid = drawing.subplots(
-        2, len(aspects), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
-    )
-    for upper, lower, aspect in zip(*grid, aspects, strict=True):
-        panel = rows[rows["aspect"] == aspect]
+        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0),
+        gridspec_kw=_places(len(panels), breadth(sources)),
+    )  # fmt: skip
+    for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
         _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
-        for width_m in widths:
-            _errors(lower, panel[panel["width_m"] == width_m], pale=width_m != widths[0])
-        upper.set_title(f"H/B = {aspect:g}", fontsize=10)
+        _errors(lower, panel, widths[0])
+        upper.set_title(f"H/B = {aspect:g}", fontsize=10, y=1.0)
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
-    grid[0, 0].set_ylabel("largest rotation  |θ|/θcr  [–]")
-    grid[1, 0].set_ylabel("relative error of it  [–]")
-    _name_the_lines(grid[0, -1], grid[1, -1], rows[rows["aspect"] == aspects[-1]], sources)
-    first = rows.iloc[0]
+    grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
+                   ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
+    grid[1, 0].set(yscale="log", ylim=(LEAST, MOST), ylabel="relative error of it  [–]")
+    grid[1, 0].set_yticks(list(MARKS), list(MARKS.values()))
+    for axes in grid.flat:
+        axes.grid(alpha=0.25)
+    _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    drawing.suptitle(f"Figure {first['figure']}: {pulse}; {_widths(widths)}", fontsize=11)
+    title = f"Figure {first['figure']}: {pulse}; {_widths(widths)}"
+    drawing.suptitle(title, fontsize=11, y=0.994)
     return drawing
+
+
+def _by_aspect(rows: pd.DataFrame) -> dict[float, pd.DataFrame]:
+    """Return what is drawn of the rows, in the order of the frequency, for each H/B."""
+    drawn = pd.DataFrame(
+        {
+            "source": rows["source"],
+            "width_m": rows["width_m"],
+            "x": rows["omega_over_p"],
+            "outcome": rows["outcome"],
+            "survived": rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
+            "error": rows["error"].abs().clip(LEAST, MOST),
+        }
+    )
+    order = rows["omega_over_p"].argsort(kind="stable")
+    return dict(list(drawn.iloc[order].groupby(rows["aspect"])))
+
+
+def _places(columns: int, beside_them: float) -> dict[str, float]:
+    """Return where the panels stand, in shares of the figure and of a panel.
+
+    Parameters
+    ----------
+    columns : int
+        How many panels stand beside each other.
+    beside_them : float
+        Width of what stands at the right of the last [in].
+    """
+    right, top = WIDTH - beside_them, HEIGHT - ABOVE
+    return {
+        "left": LEFT / WIDTH,
+        "right": right / WIDTH,
+        "bottom": BOTTOM / HEIGHT,
+        "top": top / HEIGHT,
+        "wspace": columns * BETWEEN / (right - LEFT - (columns - 1) * BETWEEN),
+        "hspace": 2 * BETWEEN / (top - BOTTOM - BETWEEN),
+    }
 
 
 def _widths(widths: Sequence[float]) -> str:
@@ -57,54 +106,50 @@ def _widths(widths: Sequence[float]) -> str:
 def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
     for number, source in enumerate(sources):
         style = style_of(source)
-        points = panel[panel["source"] == source].sort_values("omega_over_p")
-        x = points["omega_over_p"]
-        survived = points["peak_ratio"].where(points["outcome"].isin(["rocked", "at rest"]))
+        points = panel[panel["source"] == source]
         if style.line:
-            axes.plot(x, survived, style.line, color=style.colour, linewidth=style.width)
+            axes.plot(
+                points["x"],
+                points["survived"],
+                style.line,
+                color=style.colour,
+                linewidth=style.width,
+            )
         else:
-            axes.plot(x, survived, **style.points(4.0), zorder=4)
-        _beyond_the_scale(axes, x, survived, style)
-        lost = x[points["outcome"] == OVERTURNED]
-        axes.plot(lost, np.full(len(lost), _level(number)), "s", color=style.colour, markersize=2.6)
-        failed = x[points["outcome"] == "failed"]
-        axes.plot(failed, np.full(len(failed), 0.02), "*", color=style.colour)
-    top = TOP + ROW * len(sources)
-    axes.axhspan(TOP, top, color="#eeeeee", zorder=0)
+            axes.plot(points["x"], points["survived"], **style.points(4.0), zorder=4)
+        _beyond_the_scale(axes, points[points["survived"] > TOP], style)
+        for outcome, level, mark, size in (
+            (OVERTURNED, _level(number), "s", 2.6),
+            ("failed", 0.02, "*", 6.0),
+        ):
+            x = points.loc[points["outcome"] == outcome, "x"]
+            if len(x):
+                axes.plot(x, [level] * len(x), mark, color=style.colour, markersize=size)
+    axes.axhspan(TOP, _level(len(sources) - 0.7), color="#eeeeee", zorder=0)
     axes.text(4.05, TOP - 0.02, "above: overturned", ha="right", va="top", fontsize=8,
               color="#555555")  # fmt: skip
-    axes.set(xlim=(0.0, 4.1), ylim=(0.0, top), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
     axes.axhline(1.0, color="#999999", linewidth=0.6, zorder=1)
-    axes.grid(alpha=0.25)
 
 
-def _level(number: int) -> float:
+def _level(number: float) -> float:
     """Return the height of a source's line in the band of overturned cases."""
     return TOP + ROW * (number + 0.7)
 
 
-def _beyond_the_scale(
-    axes: Axes, omega_over_p: "pd.Series[float]", survived: "pd.Series[float]", style: Style
-) -> None:
+def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
     """Point to survivors above the scale: beyond θcr, and brought back by the ground."""
-    for x, peak in zip(omega_over_p[survived > TOP], survived[survived > TOP], strict=True):
+    for x, peak in zip(survivors["x"], survivors["survived"], strict=True):
         axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
         axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
 
 
-def _errors(axes: Axes, panel: pd.DataFrame, *, pale: bool) -> None:
-    for source, points in panel[panel["source"] != "exact"].groupby("source", sort=False):
-        style = style_of(str(source))
-        known = points[points["error"].notna()].sort_values("omega_over_p")
-        axes.plot(
-            known["omega_over_p"],
-            known["error"].abs().clip(LEAST, MOST),
-            **{**style.points(3.0), "linestyle": line_of(str(source)), "linewidth": 0.9},
-            alpha=0.3 if pale else 1.0,
-            zorder=2 if pale else 3,
-        )
-    axes.set(yscale="log", ylim=(LEAST, MOST))
-    axes.grid(alpha=0.25)
+def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
+    known = panel[panel["error"].notna() & (panel["source"] != "exact")]
+    for (name, width_m), points in known.groupby(["source", "width_m"], sort=False):
+        source = str(name)
+        look = {**style_of(source).points(3.0), "linestyle": line_of(source), "linewidth": 0.9}
+        pale = {"alpha": 0.3, "zorder": 2} if width_m != narrowest else {"zorder": 3}
+        axes.plot(points["x"], points["error"], **look, **pale)
 
 
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
@@ -113,16 +158,5 @@ def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequ
     size = 7.5 if len(sources) < 9 else 6.0
     beside(upper, [Name(s, 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size)
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
-    last = known.sort_values("omega_over_p").groupby("source", sort=False).last()
-    beside(
-        lower,
-        [
-            Name(
-                str(source),
-                row.omega_over_p,
-                min(max(abs(row.error), LEAST), MOST),
-                colours[str(source)],
-            )
-            for source, row in last.iterrows()
-        ],
-    )
+    last = known.groupby("source", sort=False)[["x", "error"]].last()
+    beside(lower, [Name(str(s), x, error, colours[str(s)]) for s, x, error in last.itertuples()])
