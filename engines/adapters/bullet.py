@@ -82,7 +82,7 @@ class BulletWorld:
             self._set_engine(scene)
             floor = self._do(base_shape(scene, settings))
             self._base = int(self._do(base_body(floor, self._ground)))
-            shape = self._do(block_shape(scene, settings))
+            shape = self._do(block_shape(scene, settings, dt_s))
             self._body = int(self._do(block_body(scene, settings, shape)))
             self._fault = self._set_bodies(scene)
             self._take_inertia(scene)

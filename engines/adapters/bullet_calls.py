@@ -15,6 +15,10 @@ KEPT_GAP = 4.0
 rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
 must be let go: an anchor that is still kept at the next impact pulls it back to where it stood."""
 
+ROLLED = 0.75
+"""Part of that gap at most by which a corner sphere rolls while the block turns by alpha. An anchor
+stays where it was made: from a gap away the library adds a contact, then another, and keeps all."""
+
 
 class Constant(str):
     """A number of the library's, by its name there."""
@@ -32,16 +36,13 @@ class Call:
 
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
-    block, threshold = scene.block, s.breaking_threshold
-    if s.gap_by_step:
-        threshold = KEPT_GAP * (math.sin(block.alpha) * block.p * dt_s) ** 2
     wanted = {
         "numSolverIterations": s.iterations,
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,
         "contactSlop": s.contact_slop,
-        "contactBreakingThreshold": threshold,
+        "contactBreakingThreshold": kept_gap(scene, s, dt_s),
         "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),
         "warmStartingFactor": s.warm_starting,
         "useSplitImpulse": s.split_impulse,
@@ -52,6 +53,22 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     return Call("setPhysicsEngineParameter", given(wanted))
 
 
+def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the gap, over the half diagonal, up to which a contact is kept."""
+    if s.gap_by_step:
+        return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
+    return s.breaking_threshold
+
+
+def corner_radius(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the radius [m] of the corner spheres."""
+    radius = s.corner_radius * scene.block.width
+    if s.gap_by_step:
+        gap = kept_gap(scene, s, dt_s) * scene.block.R
+        radius = min(radius, ROLLED * gap / scene.block.alpha)
+    return radius
+
+
 def base_shape(scene: Scene, s: BulletSettings) -> Call:
     """Return the call that makes the shape of the base."""
     if s.base_geometry == "box":
@@ -59,13 +76,13 @@ def base_shape(scene: Scene, s: BulletSettings) -> Call:
     return _shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
 
 
-def block_shape(scene: Scene, s: BulletSettings) -> Call:
+def block_shape(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that makes what the block touches its base with."""
     if s.geometry == "box":
         return _shape("GEOM_BOX", halfExtents=half_size(scene))
     if s.geometry == "hull":
         return _shape("GEOM_MESH", vertices=hull_points(scene))
-    radius = s.corner_radius * scene.block.width
+    radius = corner_radius(scene, s, dt_s)
     corners = corner_spheres(scene, radius, planar=s.planar)
     spheres = {
         "shapeTypes": [Constant("GEOM_SPHERE")] * len(corners),

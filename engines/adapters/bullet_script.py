@@ -28,7 +28,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of PyBullet; see `engines.script`."""
     ground = base_place(scene, s)
     engine, bodies = engine_call(scene, s, dt_s), (block_call(scene, s, BLOCK), base_call(s, BASE))
-    shape, body = block_shape(scene, s), block_body(scene, s, SHAPE)
+    shape, body = block_shape(scene, s, dt_s), block_body(scene, s, SHAPE)
     settings = (engine, shape, body, *bodies)
     return Script(
         imports=("import pybullet as p",),

@@ -53,7 +53,7 @@ class BulletSettings:
         Coefficient between block and base, at most 10; by default not the library's own, 0.5, with
         which a block of H/B = 2 slides before it rocks.
     corner_radius : float
-        Radius of the corner spheres over the width.
+        Radius of the corner spheres over the width; less where one would roll out of a gap by step.
     exact_inertia : bool
         Set the moments of inertia of the homogeneous block instead of those the library derives
         from the collision shape.

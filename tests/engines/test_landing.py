@@ -128,6 +128,16 @@ def test_second_order(engine: str) -> None:
     assert 1.7 < math.log(coarse / fine, 4.0) < 2.3
 
 
+@pytest.mark.parametrize("engine", core_engines())
+@pytest.mark.parametrize(("aspect", "onsets", "omega_over_p"), [(2.0, 1.6, 3.5), (6.0, 3.0, 6.0)])
+def test_steps_finer_by_far(engine: str, aspect: float, onsets: float, omega_over_p: float) -> None:
+    block = RigidBlock(width=0.5, height=0.5 * aspect)
+    motion = pulse(onsets, omega_over_p, 2, block)
+    found = run(engine, Scene(block=block, motion=motion, step=2e-4)).peak_ratio
+    # 2e-4^2 = 4e-8, times a factor of order one
+    assert found == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-7)
+
+
 @pytest.mark.parametrize("aspect", [1.5, 2.0, 3.0, 4.0, 6.0, 10.0])
 def test_velocity_ratio_of_an_impact(engine: str, aspect: float) -> None:
     """Housner's ratio comes out of the engine's contact.
