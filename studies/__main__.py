@@ -1,5 +1,6 @@
 """The command line: `rocking`, and `python -m studies`."""
 
+import gc
 import sys
 
 from studies import page
@@ -18,6 +19,8 @@ def run(arguments: list[str]) -> int:
 def main() -> None:
     """Run the command that the arguments name, and exit."""
     signals.install()
+    # by default half a second of a short command goes into looking for garbage among its imports
+    gc.set_threshold(10_000)
     app.settle_environment()
     streams.prepare()
     code = run(sys.argv[1:])
