@@ -155,6 +155,10 @@ def _capacities(axes: Axes, agreement: pd.DataFrame, sources: Sequence[str]) -> 
     lines = agreement.set_index("source")
     for place, source in enumerate(sources):
         style, line = style_of(source), lines.loc[source]
+        if not np.isfinite(line["capacity_ratio"]):
+            words = "never overturns" if line["capacity_ratio"] == np.inf else "not known"
+            axes.text(1.01, place, words, fontsize=8, va="center")
+            continue
         axes.plot([line["ratio_low"], line["ratio_high"]], [place, place], color=style.colour)
         axes.plot(line["capacity_ratio"], place, **style.points(6.0))
     axes.axvline(1.0, color="#999999", linewidth=0.8, zorder=0)

@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from analytic.response import Response
-from studies.kit.arguments import Count, Place, Positive, several
+from studies.kit.arguments import Count, Place, Positive, several_or_none
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, ask
@@ -94,7 +94,7 @@ class Running(Asking):
         installed elsewhere, or of another machine.
     """
 
-    also: Annotated[tuple[Place, ...], several] = ()
+    also: Annotated[tuple[Place, ...] | None, several_or_none] = None
 
 
 DEFAULT_RUNNING = Running()

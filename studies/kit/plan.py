@@ -88,7 +88,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     executor = running.executor(plan.ask)
     began = time.perf_counter()
     identity = provenance.identity(study.name, study.module, **plan.settings)
-    others = [elsewhere.read(folder, identity) for folder in running.also]
+    others = [elsewhere.read(folder, identity) for folder in running.also or ()]
     with open_journal(out, identity, study.products) as journal:
         _refuse_a_part(out, journal.rows.values(), plan.growing)
         path = out / PROVENANCE

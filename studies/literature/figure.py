@@ -59,7 +59,7 @@ def draw_literature(table: pd.DataFrame) -> Figure:
                label=NAMES.get(name, name))
         for name, look in zip(sources, looks, strict=True)
     ]  # fmt: skip
-    drawing.legend(handles=handles, loc="outside lower center", fontsize=9, ncols=len(sources),
+    drawing.legend(handles=handles, loc="outside lower center", fontsize=9, ncols=5,
                    title="filled: the model of the print; open: others", frameon=False)  # fmt: skip
     return drawing
 
