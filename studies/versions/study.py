@@ -97,9 +97,10 @@ def command(
     )
     known, unlisted = _known(engines, releases)
     wanted = {engine: chosen(engine, releases, known) for engine in engines}
-    kept = _affordable(wanted, how.environments, named)
+    kept, notes = _affordable(wanted, how.environments, named)
 
     def tabulate(_: object) -> Tables:
+        print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)
         asked = [ask(one, how) for one in _progress([one for name in kept for one in wanted[name]])]
         return {"releases": releases_table(asked)}
 
@@ -153,20 +154,19 @@ def _known(
 
 def _affordable(
     wanted: Mapping[str, Sequence[Release]], environments: Path, named: bool
-) -> list[str]:
-    """Say what is to be fetched; return the engines, those that take too much only if named."""
-    kept = []
+) -> tuple[list[str], list[str]]:
+    """Return the engines, those that take too much only if named, and what is to be fetched."""
+    kept, notes = [], []
     for engine, releases in wanted.items():
         new = [one for one in releases if not (one.here or is_made(environments / one.folder))]
         room = len(new) * room_mib(engine)
         fetched = f"{len(new)} releases of {engine}, about {room:.0f} MiB"
         if named or room <= MOST_MIB:
             kept.append(engine)
-            if new:
-                print(f"to fetch: {fetched}", file=sys.stderr)
+            notes += [f"to fetch: {fetched}"] if new else []
         else:
-            print(f"left out: {fetched}; --engines {engine} asks them", file=sys.stderr)
-    return kept
+            notes.append(f"left out: {fetched}; --engines {engine} asks them")
+    return kept, notes
 
 
 def _progress(releases: Sequence[Release]) -> "tqdm[Release]":

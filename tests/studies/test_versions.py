@@ -134,7 +134,15 @@ def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
     out, asked = tmp_path / "out", []
     monkeypatch.setattr(study, "installed_engines", lambda: ("pretender",))
     monkeypatch.setattr(study, "MOST_MIB", 30.0)
-    monkeypatch.setattr(study, "carry_out", lambda _, plan, *__: asked.append(plan.growing) or 0)
+    monkeypatch.setattr(study, "ask", lambda release, how: None)
+    monkeypatch.setattr(study, "releases_table", lambda answers: None)
+
+    def carry_out(_, plan, *__):
+        asked.append(plan.growing)
+        plan.tabulate(())
+        return 0
+
+    monkeypatch.setattr(study, "carry_out", carry_out)
     words = ["versions", "--out", str(out)]
     for room, named, kept, line in (
         (14.0, (), ["pretender"], "to fetch: 2 releases of pretender, about 28 MiB\n"),
