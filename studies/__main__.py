@@ -19,7 +19,7 @@ def run(arguments: list[str]) -> int:
 def main() -> None:
     """Run the command that the arguments name, and exit."""
     signals.install()
-    # by default half a second of a short command goes into looking for garbage among its imports
+    # by default a tenth of a short command's time goes into looking for garbage among its imports
     gc.set_threshold(10_000)
     app.settle_environment()
     streams.prepare()

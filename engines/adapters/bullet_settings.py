@@ -53,7 +53,8 @@ class BulletSettings:
         Coefficient between block and base, at most 10; by default not the library's own, 0.5, with
         which a block of H/B = 2 slides before it rocks.
     corner_radius : float
-        Radius of the corner spheres over the width; less where one would roll out of a gap by step.
+        Radius of the corner spheres over the width; less where they would roll out of the gap that
+        `gap_by_step` keeps.
     exact_inertia : bool
         Set the moments of inertia of the homogeneous block instead of those the library derives
         from the collision shape.

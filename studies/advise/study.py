@@ -1,6 +1,5 @@
 """Advice from the published tables: which setting keeps an error, in the library's words."""
 
-import json
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
@@ -124,10 +123,11 @@ def _beyond(block: RigidBlock, published: Path) -> str:
 
 def _versions(published: Path) -> str:
     """Return the versions of the engines that the tables were made with."""
-    path = published / Path(TABLES[0]).parent / PROVENANCE
-    record = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    made = [f"{name} {version}" for name, version in record.get("engines", {}).items()]
-    return listed(made) if made else "unknown versions"
+    folder = published / Path(TABLES[0]).parent
+    if not (folder / PROVENANCE).is_file():
+        return "unknown versions"
+    versions = provenance.engines_of(provenance.record_of(folder))
+    return listed([f"{name} {version}" for name, version in versions.items()])
 
 
 def _read(folder: Path) -> pd.DataFrame:

@@ -17,7 +17,7 @@ from studies.kit.executors import Executor
 from studies.kit.jobs import Job, one_line, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_ASKING, Asking
+from studies.kit.options import DEFAULT_COMPUTING, Computing
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.sources.groups import core_sources
@@ -38,7 +38,7 @@ def command(
     results: Place | None = None,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     slower: Positive = 1.0,
-    asking: Asking = DEFAULT_ASKING,
+    computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
     """Show a block rocking in several sources side by side.
 
@@ -80,7 +80,7 @@ def command(
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
         raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
-    executor = asking.executor()
+    executor = computing.executor()
     rows = shown(block, posed, sources, times, executor)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
     if usable:

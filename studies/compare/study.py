@@ -18,7 +18,7 @@ from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_ASKING, OWN_EFFORT, Asking, EffortOptions
+from studies.kit.options import DEFAULT_COMPUTING, OWN_EFFORT, Computing, EffortOptions
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
@@ -42,7 +42,7 @@ def command(
     estimate: bool = False,
     plot: Place | None = None,
     json: bool = False,
-    asking: Asking = DEFAULT_ASKING,
+    computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
     """Compare the sources on one block, and one pulse, record or release.
 
@@ -80,7 +80,7 @@ def command(
         times=np.linspace(0.0, window, 1501) if plot else None,
         effort=effort,
         estimate=estimate,
-        executor=asking.executor(),
+        executor=computing.executor(),
     )
     if json:
         print(json_lines(rows, note))

@@ -15,7 +15,7 @@ from studies.kit.journal import (
     Row,
     belongs_to,
     differences,
-    rows_of,
+    rows_in,
 )
 from studies.kit.provenance import NOT_INSTALLED, record_of
 from studies.sources.registry import resolve
@@ -64,9 +64,8 @@ def read(folder: Path, identity: Mapping[str, Any]) -> Elsewhere:
             words = "it must hold results of the same version and settings"
             raise FolderError(folder, f"{words} ({differences(found, expected)})")
         record = record_of(folder)
-        return Elsewhere(
-            folder, rows_of(path), engines, {name: record[name] for name in ("git", "machine")}
-        )
+        made = {name: record[name] for name in ("git", "machine")}
+        return Elsewhere(folder, rows_in(folder, path.read_bytes()), engines, made)
     except FolderError as error:
         raise FolderError(folder, error.problem, OPTION) from error
     except (OSError, ValueError, TypeError, KeyError) as error:

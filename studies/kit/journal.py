@@ -156,8 +156,8 @@ def _finished(path: Path, header: Mapping[str, Any]) -> dict[str, Row]:
     if found != header:
         words = "it must be new, or hold results of the same version and settings"
         raise FolderError(path.parent, f"{words} ({differences(found, header)})")
-    rows = rows_of(path)
     content = path.read_bytes()
+    rows = rows_in(path.parent, content)
     whole = content.rfind(b"\n") + 1
     if whole < len(content):
         os.truncate(path, whole)
@@ -172,7 +172,8 @@ def belongs_to(path: Path) -> Row:
     FolderError
         If the file is no journal, or its first line is damaged.
     """
-    line = path.read_bytes().partition(b"\n")[0]
+    with path.open("rb") as file:
+        line = file.readline().removesuffix(b"\n")
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):
@@ -182,8 +183,8 @@ def belongs_to(path: Path) -> Row:
     return _entry(path.parent, 1, line) if "crc" in found else found
 
 
-def rows_of(path: Path) -> dict[str, Row]:
-    """Return a journal's rows by their keys, failures among them.
+def rows_in(folder: Path, content: bytes) -> dict[str, Row]:
+    """Return the rows of a folder's journal by their keys, failures among them.
 
     Raises
     ------
@@ -191,8 +192,8 @@ def rows_of(path: Path) -> dict[str, Row]:
         If one that was completed is damaged.
     """
     rows: dict[str, Row] = {}
-    for number, line in enumerate(path.read_bytes().split(b"\n")[1:-1], start=2):
-        key, row = _row(path.parent, number, line)
+    for number, line in enumerate(content.split(b"\n")[1:-1], start=2):
+        key, row = _row(folder, number, line)
         rows.pop(key, None)
         rows[key] = row
     return rows

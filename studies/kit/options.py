@@ -16,7 +16,7 @@ from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source
 
 @Parameter(name="*")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asking:
+class Computing:
     """Where jobs run, and for how long at most.
 
     Attributes
@@ -78,13 +78,13 @@ class Asking:
         refuse_days(asked, seconds, yes)
 
 
-DEFAULT_ASKING = Asking()
+DEFAULT_COMPUTING = Computing()
 """On all cores of this machine."""
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Running(Asking):
+class Running(Computing):
     """Where a study's jobs run, and which of its rows there are already.
 
     Attributes

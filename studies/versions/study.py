@@ -98,6 +98,8 @@ def command(
     known, unlisted = _known(engines, releases)
     wanted = {engine: chosen(engine, releases, known) for engine in engines}
     kept, notes = _affordable(wanted, how.environments, named)
+    if not kept:
+        raise BadInputError(f"--engines is not given, and nothing is asked; {'; '.join(notes)}")
 
     def tabulate(_: object) -> Tables:
         print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)

@@ -128,7 +128,6 @@ def test_second_order(engine: str) -> None:
     assert 1.7 < math.log(coarse / fine, 4.0) < 2.3
 
 
-@pytest.mark.parametrize("engine", core_engines())
 @pytest.mark.parametrize(("aspect", "onsets", "omega_over_p"), [(2.0, 1.6, 3.5), (6.0, 3.0, 6.0)])
 def test_steps_finer_by_far(engine: str, aspect: float, onsets: float, omega_over_p: float) -> None:
     block = RigidBlock(width=0.5, height=0.5 * aspect)

@@ -132,7 +132,8 @@ def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
 ):
     """And what is there already is not fetched."""
     out, asked = tmp_path / "out", []
-    monkeypatch.setattr(study, "installed_engines", lambda: ("pretender",))
+    here = ["pretender"]
+    monkeypatch.setattr(study, "installed_engines", lambda: tuple(here))
     monkeypatch.setattr(study, "MOST_MIB", 30.0)
     monkeypatch.setattr(study, "ask", lambda release, how: None)
     monkeypatch.setattr(study, "releases_table", lambda answers: None)
@@ -144,17 +145,23 @@ def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
 
     monkeypatch.setattr(study, "carry_out", carry_out)
     words = ["versions", "--out", str(out)]
-    for room, named, kept, line in (
-        (14.0, (), ["pretender"], "to fetch: 2 releases of pretender, about 28 MiB\n"),
-        (16.0, (), [], "left out: 2 releases of pretender, about 32 MiB; "
-                       "--engines pretender asks them\n"),
-        (16.0, ("--engines", "pretender"), ["pretender"],
-         "to fetch: 2 releases of pretender, about 32 MiB\n"),
-    ):  # fmt: skip
+    left_out = "left out: 2 releases of pretender, about 32 MiB; --engines pretender asks them\n"
+    for room, named, line in (
+        (14.0, (), "to fetch: 2 releases of pretender, about 28 MiB\n"),
+        (16.0, ("--engines", "pretender"), "to fetch: 2 releases of pretender, about 32 MiB\n"),
+    ):
         monkeypatch.setattr(study, "room_mib", lambda _, room=room: room)
         assert run([*words, *named]) == 0
         assert capsys.readouterr().err == line
-        assert list(asked.pop()["engine"]) == kept
+        assert list(asked.pop()["engine"]) == ["pretender"]
+    assert run(words) == 2
+    nothing = "rocking: --engines is not given, and nothing is asked; "
+    assert capsys.readouterr().err == nothing + left_out
+    here.append("box2d")
+    assert run([*words, "--releases", "pretender==1.1", "pretender==2.0"]) == 0
+    assert capsys.readouterr().err == left_out
+    assert list(asked.pop()["engine"]) == here[1:]
+    here.pop()
     for version in ("1.1", "2.0"):
         folder = out / "environments" / f"pretender-{version}"
         folder.mkdir(parents=True)
