@@ -10,7 +10,7 @@ import math
 
 from engines.compiled import State, fill, shared
 from engines.scene import Scene
-from engines.stepping.timetable import Times, even
+from engines.stepping.timetable import SAME_TIME, Times, even
 from engines.world import Choice, Grip, Moment, Pose, Resolution
 
 SWING_PART = 8.0
@@ -39,6 +39,13 @@ time that the engine resolves, or the time that `MOST_ACCELERATION` leaves."""
 MOST_ACCELERATION = 3e9
 """An impact is near when this angular acceleration [rad/s2] would stop the block in a step; engines
 take what is much larger for a failure."""
+
+CALM_PART = 1.0 / 32.0
+"""A block at rest takes steps of this part of the time until the base can lift it. They shorten so
+slowly that no corner is let go of."""
+
+CALMEST = 8.0
+"""Those steps are up to so many ordinary ones long."""
 
 UPLIFT_NEAR = 2e-3
 """An uplift is near when less than this part of the ordinary step is left."""
@@ -172,16 +179,18 @@ def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
 
 @shared
 def at_rest(to: Landing, times: Times) -> Choice:
-    """Step on through the calm; come slowly where the block may lift.
+    """Step on through the calm, the longer the more is left; come slowly where the block may lift.
 
-    Equal steps, whatever corners the base's motion has meanwhile: a change of step would let
-    go of a corner that carries little, near the onset.
+    Whatever corners the base's motion has meanwhile, and near the onset in equal steps: a sudden
+    change would let go of a corner that carries little.
     """
     if times.loaded:
         to.side = times.load_side
         return Choice(even(times.left, resolving(to, times)), Grip.REST, to.side)
     to.side = 0.0
-    if not times.lifts_next or times.calm > to.dt:
+    if CALM_PART * times.calm > to.dt:
+        return Choice(min(CALM_PART * times.calm, CALMEST * to.dt), Grip.REST, 0.0)
+    if not times.lifts_next or times.calm * (1.0 - SAME_TIME) > to.dt:
         return Choice(even(times.calm, to.dt), Grip.REST, 0.0)
     # a short last step, or the first one aloft would feel forces of the time before
     part = 1.0 if times.calm <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER

