@@ -209,7 +209,7 @@ class BulletWorld:
             "mass": (scene.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
             "friction of the base": (1.0, base[1]),
-            "numSolverIterations": (s.iterations, engine["numSolverIterations"]),
+            "numSolverIterations": (s.iterations_of(scene), engine["numSolverIterations"]),
         }
         if s.exact_inertia:
             pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}

@@ -37,7 +37,7 @@ class Call:
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
     wanted = {
-        "numSolverIterations": s.iterations,
+        "numSolverIterations": s.iterations_of(scene),
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,

@@ -16,7 +16,8 @@ from engines.factors import (
     level,
 )
 from engines.parts.settings import check, setting
-from engines.scene import GEOMETRIES
+from engines.parts.shapes import iterations_for
+from engines.scene import GEOMETRIES, Scene
 
 LIBRARY_STEP_S = 1.0 / 240.0
 """The library's own time step [s]."""
@@ -30,6 +31,9 @@ SOLVERS = {
     "Dantzig": "CONSTRAINT_SOLVER_LCP_DANTZIG",
 }
 """Name of a contact solver -> the library's constant."""
+
+SWEEPS = 25.0
+"""Twice what a solver needs that leaves no more than a rounding of the impulses at two corners."""
 
 LARGEST_FRICTION = 10.0
 """The library clamps the coefficient of a pair, the product of the two bodies', to this."""
@@ -61,7 +65,9 @@ class BulletSettings:
     damping : float or None
         Linear and angular damping of the block.
     iterations, residual : int, float or None
-        Of the contact solver: how many, and the squared velocity [m2/s2] at which they end.
+        Of the contact solver: how many at most, and the squared velocity [m2/s2] at which they end.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
     contact_erp, friction_erp : float or None
         Part of a position error that a step corrects.
     friction_anchor : bool
@@ -101,7 +107,8 @@ class BulletSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     exact_inertia: bool = False
     damping: float | None = None
-    iterations: int | None = None
+    iterations: int | None = setting(None, least=1)
+    sweeps: float | None = setting(None, above=0.0)
     residual: float | None = None
     contact_erp: float | None = None
     friction_erp: float | None = None
@@ -125,6 +132,10 @@ class BulletSettings:
     def __post_init__(self) -> None:
         check(self)
 
+    def iterations_of(self, scene: Scene) -> int | None:
+        """Return how often the solver goes through the contacts; None leaves that to it."""
+        return iterations_for(scene, self.iterations, self.sweeps)
+
 
 TUNED = BulletSettings(
     geometry="corners",
@@ -133,7 +144,7 @@ TUNED = BulletSettings(
     friction=LARGEST_FRICTION,
     exact_inertia=True,
     damping=0.0,
-    iterations=1000,
+    sweeps=SWEEPS,
     residual=1e-20,
     contact_erp=1.0,
     friction_erp=0.0,
@@ -159,7 +170,11 @@ FACTORS = (
         level("1e-12", residual=1e-12),
         name="residual threshold",
     ),
-    factor("iterations", level("5", iterations=5)),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (level("5", iterations=5), level("1000", iterations=1000)),
+    ),
     factor("contact_erp", level("0", contact_erp=0.0), name="contact ERP"),
     factor("friction_erp", level("1", friction_erp=1.0), name="friction ERP"),
     factor("contact_slop", level("1 mm", contact_slop=1e-3)),

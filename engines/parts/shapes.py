@@ -11,6 +11,9 @@ NO_JAM = 1.3
 """Friction just below 4/3, from which on a corner of a homogeneous block may jam (Painlevé's
 paradox): a solver by impulses finds no force then, and lets the corner through the base."""
 
+MOST_ITERATIONS = 2**31 - 1
+"""What fits into a library's own integer."""
+
 FLOOR_HEIGHTS = 100.0
 """Half of the extent of a base that is a box, in heights of the block and in its depths."""
 
@@ -29,7 +32,7 @@ def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -
     """
     if iterations is not None or sweeps is None:
         return iterations
-    return math.ceil(sweeps / math.sin(scene.block.alpha) ** 2)
+    return min(math.ceil(sweeps / math.sin(scene.block.alpha) ** 2), MOST_ITERATIONS)
 
 
 def half_size(scene: Scene) -> Point:

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 
 from studies.drawing.styles import engine_style
 
-ACROSS = 5
+ACROSS = 4
 """Panels in a row."""
-LETTERS = 34
+LETTERS = 30
 """In a line of a panel's title."""
 
 
@@ -74,7 +74,7 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     """
     ways = list(rows.groupby(["engine", "way"], sort=False))
     down = math.ceil(len(ways) / ACROSS)
-    drawing = Figure(figsize=(2.5 * ACROSS, 2.45 * down + 0.8), layout="constrained")
+    drawing = Figure(figsize=(2.2 * ACROSS, 2.2 * down + 0.8), layout="constrained")
     grid = drawing.subplots(down, ACROSS, sharex=True, sharey=True, squeeze=False)
     for axes in grid.flat[len(ways) :]:
         axes.set_axis_off()

@@ -40,7 +40,7 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
     engines = list(lines["engine"].unique())
     columns = 3
     rows = -(-len(groups) // columns)
-    drawing = Figure(figsize=(12.4, 2.7 * rows + 0.5), layout="constrained")
+    drawing = Figure(figsize=(9.6, 2.6 * rows + 0.5), layout="constrained")
     panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
     for axes, (symptom, group) in zip(panels, groups, strict=False):
         _panel(axes, group)
@@ -53,13 +53,13 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
         Line2D([], [], **{**engine_style(name, "").points(6.0), "linestyle": "-"}, label=name)
         for name in engines
     ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False, fontsize=9)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False)
     for axes in panels[len(groups) :]:
         axes.set_axis_off()
     return drawing
 
 
-def _broken(words: str, width: int = 44) -> str:
+def _broken(words: str, width: int = 36) -> str:
     """Return a title in lines that fit above a panel."""
     lines = [""]
     for word in words.split():
@@ -87,6 +87,7 @@ def _panel(axes: Axes, group: pd.DataFrame) -> None:
     axes.set(yscale="log", xlim=(-0.3, len(STAGES) - 0.7))
     axes.set_xticks(places, list(STAGES.values()), fontsize=9)
     if axes.get_ylim()[1] >= BROKEN:
+        axes.set_ylim(top=10.0 * BROKEN)
         axes.axhline(BROKEN, color="#999999", linewidth=0.6)
         axes.annotate("no result", (1.0, BROKEN), fontsize=8, color="#555555", va="bottom")
     axes.grid(alpha=0.25)

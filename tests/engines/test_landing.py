@@ -340,6 +340,17 @@ def test_out_of_the_plane(engine: str) -> None:
     assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=2e-4)
 
 
+@pytest.mark.parametrize("aspect", [20.0, 50.0])
+def test_slender_blocks(engine: str, aspect: float) -> None:
+    """Their two corners share the weight by a solver that needs the more iterations."""
+    block = RigidBlock(width=0.5, height=0.5 * aspect)
+    motion = pulse(1.3, 3.0, 1, block)
+    response = run(engine, Scene(block=block, motion=motion))
+    exact = simulate(block, motion)
+    assert response.outcome is exact.outcome is Outcome.ROCKED
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
+
+
 @pytest.mark.parametrize("aspect", [3.0, 11.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
