@@ -13,7 +13,7 @@ from engines.factors import Factor, Rule
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
 from engines.script import Script
-from engines.world import ROUNDINGS, Resolution, World
+from engines.world import CALMEST, ROUNDINGS, Resolution, World
 
 
 class Help(enum.Enum):
@@ -163,6 +163,9 @@ class Engine:
         changed a little: the radius of its corners, the steps over which it corrects a depth.
     shortest_step : float
         p dt below which a step has no effect that is resolved.
+    calmest : float
+        Up to how many ordinary steps long one of a block at rest may be; 1 where how the block
+        lies depends on the step.
     script : callable or None
         ``(scene, settings, dt_s) -> Script``: a scene on a base at rest in the library's own words,
         in the ordinary steps dt_s [s]. Without it an engine can be neither exported nor quoted.
@@ -198,6 +201,7 @@ class Engine:
     precision: Precision = Precision.DOUBLE
     scatter: float = 0.0
     shortest_step: float = 1e-12
+    calmest: float = CALMEST
     script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
     bouncing: tuple[Bouncing, ...] = ()
@@ -233,7 +237,7 @@ class Engine:
     def resolution(self, block: RigidBlock) -> Resolution:
         """Return what its numbers tell apart about a block."""
         part = ROUNDINGS * self.precision.value
-        return Resolution(part * block.height, self.shortest_step / block.p, part)
+        return Resolution(part * block.height, self.shortest_step / block.p, part, self.calmest)
 
     @property
     def installed(self) -> bool:

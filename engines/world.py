@@ -23,12 +23,20 @@ ROUNDINGS = 16.0
 """Roundings of the block's height from which the height of a corner above the base is made."""
 
 
+CALMEST = 8.0
+"""Up to so many ordinary steps long are those of a block at rest that nothing can lift yet."""
+
+
 class Resolution(NamedTuple):
-    """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part."""
+    """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part.
+
+    calmest is up to how many ordinary steps long one may be that leaves a block at rest as it lies.
+    """
 
     length_m: float = 0.0
     time_s: float = 0.0
     part: float = 0.0
+    calmest: float = CALMEST
 
 
 UNLIMITED = Resolution()

@@ -233,6 +233,7 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     spatial=True,
+    calmest=1.0,
     script=script,
     bouncing=BOUNCING,
     factors=FACTORS,

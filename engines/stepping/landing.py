@@ -41,11 +41,9 @@ MOST_ACCELERATION = 3e9
 take what is much larger for a failure."""
 
 CALM_PART = 1.0 / 32.0
-"""A block at rest takes steps of this part of the time until the base can lift it. They shorten so
-slowly that no corner is let go of."""
-
-CALMEST = 8.0
-"""Those steps are up to so many ordinary ones long."""
+"""A block at rest takes steps of this part of the time until the base can lift it, and each is
+longer than the one before by this part at most: a sudden change would let go of a corner, or leave
+it as low as a long step presses it."""
 
 UPLIFT_NEAR = 2e-3
 """An uplift is near when less than this part of the ordinary step is left."""
@@ -73,8 +71,9 @@ class Landing(State):
 
     Attributes
     ----------
-    dt, least, shortest : float
-        The ordinary step, the shortest one, and the shortest swing that is followed [s].
+    dt, least, calmest, shortest : float
+        The ordinary step, the shortest one, the longest one of a block at rest, and the shortest
+        swing that is followed [s].
     width, half_height, touching : float
         Of the block, and the height below which a corner touches the base [m].
     fall : float
@@ -101,6 +100,7 @@ class Landing(State):
 
     dt: float
     least: float
+    calmest: float
     shortest: float
     width: float
     half_height: float
@@ -148,6 +148,7 @@ def begin_landing(
         to,
         dt=dt_s,
         least=max(NEAR * dt_s, resolution.time_s),
+        calmest=resolution.calmest * dt_s,
         shortest=max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen),
         width=block.width,
         half_height=0.5 * block.height,
@@ -181,15 +182,16 @@ def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
 def at_rest(to: Landing, times: Times) -> Choice:
     """Step on through the calm, the longer the more is left; come slowly where the block may lift.
 
-    Whatever corners the base's motion has meanwhile, and near the onset in equal steps: a sudden
-    change would let go of a corner that carries little.
+    Whatever corners the base's motion has meanwhile, and in equal steps near the onset, where a
+    corner carries little.
     """
     if times.loaded:
         to.side = times.load_side
         return Choice(even(times.left, resolving(to, times)), Grip.REST, to.side)
     to.side = 0.0
     if CALM_PART * times.calm > to.dt:
-        return Choice(min(CALM_PART * times.calm, CALMEST * to.dt), Grip.REST, 0.0)
+        longest = max(min((1.0 + CALM_PART) * to.last_dt, to.calmest), to.dt)
+        return Choice(min(CALM_PART * times.calm, longest), Grip.REST, 0.0)
     if not times.lifts_next or times.calm * (1.0 - SAME_TIME) > to.dt:
         return Choice(even(times.calm, to.dt), Grip.REST, 0.0)
     # a short last step, or the first one aloft would feel forces of the time before
