@@ -21,6 +21,7 @@ from uses import (
     TUNED,
     TUNED_IN_FRAMES,
     every_fixed_use,
+    every_landing_use,
     every_tuned_use,
     every_use,
     in_both_frames,
@@ -82,6 +83,23 @@ def test_rest_stays_rest(engine: str, preset: str) -> None:
     assert response.history is not None
     # the contact may settle, by less than a thousandth of what would topple the block
     assert abs(response.history.theta).max() < 1e-3 * BLOCK.alpha
+
+
+@every_landing_use
+def test_how_a_block_lies_does_not_depend_on_the_steps(engine: str, preset: str) -> None:
+    """Not up to the longest ones that the engine declares for a block at rest."""
+    block, declared = RigidBlock(width=0.5, height=3.0), HERE[engine]
+    asked = Scene(block=block, motion=pulse(1.2, 2.0, 1, block), preset=preset)
+    dt_s, resolved = declared.preset(preset).ordinary_step_s(asked), declared.resolution(block)
+    peaks = []
+    for calmest in (1.0, resolved.calmest):
+        world = build(declared, asked)
+        try:
+            within = resolved._replace(calmest=calmest)
+            peaks.append(simulate_world(world, asked, dt_s, Stepping.LANDING, within).peak_ratio)
+        finally:
+            world.close()
+    assert peaks[0] == pytest.approx(peaks[1], rel=max(equal_to(engine, 1e-6), declared.scatter))
 
 
 @pytest.mark.parametrize(("engine", "preset"), in_both_frames(TUNED))
