@@ -50,8 +50,12 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
         axes.set_title(title, fontsize=10)
         alone = [end for end in ends if end.x == targets[0]]
         beyond(axes, alone, -1 if len(alone) < len(ends) else 1)
-        beyond(axes, [end for end in ends if end not in alone])
-        around(axes, steps, np.array([(at.x, at.y) for at in [*steps, *ends]]).reshape(-1, 2), 7.0)
+        last = min((end.x for end in ends), default=0.0)
+        beyond(axes, [end for end in ends if end.x == last and end not in alone])
+        # others go on where these end
+        between = [end for end in ends if end.x not in (targets[0], last)]
+        points = np.array([(at.x, at.y) for at in [*steps, *ends]]).reshape(-1, 2)
+        around(axes, [*steps, *between], points, 7.0)
     drawing.supxlabel("largest error of a peak, kept on every published case", fontsize=10)
     drawing.suptitle(_title(lines, targets), fontsize=11)
     return drawing
