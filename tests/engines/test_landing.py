@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from uses import BLOCK, noise, pulse
+from uses import BLOCK, pulse
 
 from analytic import simulate
 from analytic.block import RigidBlock
@@ -23,8 +23,6 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import FRAMES, Scene, core_engines, run
 from engines.scene import ACCURACIES
-from engines.stepping.landing import NEAR
-from engines.world import ROUNDINGS
 
 
 def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
@@ -247,8 +245,7 @@ def test_mirror(engine: str, aspect: float, frame: str) -> None:
         run(engine, Scene(block=block, motion=replace(motion, amplitude=a), frame=frame)).peak_ratio
         for a in (motion.amplitude, -motion.amplitude)
     )
-    # a rounding of the pivot's height is a velocity in the shortest steps
-    assert there == pytest.approx(back, rel=noise(engine, 5e-3 * NEAR) / ROUNDINGS)
+    assert there == pytest.approx(back, rel=1e-9)
 
 
 @pytest.mark.parametrize("friction", [0.7, 1.0001, 3.0])

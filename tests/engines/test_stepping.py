@@ -127,6 +127,7 @@ def test_a_block_that_cannot_lift_is_asked_seldom(monkeypatch: pytest.MonkeyPatc
     onset, ordinary = math.asin(1.0 / 1.3) / slow.omega, 5e-3 / BLOCK.p
     calm = [step for step in world.steps if step.end_s < onset - ordinary]
     assert len(calm) < 0.16 * onset / ordinary
+    assert max(step.dt_s for step in calm) == pytest.approx(8.0 * ordinary)
     for step in calm:
         left = onset - (step.end_s - step.dt_s)
         assert step.dt_s <= max(left / 32.0, ordinary) * (1.0 + 1e-9)
