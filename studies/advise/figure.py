@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from textwrap import wrap
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -54,8 +53,7 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
         beyond(axes, [end for end in ends if end.x == last and end not in alone])
         # others go on where these end
         between = [end for end in ends if end.x not in (targets[0], last)]
-        points = np.array([(at.x, at.y) for at in [*steps, *ends]]).reshape(-1, 2)
-        around(axes, [*steps, *between], points, 7.0)
+        around(axes, [*steps, *between], 7.0)
     drawing.supxlabel("largest error of a peak, kept on every published case", fontsize=10)
     drawing.suptitle(_title(lines, targets), fontsize=11)
     return drawing

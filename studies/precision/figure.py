@@ -8,7 +8,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analytic.motion import FloatArray
 from engines import ENGINES
 from studies.drawing.labels import Name, around, beside, beyond
 from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style, preset_line
@@ -83,11 +82,10 @@ def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
     sets = table["set"].unique()
     others = table[finite & ~is_engine & (table["set"] == sets[0])]
     first = table[finite & (table["set"] == sets[0])]
-    taken = np.vstack([_along(line) for _, line in first.groupby("method", sort=False)])
     names = [_end(*group) for group in others.groupby("method", sort=False)]
     closed = [name for name in names if style_of(name.text).marker == "*"]
     beyond(panels[0], closed, -1)
-    around(panels[0], [name for name in names if name not in closed], taken)
+    around(panels[0], [name for name in names if name not in closed])
     _name_the_front(panels[0], pareto(first))
     engines = table[finite & is_engine & (table["set"] == sets[-1])]
     ends = [_end(*group) for group in engines.groupby("method", sort=False)]
@@ -97,15 +95,6 @@ def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
         ends = [replace(end, text=engine) for engine, end in best.items()]
         panels[-1].text(0.32, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
     beside(panels[-1], ends)
-
-
-def _along(line: pd.DataFrame) -> FloatArray:
-    """Return points along the line of a method, also between its runs; shape (n, 2)."""
-    runs = np.log(line[["wall_s", "median_error"]].clip(lower=LOWEST).to_numpy(np.float64))
-    places = np.linspace(0.0, len(runs) - 1.0, 12 * len(runs))
-    x, y = (np.interp(places, np.arange(len(runs)), column) for column in runs.T)
-    points: FloatArray = np.exp(np.column_stack([x, y]))
-    return points
 
 
 def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:

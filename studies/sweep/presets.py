@@ -33,7 +33,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(8.6, 5.6), layout="constrained")
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log")
-    names, taken = [], []
+    names = []
     for _, line in table.iterrows():
         style = preset_style(str(line["preset"]))
         ends = [(line["ms"], line["median"]), (line["ms"], line["max"])]
@@ -44,8 +44,6 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         title = ENGINES[str(line["engine"])].title
         words = f"{title} ({lost})" if lost else title
         names.append(Name(words, *ends[1], style.colour))
-        taken += [(x, y * (ends[1][1] / y) ** (k / 8)) for x, y in ends[:1] for k in range(9)]
-        taken += [ends[1]] * 20  # a name rather crosses a bar than a point
     axes.margins(x=0.12, y=0.08)
     axes.set_xlabel("run time of a case  [ms]")
     axes.set_ylabel("error of the largest rotation: median (bar) to largest (dot)")
@@ -54,7 +52,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     axes.set_title(f"{int(table['cases'].max())} cases: errors by engine and by how it is used; "
                    "in brackets, how many outcomes are wrong", fontsize=11)  # fmt: skip
     axes.grid(alpha=0.25)
-    around(axes, names, pd.DataFrame(taken).to_numpy(float), 9.5)
+    around(axes, names, 9.5)
     handles = [
         Line2D([], [], **preset_style(name).points(7.0), label=in_words(name))
         for name in in_order(table["preset"])

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.__main__ import run
 from studies.contact.figure import MATTER, draw_contact
 from studies.drawing.diagrams import ONSETS
-from studies.drawing.labels import spread
+from studies.drawing.labels import Name, around, spread
 from studies.drawing.styles import (
     ENGINE_COLOURS,
     ENGINE_MARKERS,
@@ -110,6 +111,23 @@ def test_names_that_are_too_near_are_moved_apart_alike():
     assert np.diff(moved[:3]) == pytest.approx([0.1, 0.1])
     assert moved[:3].mean() == pytest.approx(np.mean([0.5, 0.5, 0.52]))
     assert moved[3] == 0.9
+
+
+def test_names_keep_clear_of_each_other_of_lines_and_of_words():
+    axes = Figure(figsize=(4.0, 3.0)).subplots()
+    axes.plot([0.0, 1.0], [0.0, 1.0])
+    words = axes.text(0.5, 0.6, "words")
+    places = [(0.4, 0.4), (0.45, 0.4), (0.4, 0.45), (0.5, 0.5)]
+    around(axes, [])
+    around(axes, [Name(f"name {i}", *place, "k") for i, place in enumerate(places)])
+    boxes = [text.get_window_extent() for text in axes.texts if text is not words]
+    assert len(boxes) == len(places)
+    line = axes.transData.transform(np.column_stack([np.linspace(0.0, 1.0, 200)] * 2))
+    for box in boxes:
+        assert not box.overlaps(words.get_window_extent())
+        assert not any(box.overlaps(other) for other in boxes if other is not box)
+        assert not any(box.contains(*point) for point in line)
+        assert axes.get_window_extent().count_contains(box.get_points()) == 2
 
 
 @pytest.mark.parametrize("preset", ["naive", "fixed", "landing", "error-controlled"])
