@@ -29,7 +29,7 @@ from studies.sources.registry import Source
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-BUDGET_S, QUICK_BUDGET_S = 0.2, 0.02
+BUDGET_S, QUICK_BUDGET_S = 0.1, 0.02
 """Time [s] spent at most on timing one case with one setting."""
 
 

@@ -32,7 +32,7 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     """
     engines = list(lines["engine"].unique())
     rows = -(-len(engines) // COLUMNS)
-    drawing = Figure(figsize=(12.4, 3.6 * rows), layout="constrained")
+    drawing = Figure(figsize=(9.4, 2.9 * rows), layout="constrained")
     panels = drawing.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
     for axes, engine in zip(panels, engines, strict=False):
         mine = lines[lines["engine"] == engine]
