@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
+from textalloc import allocate
 
 from analytic.motion import FloatArray
 
@@ -117,8 +118,6 @@ def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """
     if not names:
         return
-    from textalloc import allocate  # takes the three-dimensional axes of matplotlib with it
-
     cast(Figure, axes.figure).draw_without_rendering()  # now the axes are where they will be
     lines = [line.get_transform().transform(np.array(line.get_xydata())) for line in axes.lines]
     words = [text.get_window_extent().corners() for text in axes.texts]

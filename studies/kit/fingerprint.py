@@ -66,10 +66,14 @@ def fingerprint(module: str, root: Path = ROOT) -> str:
 def reached(module: str, root: Path = ROOT) -> dict[str, Code]:
     """Return the modules that the rows of a study depend on, by name, its own among them."""
     found: dict[str, Code] = {}
+    looked_for: set[str] = set()
     pending = [module]
     while pending:
         for name in _with_parents(pending.pop(), root):
-            if name in found or (path := _file(name, root)) is None:
+            if name in looked_for:
+                continue
+            looked_for.add(name)
+            if (path := _file(name, root)) is None:
                 continue
             code = read(name, path)
             if name == module or not code.draws:

@@ -158,7 +158,7 @@ def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
         peaks = rows.pivot(index=keys, columns="width_m", values="peak_ratio")
         outcomes = rows.pivot(index=keys, columns="width_m", values="outcome")
         spread = (peaks.max(axis=1) / peaks.min(axis=1) - 1.0).max()
-        differing = int((outcomes.nunique(axis=1) > 1).sum())
+        differing = int(outcomes.ne(outcomes.iloc[:, 0], axis=0).any(axis=1).sum())
         result.append(
             Finding(
                 f"the left and right panels coincide for {source} (within 1e-6)",
