@@ -15,6 +15,7 @@ from engines.factors import (
 )
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, fall, iterations_for
+from engines.parts.units import Counted
 from engines.scene import Scene
 
 MANUAL_ITERATIONS = 6
@@ -22,7 +23,7 @@ MANUAL_ITERATIONS = 6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Box2DSettings:
+class Box2DSettings(Counted):
     """Settings of Box2D, by default those of its own first example.
 
     Attributes
@@ -78,14 +79,6 @@ class Box2DSettings:
     def iterations_of(self, scene: Scene) -> int:
         """Return how often the solver goes through the contacts."""
         return iterations_for(scene, self.iterations, self.sweeps) or MANUAL_ITERATIONS
-
-    def unit_of(self, scene: Scene) -> float:
-        """Return the units of length in a metre."""
-        return 1.0 if self.units is None else self.units / scene.block.height
-
-    def sunk_of(self, scene: Scene) -> float:
-        """Return how far below the origin the base is, in units of length."""
-        return 0.5 * scene.block.height * self.unit_of(scene) if self.centred else 0.0
 
     def reach_of(self, scene: Scene, dt_s: float) -> float:
         """Return half of the gap, in units of length, up to which the pivot is kept in contact."""

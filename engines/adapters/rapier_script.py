@@ -2,6 +2,7 @@
 
 from engines.adapters.rapier_settings import RapierSettings, parameters
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size
+from engines.parts.units import counted
 from engines.scene import Scene
 from engines.script import Script
 
@@ -11,7 +12,10 @@ def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
     rough = f".friction({float(s.friction)!r})"
     set_ = _parameters(scene, s, dt_s)
     locks, shape = _locks(s), _touching(scene, s)
-    x, y, z = floor_half_size(scene)
+    unit, sunk = s.unit_of(scene), s.sunk_of(scene)
+    x, y, z = counted(floor_half_size(scene), unit)
+    times = "" if unit == 1.0 else f" * {unit!r}"
+    lowered = f".translation({(0.0, 0.0, -sunk)})" if sunk else ""
     return Script(
         imports=("import rapier3d as rapier",),
         settings=(f"parameters.dt = {dt_s!r}", *set_, *locks, *shape, rough),
@@ -27,16 +31,16 @@ def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
             "    return world.rigid_bodies[world.add_body(body, rough)]",
             "",
             "",
-            "base = rapier.RigidBody.kinematic_velocity_based()",
+            f"base = rapier.RigidBody.kinematic_velocity_based(){lowered}",
             f"floor = rapier.Collider.cuboid({x!r}, {y!r}, {z!r}).translation({(0.0, 0.0, -z)})",
             "base = added(base, [floor])",
-            *_beginning(scene),
+            *_beginning(scene, unit, sunk),
             *locks,
             *shape,
             "block = added(body, shapes)",
             "block.recompute_mass_properties_from_colliders(world.colliders)",
         ),
-        step=("world.gravity = pull_x, 0.0, pull_z", "world.step()"),
+        step=(f"world.gravity = pull_x{times}, 0.0, pull_z{times}", "world.step()"),
         pose=(
             "turn = block.rotation",
             "theta, rate = 2.0 * math.atan2(turn.j, turn.w), block.angvel.y",
@@ -59,13 +63,14 @@ def _value(value: object) -> str:
     return f"rapier.FrictionModel.{value}" if isinstance(value, str) else repr(value)
 
 
-def _beginning(scene: Scene) -> tuple[str, ...]:
+def _beginning(scene: Scene, unit: float, sunk: float) -> tuple[str, ...]:
     """Return lines that make a body where and as fast as the block sets out."""
     at = scene.beginning
+    place = at.x * unit, 0.0, at.z * unit - sunk
     lines = (
-        f"body = rapier.RigidBody.dynamic().translation({(at.x, 0.0, at.z)})",
+        f"body = rapier.RigidBody.dynamic().translation({place})",
         f"body = body.rotation({(0.0, at.theta, 0.0)}).angvel({(0.0, at.rate, 0.0)})",
-        f"body = body.linvel({(at.velocity_x, 0.0, at.velocity_z)})",
+        f"body = body.linvel({(at.velocity_x * unit, 0.0, at.velocity_z * unit)})",
     )
     return lines[:1] if at.at_rest else lines
 
@@ -85,15 +90,17 @@ def _locks(s: RapierSettings) -> tuple[str, ...]:
 
 def _touching(scene: Scene, s: RapierSettings) -> tuple[str, ...]:
     """Return lines that give the block its mass, and what touches the base."""
+    unit = s.unit_of(scene)
     if s.geometry == "box":
-        size = ", ".join(map(repr, half_size(scene)))
-        return (f"shapes = [rapier.Collider.cuboid({size}).density({scene.density!r})]",)
+        size = ", ".join(map(repr, counted(half_size(scene), unit)))
+        dense = f".density({scene.density / unit**3!r})"
+        return (f"shapes = [rapier.Collider.cuboid({size}){dense}]",)
     radius = s.corner_radius * scene.block.height
-    places = corner_spheres(scene, radius, planar=s.planar)
+    places = [counted(at, unit) for at in corner_spheres(scene, radius, planar=s.planar)]
     return (
-        f"ball = rapier.Collider.ball({radius!r}).density(0.0)",
+        f"ball = rapier.Collider.ball({radius * unit!r}).density(0.0)",
         f"shapes = [ball.translation(at) for at in {places}]",
-        f"inertia = {scene.inertia}",
+        f"inertia = {tuple(moment * unit**2 for moment in scene.inertia)}",
         f"mass = rapier.MassProperties((0.0, 0.0, 0.0), {scene.mass!r}, inertia)",
         "body = body.additional_mass_properties(mass)",
     )

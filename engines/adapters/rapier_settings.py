@@ -17,6 +17,7 @@ from engines.factors import (
 )
 from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM, iterations_for
+from engines.parts.units import Counted
 from engines.scene import Scene
 
 OVERDAMPED = 1e5
@@ -25,7 +26,7 @@ OVERDAMPED = 1e5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RapierSettings:
+class RapierSettings(Counted):
     """Settings of Rapier, by default its own; None leaves a setting to the library.
 
     Attributes
@@ -61,6 +62,10 @@ class RapierSettings:
         Give each contact a friction of its own instead of one to all four.
     sleeping : bool or None
         Whether a block that has hardly moved for half a second is no longer simulated.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    centred : bool
+        Count heights from where the block's centre is at rest, not from the base.
     corner_radius : float
         Radius of the corner balls over the height. A ball whose centre is rounded to where the
         base's surface is has no normal there, and no contact for a step.
@@ -88,6 +93,8 @@ class RapierSettings:
     warm_starting: float | None = setting(least=0.0, most=1.0)
     coulomb: bool | None = None
     sleeping: bool | None = None
+    units: float | None = setting(above=0.0)
+    centred: bool = False
     corner_radius: float = setting(1e-5, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
@@ -138,6 +145,8 @@ TUNED = RapierSettings(
     recycling=False,
     warm_starting=0.0,
     sleeping=False,
+    units=1.0,
+    centred=True,
 )
 
 LANDING = replace(TUNED, reflection=True)
@@ -179,6 +188,8 @@ FACTORS = (
         ("geometry", "planar"),
         (level("4 corners, free", planar=False), level("planar box", geometry="box")),
     ),
+    factor("units", level("1.5 a height", units=1.5)),
+    factor("centred", name="origin"),
     factor(
         "corner_radius",
         level("H/1000", corner_radius=1e-3),
