@@ -9,7 +9,7 @@ STUDY = Study(
 
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
-about twenty minutes on one core, --quick less than one.""",
+some three minutes on one core, --quick half a minute.""",
     table="contact.csv",
     products=("contact.csv", "variants.csv", "contact.png", "findings.txt"),
     chapters=(
@@ -18,7 +18,7 @@ about twenty minutes on one core, --quick less than one.""",
             question="What does each setting of a contact cost and buy?",
             tables=("variants.csv",),
             full=(*("--engines", "pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier"),),
-            minutes=(0.8, 15.0),
+            minutes=(0.3, 1.5),
             weaker="Fewer cases, and longer steps.",
         ),
     ),

@@ -8,7 +8,7 @@ STUDY = Study(
     help="""Error against run time: every method along its own setting, on the same cases.
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
-resumable. The full study takes some 13 minutes on one core, --quick two.""",
+resumable. The full study takes some eight minutes on one core, --quick one and a half.""",
     table="precision.csv",
     products=(
         "precision.csv",
@@ -26,7 +26,7 @@ resumable. The full study takes some 13 minutes on one core, --quick two.""",
             folder="precision",
             question="Which error does which run time buy, and what does a scene not need?",
             tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
-            minutes=(1.8, 13.0),
+            minutes=(1.4, 8.2),
             weaker="Fewer cases and settings of each method, one timing of each.",
         ),
     ),

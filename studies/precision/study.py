@@ -54,7 +54,7 @@ def command(
     engines
         Names of engines, without a preset.
     quick
-        Fewer cases and settings: some two minutes.
+        Fewer cases and settings: some one and a half minutes.
     time_limit
         Wall-clock time [s] after which one case with one setting is given up.
     """
