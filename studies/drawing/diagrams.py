@@ -34,10 +34,10 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     kappa = conditioning_of(compared)
     ends = np.array([1.0, float(np.fmax(kappa.max(), 10.0))])
     bounds = []
-    for source, rows in compared.groupby("source", sort=False):
-        style = style_of(str(source))
-        axes.plot(kappa[rows.index], rows["error"].abs().clip(lower=LOWEST), **style.points(4.0))
-        bound = float((rows["error"].abs() / kappa[rows.index]).max())
+    largest = (compared["error"].abs() / kappa).groupby(compared["source"]).max()
+    for source, bound in largest.sort_values(ascending=False, na_position="first").items():
+        style, rows = style_of(str(source)), compared[compared["source"] == source]
+        axes.plot(kappa[rows.index], rows["error"].abs().clip(lower=LOWEST), **style.points(3.0))
         if math.isnan(bound):
             continue
         axes.plot(ends, bound * ends, color=style.colour, linewidth=1.0, zorder=-1)
@@ -46,7 +46,9 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     axes.set(xscale="log", yscale="log", xlim=(0.8, 1.2 * ends[1]))
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln $a_p$| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
-    if not bounds:
+    if bounds:
+        axes.set_title("What an engine errs by grows with the sensitivity κ of the peak")
+    else:
         axes.set(title="no case that both survive", ylim=(LOWEST, 1.0))
     axes.grid(alpha=0.25)
     beside(axes, bounds, 9.0)
