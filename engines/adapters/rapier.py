@@ -23,7 +23,7 @@ from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size
+from engines.parts.shapes import corner_spheres, half_size
 from engines.parts.units import counted
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
@@ -109,7 +109,7 @@ class RapierWorld:
             self._parameters.static_contact_softness = softness
 
     def _add_base(self, scene: Scene) -> Any:
-        rapier, (x, y, z) = self._rapier, counted(floor_half_size(scene), self._unit)
+        rapier, (x, y, z) = self._rapier, counted(self._s.base_half_size(scene), self._unit)
         floor = rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
         body = rapier.RigidBody.kinematic_velocity_based().translation((0.0, 0.0, -self._sunk))
         return self._add(body, [floor])

@@ -1,7 +1,7 @@
 """A scene in Rapier's own words, for a script that needs the library alone."""
 
 from engines.adapters.rapier_settings import RapierSettings, parameters
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size
+from engines.parts.shapes import corner_spheres, half_size
 from engines.parts.units import counted
 from engines.scene import Scene
 from engines.script import Script
@@ -13,7 +13,7 @@ def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
     set_ = _parameters(scene, s, dt_s)
     locks, shape = _locks(s), _touching(scene, s)
     unit, sunk = s.unit_of(scene), s.sunk_of(scene)
-    x, y, z = counted(floor_half_size(scene), unit)
+    x, y, z = counted(s.base_half_size(scene), unit)
     times = "" if unit == 1.0 else f" * {unit!r}"
     lowered = f".translation({(0.0, 0.0, -sunk)})" if sunk else ""
     return Script(

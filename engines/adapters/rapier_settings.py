@@ -16,7 +16,7 @@ from engines.factors import (
     level,
 )
 from engines.parts.settings import check, given, setting
-from engines.parts.shapes import NO_JAM, iterations_for
+from engines.parts.shapes import NO_JAM, Point, floor_half_size, iterations_for
 from engines.parts.units import Counted
 from engines.scene import Scene
 
@@ -66,9 +66,12 @@ class RapierSettings(Counted):
         Units of length in the height of the block; None counts in metres.
     centred : bool
         Count heights from where the block's centre is at rest, not from the base.
+    base_depth : float
+        Half the depth of the base over the height of the block. Contacts are looked for from the
+        middle of the base: the deeper that is, the more coarsely.
     corner_radius : float
-        Radius of the corner balls over the height. A ball whose centre is rounded to where the
-        base's surface is has no normal there, and no contact for a step.
+        Radius of the corner balls over the height. On a base that is deep, a ball whose centre is
+        rounded to where the surface is has no normal there, and no contact for a step.
     reflection : bool
         Give the sliding velocity of the corner about which the block turns back to it, by the
         velocity of the base; not in the steps of an impact.
@@ -95,6 +98,7 @@ class RapierSettings(Counted):
     sleeping: bool | None = None
     units: float | None = setting(above=0.0)
     centred: bool = False
+    base_depth: float = setting(1.0, above=0.0)
     corner_radius: float = setting(1e-5, above=0.0)
     reflection: bool = False
     base_velocity: bool = True
@@ -106,6 +110,11 @@ class RapierSettings(Counted):
     def iterations_of(self, scene: Scene) -> int | None:
         """Return how often the solver goes through the contacts; None leaves that to it."""
         return iterations_for(scene, self.iterations, self.sweeps)
+
+    def base_half_size(self, scene: Scene) -> Point:
+        """Return half of the size [m] of the base along x, y and z."""
+        x, y, z = floor_half_size(scene)
+        return x, y, self.base_depth * z
 
     def spring_of(self, dt_s: float) -> tuple[float, float] | None:
         """Return a contact's frequency [Hz] and damping ratio; None leaves both to the library.
@@ -139,7 +148,7 @@ TUNED = RapierSettings(
     planar=True,
     friction=NO_JAM,
     substeps=1,
-    sweeps=20.0,
+    sweeps=10.0,
     stabilization=0,
     correction=10.0,
     recycling=False,
@@ -147,6 +156,7 @@ TUNED = RapierSettings(
     sleeping=False,
     units=1.0,
     centred=True,
+    base_depth=0.1,
 )
 
 LANDING = replace(TUNED, reflection=True)
@@ -190,10 +200,21 @@ FACTORS = (
     ),
     factor("units", level("1.5 a height", units=1.5)),
     factor("centred", name="origin"),
+    Factor(
+        "depth of the base",
+        ("base_depth", "corner_radius"),
+        (
+            level("1 H", base_depth=1.0),
+            level(
+                "1 H, corners of 1e-7 H", trap=WITHOUT_NORMAL, base_depth=1.0, corner_radius=1e-7
+            ),
+        ),
+        by_default=False,
+    ),
     factor(
         "corner_radius",
         level("H/1000", corner_radius=1e-3),
-        level("1e-7 H", corner_radius=1e-7, trap=WITHOUT_NORMAL),
+        level("1e-7 H", corner_radius=1e-7),
     ),
     MOVING_BASE,
 )
