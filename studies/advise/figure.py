@@ -22,7 +22,7 @@ WORDS = {
 """Preset -> what it is called in the title."""
 LETTERS = 88
 """In a line of the title."""
-BEFORE, AFTER, EDGE = 0.9, 1.3, 0.1
+BEFORE, AFTER, EDGE = 0.9, 1.3, 0.25
 """Room for names before and after the points of a panel, and for none, over that of the points."""
 
 
