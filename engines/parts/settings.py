@@ -7,6 +7,7 @@ a setting to the library.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from numbers import Real
 from typing import Any
 
 from engines.scene import one_of
@@ -29,10 +30,11 @@ class Allowed:
         """Raise ValueError unless `value` is allowed."""
         if self.names:
             one_of(name, value, self.names)
-        elif self._bounded and not (
-            value > self.above and self.least <= value <= self.most and math.isfinite(value)
-        ):
+        elif self._bounded and not (isinstance(value, Real) and self._holds(float(value))):
             raise ValueError(f"{name} is {value!r}; it must be {self._words()}")
+
+    def _holds(self, value: float) -> bool:
+        return value > self.above and self.least <= value <= self.most and math.isfinite(value)
 
     @property
     def _bounded(self) -> bool:

@@ -101,6 +101,7 @@ def test_a_variant_differs_from_its_preset():
         ),
         (MujocoSettings, {"integrator": "Heun"}, "integrator is 'Heun'; it must be one of Euler"),
         (MujocoSettings, {"margin": -1.0}, "margin is -1.0; it must be 0 or more"),
+        (MujocoSettings, {"margin": "wide"}, "margin is 'wide'; it must be 0 or more"),
         (MujocoSettings, {"noslip_iterations": -1}, "noslip_iterations is -1; it must be 0"),
         (MUJOCO_TUNED, {"solref": (2.0, 1.0)}, "solref is .* it must be None"),
         (MUJOCO_TUNED, {"impedance": None}, "impedance is None"),
