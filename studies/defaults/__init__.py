@@ -18,7 +18,7 @@ resumable. The full study takes some three minutes on two cores, --quick seconds
             question="Where on the map of pulses do engines go wrong as they come?",
             tables=("parts.csv",),
             full=("--sources", "exact", "engines:naive"),
-            minutes=(0.2, 3.5),
+            minutes=(0.1, 3.5),
             weaker="One H/B, full sines and fewer pulses.",
         ),
     ),

@@ -47,7 +47,7 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     axes.set_xlabel("κ, the larger of |∂ln θmax/∂ln $a_p$| and |∂ln θmax/∂ln η|  [–]")
     axes.set_ylabel("relative error of the peak  [–]")
     if bounds:
-        axes.set_title("What an engine errs by grows with the sensitivity κ of the peak")
+        axes.set_title("Errors of the peak grow with its sensitivity κ")
     else:
         axes.set(title="no case that both survive", ylim=(LOWEST, 1.0))
     axes.grid(alpha=0.25)

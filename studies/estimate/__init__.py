@@ -24,7 +24,7 @@ estimates.csv, factors.csv, estimate.png and findings.txt; resumable.""",
             question="How far off is an answer, where there is no exact one?",
             tables=("factors.csv",),
             quick=("--cases", "20"),
-            minutes=(0.7, 4.0),
+            minutes=(0.3, 4.0),
         ),
     ),
 )

@@ -17,7 +17,7 @@ at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt.
         Chapter(
             folder="harmonic",
             question="Which steady states does a block settle on under sustained shaking?",
-            minutes=(0.3, 1.5),
+            minutes=(0.1, 1.5),
             weaker="Fewer frequencies.",
         ),
     ),

@@ -19,7 +19,7 @@ literature.csv, agreement.csv, literature.png and findings.txt; resumable. Less 
             question="Do the numbers printed in the literature come out?",
             tables=("agreement.csv",),
             quick=(),
-            minutes=(0.5, 0.5),
+            minutes=(0.1, 0.5),
         ),
     ),
     captions={

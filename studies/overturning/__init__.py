@@ -31,7 +31,7 @@ resumable. The full study takes about two minutes on one core, --quick a quarter
             folder="overturning",
             question="Which pulses overturn a block, and who draws that map wrongly?",
             tables=("differences.csv", "checks.csv"),
-            minutes=(0.5, 5.0),
+            minutes=(0.1, 5.0),
             weaker="A coarser map, 64 cells for each engine, and one place on each edge.",
         ),
     ),

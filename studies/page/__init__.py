@@ -7,7 +7,7 @@ REPORT = Study(
     module="studies.page.report",
     help="""Every study, and one self-contained page (report.html) about them.
 
-The quick studies take some eight minutes on two cores, the full ones an hour. A report that
+The quick studies take some five minutes on two cores, the full ones an hour. A report that
 was interrupted goes on where it stopped when the same command is given again.""",
 )
 README = Study(

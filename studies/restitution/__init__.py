@@ -37,7 +37,7 @@ minute.""",
             question="Which setting gives which coefficient of restitution?",
             tables=("kept.csv", "struck.csv"),
             quick=(),
-            minutes=(0.2, 0.2),
+            minutes=(0.4, 0.2),
         ),
     ),
 )

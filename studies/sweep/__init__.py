@@ -32,7 +32,7 @@ once: a run that was interrupted goes on where it stopped when the same command 
             question="Do the engines and the linearizations get the paper's 960 cases right?",
             tables=("summary.csv",),
             quick=("--accuracy", "loose"),
-            minutes=(0.3, 0.6),
+            minutes=(0.1, 0.6),
             weaker=(
                 "The engines step at the accuracy loose instead of standard, and err more for it."
             ),
@@ -47,7 +47,7 @@ once: a run that was interrupted goes on where it stopped when the same command 
                 *("--sources", "exact", "engines:naive", "core:fixed"),
                 *("pymunk:fixed", "box2d:fixed", "engines"),
             ),
-            minutes=(0.2, 3.0),
+            minutes=(0.1, 3.0),
             weaker=(
                 "Figure 8 stands for all four, and no preset with a tuned contact and a fixed "
                 "step is asked."

@@ -24,7 +24,7 @@ quarter of one.""",
         Chapter(
             folder="validity",
             question="Where is the reference itself valid, and what do engines do beyond?",
-            minutes=(0.5, 3.0),
+            minutes=(0.1, 3.0),
             weaker="Every other case of the engines, and fewer frictions.",
         ),
     ),

@@ -66,8 +66,9 @@ def test_unlike_sources_give_the_same_outcome_and_peak(source, case):
     band = ERROR_OVER_CONDITION[source] * condition(record)
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=band)
     if found.uplifts:
-        # a block at rest rises where the record passes the onset; in an engine, whose steps near it
-        # are of 1/200, a corner that hardly bears anything may be off: measured, -0.6 to 0.08 %
-        assert found.uplifts == pytest.approx(list(exact.uplifts), abs=DT)
+        # a block at rest rises where the record passes the onset, and an engine sees it within a
+        # step; where the record passes slowly, a corner that bears next to nothing may be off
+        late = np.subtract(found.uplifts, exact.uplifts)
         loads = np.abs(record.acceleration(np.array(found.uplifts))) / ONSET
-        assert loads == pytest.approx(1.0, abs=1e-2)
+        assert np.all((np.abs(late) < 1.0 / (200.0 * BLOCK.p)) | (np.abs(loads - 1.0) < 3e-3))
+        assert np.all((np.abs(late) < DT) & (np.abs(loads - 1.0) < 1e-2))
