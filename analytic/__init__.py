@@ -5,8 +5,8 @@ block about its corner O, and a positive ground acceleration drives it to theta 
 are ground times, from the start of the base motion.
 """
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock, housner_restitution
-from analytic.conditioning import condition_numbers, conditioning
+from analytic.block import GRAVITY, RigidBlock, housner_restitution
+from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse, Still
@@ -17,8 +17,8 @@ from analytic.steppers import integrate
 from analytic.synthetic import kanai_tajimi, near_fault, ricker
 
 __all__ = [
+    "GRAVITY",
     "MODELS",
-    "STANDARD_GRAVITY",
     "History",
     "Impact",
     "Modes",
@@ -38,5 +38,7 @@ __all__ = [
     "overturning_modes",
     "peak_ratios",
     "ricker",
+    "sensitivities",
+    "sensitivity",
     "simulate",
 ]

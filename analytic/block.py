@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from analytic.checks import LEAST, measurable
 
-STANDARD_GRAVITY = 9.81
-"""Gravity [m/s2] used throughout the study."""
+GRAVITY = 9.81
+"""g [m/s2] of every block, amplitude and record: rounded, not the standard gravity of 9.80665."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class RigidBlock:
 
     width: float
     height: float
-    gravity: float = STANDARD_GRAVITY
+    gravity: float = GRAVITY
     restitution: float = math.nan
 
     def __post_init__(self) -> None:

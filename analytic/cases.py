@@ -101,6 +101,14 @@ def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
         eta[i] = max(compiled_restitution(alpha[i]), 0.0)
 
 
+def housner_restitutions(alpha: ArrayLike) -> FloatArray:
+    """Return what a case has without a restitution of its own, in the shape of the slenderness."""
+    slender = np.array(alpha, dtype=np.float64)
+    found = np.empty(slender.size)
+    fill_restitution(slender.ravel(), found)
+    return found.reshape(slender.shape)
+
+
 @inner
 def law_of(linear: bool, constants: FloatArray, eta: float) -> Law:
     """Return the law of a case from a column of the constants."""

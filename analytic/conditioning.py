@@ -1,18 +1,22 @@
-"""How far small errors move a peak: condition numbers, carried along with the solution.
+"""How far small errors move a peak: condition numbers, and what errors of a finite size do.
 
 The derivatives of a response by ln(a_p) and by ln(eta) obey the equation of motion linearized
 about it. They start from zero, and again at each uplift, where the block is at rest, jump with the
 velocity at each impact, whose time moves too, and end in the derivative of the peak.
+
+A derivative sees no uplift that comes or goes beside it. So near the onset, and near overturning,
+the peak is solved again with both moved by a little.
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import RigidBlock
-from analytic.cases import law_of, pose, write_pulse
+from analytic.cases import housner_restitutions, law_of, pose, write_pulse
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import kernel
 from analytic.kernels.excursions import (
@@ -31,13 +35,16 @@ from analytic.kernels.rest import acceleration, ground, segment_at
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
-from analytic.simulate import scaled_segments
+from analytic.response import Outcome
+from analytic.simulate import OUTCOMES, peak_ratios, scaled_segments
 from analytic.start import REST, folded
 
 AMPLITUDE, RESTITUTION = 0, 1
 """Rows of the derivatives: by ln(a_p), by ln(eta)."""
 RATE = 1
 """Column of the derivative of the velocity, beside that of the rotation."""
+MOVES = (-1e-4, 1e-4, -1e-6, 1e-6)
+"""Relative changes of the motion's scale, and of eta, that a `sensitivity` is found with."""
 
 
 class Conditioning(NamedTuple):
@@ -88,6 +95,72 @@ def conditioning(
     begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
     found = condition(law, accuracy(TOLERANCE), segments, begin, workspace())
     return float(found[AMPLITUDE]), float(found[RESTITUTION])
+
+
+def sensitivities(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str | Model = "exact",
+    restitution: ArrayLike | None = None,
+) -> FloatArray:
+    """Return how far the peaks that `peak_ratios` returns move with small, but finite errors.
+
+    Parameters and errors are those of `peak_ratios`.
+
+    Returns
+    -------
+    ndarray
+        The largest abs(peak/peak_0 - 1)/abs(move) in the broadcast shape, over the `MOVES` of a_p
+        and of eta, which stays at most 1; inf where a move changes the outcome, 0 where the block
+        overturns or stays at rest with all of them, nan where a solution fails.
+    """
+    eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution)
+
+    def solve(stronger: float, livelier: float) -> tuple[FloatArray, NDArray[np.object_]]:
+        scaled = stronger * np.asarray(amplitude_g)
+        return peak_ratios(
+            alpha, scaled, omega_over_p, half_cycles, model, np.fmin(livelier * eta, 1.0)
+        )
+
+    return _largest_move(solve)
+
+
+def sensitivity(
+    block: RigidBlock,
+    motion: Motion,
+    model: str | Model = "exact",
+    start: tuple[float, float] = REST,
+) -> float:
+    """Return what `sensitivities` does, of one peak; the start is the same for all moves."""
+    law = find_model(model).law(block.alpha, block.restitution)
+    begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
+    notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
+
+    def solve(stronger: float, livelier: float) -> tuple[float, Outcome]:
+        scaled = segments * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
+        moved = law._replace(eta=min(livelier * law.eta, 1.0))
+        end = march(moved, accuracy(TOLERANCE), scaled, begin, 0.0, notes, workspace())
+        return end.peak, OUTCOMES[end.outcome]
+
+    return float(_largest_move(solve))
+
+
+def _largest_move(solve: Callable[[float, float], tuple[Any, Any]]) -> FloatArray:
+    """Return a sensitivity from what gives peak and outcome by the scales of motion and eta."""
+    still, outcome = solve(1.0, 1.0)
+    largest = np.zeros(np.shape(still))
+    for move in MOVES:
+        for scales in ((1.0 + move, 1.0), (1.0, 1.0 + move)):
+            peak, other = solve(*scales)
+            with np.errstate(all="ignore"):
+                change = np.abs(np.divide(peak, still) - 1.0) / abs(move)
+            change = np.where(outcome == Outcome.ROCKED, change, 0.0)
+            change = np.where(other == outcome, change, math.inf)
+            failed = (outcome == Outcome.FAILED) | (other == Outcome.FAILED)
+            largest = np.maximum(largest, np.where(failed, math.nan, change))
+    return largest
 
 
 @kernel

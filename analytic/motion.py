@@ -7,7 +7,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.block import STANDARD_GRAVITY
+from analytic.block import GRAVITY
 from analytic.checks import finite, finite_result, measurable, whole_half_cycles
 from analytic.kernels.law import FloatArray as FloatArray
 
@@ -91,7 +91,7 @@ class SinePulse:
         omega: float,
         half_cycles: int = 1,
         phase: float = 0.0,
-        gravity: float = STANDARD_GRAVITY,
+        gravity: float = GRAVITY,
     ) -> "SinePulse":
         """Return the pulse whose amplitude is given in units of `gravity` [m/s2]."""
         return cls(amplitude=amplitude * gravity, omega=omega, half_cycles=half_cycles, phase=phase)

@@ -34,7 +34,7 @@ class Reason(enum.Enum):
     """Why there is no usable result; the value is the sentence that a reader sees."""
 
     DIVERGED = "the state is not finite"
-    SANK = "the pivot sank into the base"
+    SANK = "the block sank through the base"
     THROWN = "the block was thrown off the base"
     SLID = "the pivot slid away along the base"
     UNDECIDED = "not decided within the limits of time and steps"
@@ -112,7 +112,8 @@ class Response:
         Present when samples were asked for.
     min_normal, friction_needed : float
         Smallest normal force over weight, and largest abs(horizontal)/normal force, that the
-        no-lift-off, no-slip reference needs; nan where a source does not report them.
+        no-lift-off, no-slip reference needs, of a block that overturns until it passes the critical
+        rotation for good; nan where a source does not report them.
     slip_m : float
         Largest distance [m] that an engine's contact slid; nan for the reference.
     sink_m : float

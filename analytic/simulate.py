@@ -23,6 +23,7 @@ from analytic.kernels.excursions import (
     march,
     workspace,
 )
+from analytic.kernels.forces import NOTHING_YET
 from analytic.kernels.law import UPRIGHT
 from analytic.kernels.rest import strongest_between
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
@@ -148,7 +149,7 @@ def as_response(
     log = np.empty((1024, 4))
     began = time.perf_counter()
     while True:
-        limits = np.array([1.0, 0.0]) if watched else np.empty(0)
+        limits = np.array(NOTHING_YET) if watched else np.empty(0)
         notes = Notes(sampled * block.p, samples, log, limits)
         end = solve(notes)
         if end.events <= len(log):

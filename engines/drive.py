@@ -1,9 +1,9 @@
 """One run: build the scene, take the steps, look on, and answer."""
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
+from time import perf_counter
 from typing import cast
 
 from analytic.response import Problem, Reason, Response
@@ -50,14 +50,14 @@ def run(engine: str, scene: Scene) -> Response:
     ValueError
         If the engine is unknown, or a preset or setting is not one of the engine's.
     """
-    began = time.perf_counter()
+    began = perf_counter()
     asked = find(engine)
     preset = asked.preset(scene.preset)
     try:
         world = build(asked, scene)
     except NotAvailableError as error:
         return Response.failure(str(error), reason=Reason.UNAVAILABLE)
-    built = time.perf_counter()
+    built = perf_counter()
     try:
         response = simulate_world(
             world,
@@ -107,16 +107,16 @@ def simulate_world(
     go = go or Walk(look, world, stepping).go
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
     steps, problem = 0, None
-    started = time.perf_counter()
+    started = perf_counter()
     while look.goes_on and not problem:
         look.make_room(LOOK_AROUND)
         steps += go(min(LOOK_AROUND, scene.max_steps - steps))
         if look.goes_on:
-            late = time.perf_counter() - started > limit
+            late = perf_counter() - started > limit
             problem = _fault(world) or (_undecided(f"{limit:g} s") if late else None)
             if steps >= scene.max_steps:
                 problem = problem or _undecided(f"{steps} steps")
-    wall_s = time.perf_counter() - started
+    wall_s = perf_counter() - started
     problem = _fault(world) or look.problem or problem
     if problem:
         reason, message = problem
@@ -177,7 +177,7 @@ class Walk:
 def _fault(world: World) -> Problem | None:
     """Return what the engine says has gone wrong."""
     message = world.fault()
-    return Problem(Reason.FAULT, message) if message else None
+    return Problem(Reason.FAULT, f"{message}") if message else None
 
 
 def _undecided(limit: str) -> Problem:
@@ -188,7 +188,14 @@ def _taker(world: World, stepping: Stepping) -> Callable[[Step], int]:
     """Return how a world takes a step; the answer is how many it took."""
     if stepping is Stepping.OWN:
         own = cast(SelfSteppingWorld, world)
-        return lambda step: own.advance(step.end_s)
+
+        def advance(step: Step) -> int:
+            taken = own.advance(step.end_s)
+            if taken < 0:
+                raise ValueError(f"the engine says that it took {taken} steps")
+            return taken
+
+        return advance
     stepped = cast(SteppedWorld, world)
 
     def take(step: Step) -> int:

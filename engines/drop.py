@@ -10,6 +10,9 @@ from analytic.checks import positive
 AHEAD = 20
 """Whole steps from the start to the step of the impact."""
 
+SHOWN = 0.6
+"""The coefficient for which settings are quoted."""
+
 PATIENCE_S, PATIENCE_STEPS = 0.1, 100
 """Time [s] and steps within which a sphere must come off the base again; else it does not."""
 

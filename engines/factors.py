@@ -119,5 +119,23 @@ MOVING_BASE = Factor(
 )
 """The base that moves in the world, or is moved by position alone (setting `base_velocity`)."""
 
+ASLEEP = Factor(
+    "sleeping",
+    ("sleeping",),
+    (
+        Level(
+            name="on",
+            settings={"sleeping": True},
+            presets=(DEFAULT,),
+            trap="a block asleep: gravity that turns wakes nothing",
+        ),
+    ),
+    by_default=False,
+)
+"""A block that was put to sleep, which the presets forbid (setting `sleeping`)."""
+
+SLEEP = (DEFAULT, ASLEEP.name, ASLEEP.levels[0].name)
+"""What a rule about it is shown by."""
+
 UNMOVED_BASE = (BEST, MOVING_BASE.name, MOVING_BASE.levels[1].name)
 """What a rule about such a base is shown by."""

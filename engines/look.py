@@ -18,13 +18,12 @@ from engines.scene import Scene
 from engines.stepping.ground import rows_of
 from engines.stepping.steps import Pace, begin_pace, next_step
 from engines.stepping.timetable import timetable
+from engines.watching.answer import problem_of, response_of
 from engines.watching.history import sample
 from engines.watching.observe import (
     EVENTS_A_LOOK,
     Watch,
     begin_watch,
-    problem_of,
-    response_of,
     see,
 )
 from engines.watching.swing import Row

@@ -1,5 +1,6 @@
 """Every engine by its name: the project's own, and those of other packages."""
 
+import inspect
 import os
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -26,6 +27,10 @@ OWN = {
     "newton": "engines.adapters.newton:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
+
+
+class UnloadableError(OSError, ValueError):
+    """An engine that stands nowhere; the message is one line that says why."""
 
 
 class Engines(Mapping[str, Engine]):
@@ -75,8 +80,8 @@ def announce(place: str) -> str:
     if not (module and attribute) or any(mark in place for mark in "= \t\n"):
         raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
     found = _found(place, EntryPoint(module, place, GROUP))
-    if not (isinstance(found, Engine) or callable(found)):
-        raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
+    if not isinstance(found, Engine):
+        _refuse_other_than_builder(place, found)
     name = found.name if isinstance(found, Engine) else module.rpartition(".")[2]
     if name in ENGINES:
         raise ValueError(f"engine {place!r} is called {name!r}, as another is")
@@ -86,11 +91,28 @@ def announce(place: str) -> str:
     return name
 
 
+def _refuse_other_than_builder(place: str, found: object) -> None:
+    if not callable(found) or inspect.isbuiltin(found):
+        raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
+    try:
+        taken = inspect.signature(found)
+    except ValueError:
+        return  # what is compiled may not say what it takes
+    try:
+        taken.bind("scene", "settings", "dt_s")
+    except TypeError:
+        words = f"it takes {taken}, and what builds a world takes (scene, settings, dt_s)"
+        raise ValueError(f"engine {place!r} is none; {words}") from None
+
+
 def _found(name: str, place: EntryPoint) -> object:
     try:
         return place.load()
-    except Exception as error:  # it is anybody's code
-        raise ValueError(f"engine {name!r} cannot be loaded from {place.value}: {error}") from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # it is anybody's code
+        words = f"cannot be loaded from {place.value}: {str(error) or type(error).__name__}"
+        raise UnloadableError(f"engine {name!r} {words}") from error
 
 
 @cache
@@ -104,9 +126,9 @@ def _declared(name: str, place: EntryPoint) -> Engine:
     """
     found = _found(name, place)
     if callable(found) and place in _further():
-        return undeclared(name, found)
+        return undeclared(name, found, place.module.partition(".")[0])
     if not isinstance(found, Engine) or found.name != name:
-        raise ValueError(f"engine {name!r}: {place.value} is no declaration of that name")
+        raise UnloadableError(f"engine {name!r}: {place.value} is no declaration of that name")
     return found
 
 

@@ -21,7 +21,8 @@ class Script:
         What the preset sets, in the library's words, a line each: calls with their numbers, or
         parts of a model. They are what a reader would copy.
     build : tuple of str
-        Lines that build the scene, the settings among them where they are calls.
+        Lines that build the scene, the settings among them where they are calls; `HERE` is the
+        folder of the script, a Path.
     step : tuple of str
         Lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2].
     pose : tuple of str

@@ -23,14 +23,14 @@ class PlainSettings:
         check(self)
 
 
-def undeclared(name: str, build: Callable[[Scene, Any, float], World]) -> Engine:
+def undeclared(name: str, build: Callable[[Scene, Any, float], World], library: str) -> Engine:
     """Return an engine that is used as it is built, with equal steps and with ones that land."""
     return Engine(
         name=name,
         title=name,
-        library=build.__module__.partition(".")[0],
+        library=library,
         packages=(),
-        install=build.__module__.partition(".")[0],
+        install=library,
         build=build,
         presets=(
             Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=FIXED_STEP),

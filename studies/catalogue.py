@@ -43,6 +43,7 @@ STUDIES: tuple[Study, ...] = (
     harmonic.STUDY,
     literature.STUDY,
     validate.STUDY,
+    advise.STEPS,
     estimate.STUDY,
     precision.STUDY,
     precision.COST,
@@ -65,6 +66,7 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 """Every study's places in a report, in its order."""
 
 if TYPE_CHECKING:
+    from studies.advise import steps as _steps
     from studies.advise import study as _advise
     from studies.contact import study as _contact
     from studies.defaults import study as _defaults
@@ -91,6 +93,6 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _defaults, _estimate, _symptoms, _restitution, _score, _versions),
+        *(_advise, _steps, _defaults, _estimate, _symptoms, _restitution, _score, _versions),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
     )

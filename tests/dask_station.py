@@ -34,6 +34,14 @@ def hangs(block, motion, *, duration, times):
     time.sleep(60.0)
 
 
+def lasts(block, motion, *, duration, times, note):
+    """Start somebody, and wait for nobody; neither listens to a SIGTERM."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    child = subprocess.Popen(["sleep", "1000"], start_new_session=True)
+    Path(note).write_text(f"{os.getpid()} {child.pid}\n")
+    time.sleep(1000.0)
+
+
 def slow(block, motion, *, duration, times):
     time.sleep(0.05)
     return simulate(block, motion, duration=duration, times=times)

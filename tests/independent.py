@@ -39,7 +39,9 @@ def first_uplift(block, pulse, onset):
     return (t if t < pulse.duration else math.inf), -int(math.copysign(1, pulse.amplitude * ahead))
 
 
-def peak_and_impacts(model, block, pulse, after=15.0, rtol=1e-12, start=(0.0, 0.0)):
+def peak_and_impacts(
+    model, block, pulse, after=15.0, rtol=1e-12, start=(0.0, 0.0), most=MOST_IMPACTS
+):
     """Return (peak/alpha or inf, impact times) up to `after`/p past the pulse.
 
     A block tilted at the start turns about the corner that it stands on, an upright one about that
@@ -87,7 +89,7 @@ def peak_and_impacts(model, block, pulse, after=15.0, rtol=1e-12, start=(0.0, 0.
                 continue
             impacts.append(t)
             s, state = -s, [0.0, block.restitution * path.y[1, -1]]
-            if len(impacts) == MOST_IMPACTS:
+            if len(impacts) == most:
                 return (peak / block.alpha if t > pulse.duration else None), impacts
     return (math.inf if abs(state[0]) > saddle else peak / block.alpha), impacts
 

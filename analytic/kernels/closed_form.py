@@ -118,10 +118,17 @@ def free_peak(law: Law, y: float, v: float) -> float:
 
     From (y, v) at the end of the ground motion; an inward motion passes through one impact.
     """
-    work = 0.5 * v * v + work_to(law, y)
-    barrier = work_to(law, law.saddle)
-    if y >= law.saddle and (v >= 0.0 or work <= barrier):
+    if is_lost(law, y, v):
         return math.inf
+    work = 0.5 * v * v + work_to(law, y)
     if v < 0.0:
         work *= law.eta * law.eta
     return turning_rotation(law, work)
+
+
+@inner
+def is_lost(law: Law, y: float, v: float) -> bool:
+    """Say whether a free block in the state (y, v) has passed the saddle for good."""
+    if y < law.saddle:
+        return False
+    return v >= 0.0 or 0.5 * v * v + work_to(law, y) <= work_to(law, law.saddle)

@@ -60,6 +60,12 @@ def kept_in(sources: Path = SOURCES) -> Path | None:
     return folder_for(sources, places(sources))
 
 
+def are_compiled(sources: Path = SOURCES) -> bool:
+    """Return whether any kernel in a folder was compiled before, by this process or another one."""
+    folder = kept_in(sources)
+    return folder is not None and any(folder.rglob("*.nbi"))
+
+
 def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
     """Return a folder in the first of these places that can be written, for these sources alone.
 

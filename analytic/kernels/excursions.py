@@ -12,7 +12,14 @@ import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.compiled import inner, kernel
-from analytic.kernels.forces import watch_free, watch_rest, watch_step, watch_train
+from analytic.kernels.forces import (
+    forget_fall,
+    watch_free,
+    watch_rest,
+    watch_step,
+    watch_to_passing,
+    watch_train,
+)
 from analytic.kernels.law import FloatArray, Law, Start, State
 from analytic.kernels.polynomial import (
     MAX_DEPTH,
@@ -63,8 +70,8 @@ class Notes(NamedTuple):
 
     times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
     (capacity, 4): kind, time, velocity before, velocity after; of an uplift the lead, and of a
-    start off rest the rotation, in place of the velocity before. limits (2,): smallest normal
-    force over weight, largest friction ratio.
+    start off rest the rotation, in place of the velocity before. limits (4,): the contact
+    forces, as in `analytic.kernels.forces`.
     """
 
     times: FloatArray
@@ -321,9 +328,13 @@ def follow(
             return End(BROKEN, peak, steps, impacts, events, tau)
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
         if watched:
+            if step.y >= law.alpha:
+                watch_to_passing(notes.limits, law, accuracy.order, step.h, step.x, work)
             watch_step(notes.limits, accuracy.order, step.h, step.x, work)
         tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
         if step.kind == FALLEN:
+            if watched:
+                forget_fall(notes.limits)
             return End(OVERTURNED, peak, steps, impacts, events, tau)
         if step.kind == HIT:
             impacts += 1

@@ -1,16 +1,23 @@
 """Contact forces of the exact model: where the reference stops being valid, they show it.
 
 A negative normal force means that the pivot lifts off; friction below the ratio of the horizontal
-to the normal force means that it slides.
+to the normal force means that it slides. Of a block that overturns the forces count until it passes
+the critical rotation for good: those of its fall decide nothing.
+
+`limits` (4,) holds the smallest normal force and the largest friction ratio so far, and what the
+two were when the block last passed the critical rotation.
 """
 
 import math
 
-from analytic.kernels.closed_form import turning_rotation, work_to
+from analytic.kernels.closed_form import is_lost, turning_rotation, work_to
 from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law
-from analytic.kernels.polynomial import highest, value
+from analytic.kernels.polynomial import highest, next_root, value
 from analytic.kernels.rest import acceleration, strongest_between
+
+NOTHING_YET = (1.0, 0.0, 1.0, 0.0)
+"""Limits before the first state, of a block at rest on a base at rest."""
 
 MOST_REFINEMENTS = 30
 REFINED = 1e-14
@@ -60,6 +67,36 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
     watch(limits, law, -side, a, 0.0, law.eta * v)
     watch(limits, law, side, a, 0.0, 0.0)
     watch(limits, law, -side, a, 0.0, 0.0)
+
+
+@inner
+def watch_to_passing(
+    limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray
+) -> None:
+    """Watch a step that ends beyond the critical rotation until it passes that, if it does.
+
+    The arguments are those of `watch_step`, which is to watch the whole step afterwards.
+    """
+    beyond, spare = work[5], work[6:]
+    for i in range(order + 1):
+        beyond[i] = work[4, i]
+    beyond[0] -= law.alpha
+    passed = -1.0
+    root = next_root(beyond, order, 0.0, spare)
+    while root < x:
+        passed = root
+        root = next_root(beyond, order, root, spare)
+    if passed < 0.0 and beyond[0] < 0.0:
+        passed = x
+    if passed > 0.0:
+        watch_step(limits, order, h, passed, work)
+        limits[2], limits[3] = limits[0], limits[1]
+
+
+@inner
+def forget_fall(limits: FloatArray) -> None:
+    """Go back to the limits when the block last passed the critical rotation."""
+    limits[0], limits[1] = limits[2], limits[3]
 
 
 @inner
@@ -125,32 +162,37 @@ def expand_forces(
 
 @inner
 def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
-    """Watch a survivor's free rocking from (y, v) to its rest."""
-    energy = 0.5 * v * v + work_to(law, y)
+    """Watch free rocking from (y, v) to the rest, or until the block passes alpha for good."""
+    if is_lost(law, y, v):
+        forget_fall(limits)
+        return
+    energy, foot = 0.5 * v * v + work_to(law, y), y
+    if v < 0.0:
+        watch_swing(limits, law, energy, 0.0, y)
+        energy, foot = energy * law.eta * law.eta, 0.0
     top = turning_rotation(law, energy)
     if top == math.inf:
+        watch_swing(limits, law, energy, foot, law.alpha)
         return
-    watch_swing(limits, law, energy, top if v >= 0.0 else y)
-    energy *= law.eta * law.eta
-    if energy == 0.0:
-        return
-    if v < 0.0:
-        watch_swing(limits, law, energy, turning_rotation(law, energy))
+    if energy > 0.0:
+        watch_swing(limits, law, energy, 0.0, top)
     # in smaller swings N is larger, and so is T/N where T < 0: largest in the last and least one
-    watch(limits, law, 1.0, 0.0, 0.0, 0.0)
+    if energy * law.eta > 0.0:
+        watch(limits, law, 1.0, 0.0, 0.0, 0.0)
 
 
 @inner
-def watch_swing(limits: FloatArray, law: Law, energy: float, top: float) -> None:
-    """Watch a free block at rotations from 0 to `top`; at 0 it has the kinetic `energy`.
+def watch_swing(limits: FloatArray, law: Law, energy: float, foot: float, top: float) -> None:
+    """Watch a free block between the rotations `foot` and `top`; at 0 it has kinetic `energy`.
 
     With c = cos z, s = sin z and E = c where the block turns, v^2 = 2 (E - c), so that
     N = 1/4 - 3/2 E c + 9/4 c^2 and T = 3/4 s (2 E - 3 c). N is least at c = E/3, T/N extreme at
     the roots of 33 c^2 - 38 E c + 12 E^2 - 3, or at an end.
     """
-    low, high = math.cos(law.alpha), math.cos(law.alpha - top)
-    turn = low + energy
-    spread = math.sqrt(99.0 - 35.0 * turn * turn)
+    first, last = math.cos(law.alpha - foot), math.cos(law.alpha - top)
+    low, high = min(first, last), 1.0 if foot < law.alpha < top else max(first, last)
+    turn = math.cos(law.alpha) + energy
+    spread = math.sqrt(max(99.0 - 35.0 * turn * turn, 0.0))
     for place in (
         low,
         high,

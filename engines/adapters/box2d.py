@@ -40,7 +40,7 @@ class Box2DWorld:
         self._sunk = settings.sunk_of(scene)
         self._reach = settings.reach_of(scene, dt_s)
         self._iterations = settings.iterations_of(scene)
-        self._world = self._box2d.b2World(gravity=(0.0, 0.0), doSleep=False)
+        self._world = self._box2d.b2World(gravity=(0.0, 0.0))
         self._world.continuousPhysics = settings.continuous
         self._far = FLOOR_HEIGHTS * block.height * self._unit
         self._body = self._built(scene)
@@ -118,6 +118,7 @@ class Box2DWorld:
         )
         body.linearVelocity = (begin.velocity_x * unit, begin.velocity_z * unit)
         body.angularVelocity = -begin.rate
+        body.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
         return body
 
     def _floor(self, number: int) -> Any:
@@ -146,6 +147,7 @@ class Box2DWorld:
                 "inertia": (scene.inertia[1] * self._unit**2, body.inertia),
                 "friction": (s.friction, body.fixtures[0].friction),
                 "restitution": (s.restitution, body.fixtures[0].restitution),
+                "sleeping": (s.sleeping, body.sleepingAllowed),
                 "continuous": (s.continuous, self._world.continuousPhysics),
             },
             Precision.SINGLE.value,
@@ -162,7 +164,7 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            settings=Box2DSettings(),
+            settings=Box2DSettings(sleeping=False),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
             misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),

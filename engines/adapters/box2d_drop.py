@@ -22,7 +22,7 @@ def _dropped(drop: Drop, unit: float) -> float:
     """Drop a disc; unit is the units of length in a metre."""
     b2 = imported("Box2D")
     radius, far = drop.radius * unit, 100.0 * drop.radius * unit
-    world = b2.b2World(gravity=(0.0, -drop.gravity * unit), doSleep=False)
+    world = b2.b2World(gravity=(0.0, -drop.gravity * unit))
     # a polygon acts from its skin on
     top = -b2.b2_polygonRadius
     corners = [(-far, -far), (far, -far), (far, top), (-far, top)]

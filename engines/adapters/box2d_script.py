@@ -10,7 +10,7 @@ def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of Box2D; see `engines.script`."""
     unit, reach, paired = s.unit_of(scene), s.reach_of(scene, dt_s), s.geometry == "corners"
     world = (
-        "world = Box2D.b2World(gravity=(0.0, 0.0), doSleep=False)",
+        "world = Box2D.b2World(gravity=(0.0, 0.0))",
         f"world.continuousPhysics = {s.continuous}",
     )
     shape = _corner(scene, unit, reach) if paired else _box(scene, unit)
@@ -62,7 +62,10 @@ def _corner(scene: Scene, unit: float, reach: float) -> str:
 def _beginning(scene: Scene, s: Box2DSettings) -> tuple[str, ...]:
     at, unit = scene.beginning, s.unit_of(scene)
     place = at.x * unit, at.z * unit - s.sunk_of(scene)
-    return (f"block = world.CreateDynamicBody(position={place}, angle={-at.theta!r})",)
+    return (
+        f"block = world.CreateDynamicBody(position={place}, angle={-at.theta!r})",
+        f"block.sleepingAllowed = {s.sleeping}",
+    )
 
 
 def _velocity(scene: Scene, unit: float) -> tuple[str, ...]:

@@ -4,10 +4,12 @@ from dataclasses import dataclass, replace
 
 from engines.factors import (
     AS_BEST,
+    ASLEEP,
     BEST,
     BY_DEFAULT,
     DEFAULT,
     MOVING_BASE,
+    SLEEP,
     Factor,
     Rule,
     factor,
@@ -53,6 +55,8 @@ class Box2DSettings(Counted):
         contact.
     reflection : bool
         Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
+    sleeping : bool
+        Whether a block that has hardly moved for half a second is no longer simulated.
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
     restitution : float
@@ -70,6 +74,7 @@ class Box2DSettings(Counted):
     continuous: bool = True
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
+    sleeping: bool = True
     base_velocity: bool = True
     restitution: float = setting(0.0, least=0.0, most=1.0)
 
@@ -95,6 +100,7 @@ TUNED = Box2DSettings(
     skins_below=True,
     continuous=False,
     margin=10.0,
+    sleeping=False,
 )
 LANDING = replace(TUNED, reflection=True)
 
@@ -115,6 +121,7 @@ FACTORS = (
     factor("skins_below"),
     factor("continuous"),
     factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
+    ASLEEP,
     MOVING_BASE,
 )
 """What its contact can be set to."""
@@ -129,6 +136,11 @@ RULES = (
     Rule(
         "Lower a floor by that skin, if bodies are to touch it where it is",
         *(BEST, "skins below", BY_DEFAULT),
+    ),
+    Rule(
+        "Forbid sleep by `body.sleepingAllowed = False`: the world's own `doSleep` reads back what "
+        "was set and does nothing, and gravity that turns wakes nothing",
+        *SLEEP,
     ),
 )
 """What its users should know, each with its measured effect."""

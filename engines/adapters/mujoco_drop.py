@@ -5,8 +5,10 @@ pull, and lets go when its force is zero (Schwager and Poeschel, Granular Matter
 """
 
 import math
+from collections.abc import Callable
 from functools import partial
 from importlib import import_module
+from typing import Any
 
 from engines.drop import Bouncing, Drop, rebound
 
@@ -53,16 +55,15 @@ def direct(drop: Drop, steps: float) -> tuple[float, float]:
     return -(frequency**2), min(-2.0 * damping_ratio(drop.restitution) * frequency, -FEEBLE)
 
 
-def by_ratio(drop: Drop) -> tuple[float, float]:
-    """Return solref as its time constant, the library's own, and damping ratio."""
-    if drop.restitution == 0.0:
-        return LIBRARY_TIME_S, 1.0
-    return LIBRARY_TIME_S, max(damping_ratio(drop.restitution), FEEBLE)
+def _ratio_setting(drop: Drop) -> str:
+    """Return the library's own time constant, and the damping ratio."""
+    ratio = max(damping_ratio(drop.restitution), FEEBLE) if drop.restitution else 1.0
+    return f'solref="{LIBRARY_TIME_S} {ratio!r}"'
 
 
-def _dropped(drop: Drop, solref: tuple[float, float], impedance: str) -> float:
-    mj = import_module("mujoco")
-    contact = f'solref="{solref[0]!r} {solref[1]!r}" {impedance}'
+def _dropped(drop: Drop, setting: Callable[[Drop], str]) -> float:
+    """Drop a sphere with what a setting says, as it says it."""
+    mj, contact = import_module("mujoco"), setting(drop)
     model = mj.MjModel.from_xml_string(
         f'<mujoco><option timestep="{drop.dt_s!r}" gravity="0 0 {-drop.gravity!r}"/>'
         '<size memory="64K"/><worldbody>'
@@ -94,7 +95,7 @@ FIRM = f'solimp="{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2"'
 
 def _direct_setting(drop: Drop, steps: float) -> str:
     k, b = direct(drop, steps)
-    return f'solref="{k:.5g} {b:.5g}" {FIRM}'
+    return f'solref="{k!r} {b!r}" {FIRM}'
 
 
 def _held(restitution: float, steps: int) -> dict[str, float]:
@@ -103,26 +104,19 @@ def _held(restitution: float, steps: int) -> dict[str, float]:
     return {"stiffness": -k, "damping": -b}
 
 
+def _way(name: str, setting: Callable[[Drop], str], **options: Any) -> Bouncing:
+    dropped = partial(_dropped, setting=setting)
+    return Bouncing(name=name, setting=setting, dropped=dropped, **options)
+
+
 def _over(steps: int) -> Bouncing:
-    return Bouncing(
-        name=f"spring and damper over {steps} steps",
-        setting=partial(_direct_setting, steps=steps),
-        dropped=lambda drop: _dropped(drop, direct(drop, steps), FIRM),
-        block=partial(_held, steps=steps),
-    )
+    setting = partial(_direct_setting, steps=steps)
+    return _way(f"spring and damper over {steps} steps", setting, block=partial(_held, steps=steps))
 
 
 BOUNCING = (
-    Bouncing(
-        name="the library's solref, whatever e",
-        setting=lambda drop: 'solref="0.02 1"',
-        dropped=lambda drop: _dropped(drop, (LIBRARY_TIME_S, 1.0), ""),
-    ),
-    Bouncing(
-        name="the damping ratio for e alone",
-        setting=lambda drop: f'solref="0.02 {by_ratio(drop)[1]:.5g}"',
-        dropped=lambda drop: _dropped(drop, by_ratio(drop), ""),
-    ),
+    _way("the library's solref, whatever e", lambda drop: f'solref="{LIBRARY_TIME_S} 1"'),
+    _way("the damping ratio for e alone", _ratio_setting),
     _over(5),
     _over(20),
 )

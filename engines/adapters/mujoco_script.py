@@ -36,7 +36,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
         imports=("import mujoco",),
         settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
         build=(
-            f'model = mujoco.MjModel.from_xml_path("{MODEL}")',
+            f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))',
             "data = mujoco.MjData(model)",
             *_beginning(scene, s),
         ),

@@ -172,7 +172,7 @@ ENGINE = Engine(
     presets=(
         Preset(
             name="naive",
-            settings=RapierSettings(),
+            settings=RapierSettings(sleeping=False),
             step_s=1.0 / 60.0,
             step_source="the library's own time step, 1/60 s",
             misses=(Miss.MIRROR, Miss.RECORD),

@@ -5,11 +5,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from engines.factors import (
+    ASLEEP,
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
     MOVING_BASE,
+    SLEEP,
     Factor,
     Rule,
     factor,
@@ -178,7 +180,7 @@ FACTORS = (
         ),
     ),
     factor("recycling", traps={"fixed": RECYCLED}, name="contact recycling"),
-    factor("sleeping", level("off", (DEFAULT,), sleeping=False), by_default=False),
+    ASLEEP,
     factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
     factor("stabilization"),
     factor("substeps"),
@@ -231,8 +233,7 @@ RULES = (
     ),
     Rule(
         "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
-        *(DEFAULT, "sleeping", "off"),
-        kept=True,
+        *SLEEP,
     ),
     Rule(
         "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",

@@ -7,7 +7,6 @@ of the steps; what lies between two steps is interpolated.
 import math
 from typing import Annotated
 
-from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.swing import (
@@ -39,6 +38,17 @@ in one step, which no engine resolves; by the depth to which the contact was see
 the resting block; and by twice the height to which the pivot of the last swing hopped, by the
 curvature of its steps."""
 
+FALL_PART = 0.5
+"""A block that leans in a soft contact comes back as its load does; one that rocks falls back: with
+this part at least of the speed squared that its weight gives it on the way to upright."""
+
+FALL_STEPS = 2.0
+"""Steps at least that a fall takes which is told from a tremor of the contact."""
+
+HOVER_WIDTHS = 1e-3
+"""A contact that holds a block at rest higher above the base than this part of the width, and by
+more than it leans, has a skin: such a block has not lifted."""
+
 REST_TIME = 0.05
 """A block at rest has not lifted for this time, in units of 1/p."""
 
@@ -48,18 +58,18 @@ REST_RATE = 0.01
 SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
-SINK_WIDTHS = 0.05
-"""A pivot deeper in the base than this part of the width has fallen through it."""
-
 THROWN_WIDTHS = 1.0
 """A pivot higher above the base than this part of the width has been thrown off."""
 
 LYING = 0.5 * math.pi
 """Rotation [rad] at which the block lies on its side."""
 
+LYING_PART = 0.9
+"""A block that stays where it is, turned by more than this part of that, lies on a soft contact."""
+
 
 NO_PROBLEM, DIVERGED, SANK, THROWN, SLID = range(5)
-"""Why the response is no longer that of a rocking block; see `problem_of`."""
+"""Why the response is no longer that of a rocking block; see `answer.problem_of`."""
 
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
 """Kinds of events."""
@@ -83,6 +93,9 @@ class Watch(State):
     lift, rest_time, rest_rate : float
         From which height of the free corner on it is aloft [m], for how long it must not be to be
         at rest [s], and how slowly it may turn then [rad/s].
+    fall, least_fall : float
+        Rate squared over the rotation [rad/s2] with which a block falls back, and the least
+        rotation [rad] from which a fall is seen as one.
     motion_end, end : float
         End of the motion, and of the observation [s].
     slides : bool
@@ -104,8 +117,13 @@ class Watch(State):
         How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
     low_since : float
         Since when it has not been aloft [s]; nan while it is.
-    last_rest : float
-        When it last came to rest [s].
+    last_rest, turned_at : float
+        When it last came to rest, and when it last turned faster than a block at rest may [s].
+    lean_side, lean_peak, lean_since : float
+        Of the block at rest: to which side it leans, how far it did [rad], and since when [s].
+    hovers, loose : bool
+        Whether a skin of the contact holds it above its base, and whether it was seen to rock where
+        no corner's height shows it.
     uplift : int
         Which event is the last uplift.
     landed : bool
@@ -128,6 +146,8 @@ class Watch(State):
     lift: float
     rest_time: float
     rest_rate: float
+    fall: float
+    least_fall: float
     motion_end: float
     end: float
     slides: bool
@@ -148,6 +168,12 @@ class Watch(State):
     hop: float
     low_since: float
     last_rest: float
+    turned_at: float
+    lean_side: float
+    lean_peak: float
+    lean_since: float
+    hovers: bool
+    loose: bool
     uplift: int
     landed: bool
     landed_s: float
@@ -181,6 +207,7 @@ def begin_watch(
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
     lift += LIFT_FALL * block.gravity * dt_s**2
     aloft, peak = bool(scene.side), abs(theta)
+    weight = block.p**2 * math.sin(block.alpha)
     fill(
         watch,
         ahead=1.0 - moment.value,
@@ -190,6 +217,8 @@ def begin_watch(
         lift=lift,
         rest_time=REST_TIME / block.p,
         rest_rate=REST_RATE * block.p * block.alpha,
+        fall=2.0 * FALL_PART * weight,
+        least_fall=0.5 * weight * (FALL_STEPS * dt_s) ** 2,
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
         slides=scene.friction == 0.0,
@@ -197,6 +226,7 @@ def begin_watch(
         resting=not aloft,
         rocked=aloft,
         low_since=math.nan if aloft else 0.0,
+        turned_at=-math.inf,
         peak=peak,
         crossed=peak > block.alpha,
         lifted=block.width * math.sin(peak) > lift,
@@ -220,13 +250,22 @@ def see(
     level = pose.z - watch.half_height * cosine
     if watch.resting:
         watch.give = max(watch.give, reach - level)
-    watch.lifted = level + reach > watch.lift + watch.give + 2.0 * watch.hop
+        raised = level - reach > 2.0 * watch.half_width * HOVER_WIDTHS
+        watch.hovers = watch.hovers or (raised and level > 3.0 * reach)
+        lean(watch, row)
+    if abs(row.rate) > watch.rest_rate:
+        watch.turned_at = time
+    if watch.loose:
+        watch.lifted = 2.0 * reach > watch.lift
+    else:
+        higher = level + reach > watch.lift + watch.give + 2.0 * watch.hop
+        watch.lifted = higher and not watch.hovers
     if watch.lifted:
         watch.hop = max(watch.hop, level - reach)
     if abs(theta) <= watch.alpha:
         inward = math.copysign(watch.half_width * (1.0 - cosine), theta)
         watch.slide = max(watch.slide, abs(pose.x - watch.half_height * sine - inward))
-    check(watch, level - reach)
+    check(watch, level - reach, pose.z)
     if watch.keeps_rows:
         put(rows, watch.rows, row)
         watch.rows += 1
@@ -241,14 +280,26 @@ def see(
 
 
 @shared
-def check(watch: Watch, depth: float) -> None:
-    """Look at the lowest corner's height [m] above the base, and at the slide."""
+def lean(watch: Watch, row: Row) -> None:
+    """See whether a block at rest turns and falls back, however deep in its base or high above."""
+    size, side = abs(row.theta), math.copysign(1.0, row.theta)
+    if side != watch.lean_side or 2.0 * watch.half_width * size < watch.lift:
+        watch.lean_side, watch.lean_peak, watch.lean_since = side, 0.0, row.time
+    watch.lean_peak = max(watch.lean_peak, size)
+    inward = max(-row.rate * side, 0.0)
+    falls = watch.lean_peak > watch.least_fall and inward * inward > watch.fall * watch.lean_peak
+    watch.loose = watch.loose or falls or (watch.hovers and abs(row.rate) > watch.rest_rate)
+
+
+@shared
+def check(watch: Watch, low: float, centre: float) -> None:
+    """Look at the heights [m] of the lowest corner and the centre, and at the slide."""
     width = 2.0 * watch.half_width
-    watch.sink, watch.highest = max(watch.sink, -depth), max(watch.highest, depth)
-    if depth < -SINK_WIDTHS * width:
-        watch.problem, watch.far = SANK, -depth
-    elif depth > THROWN_WIDTHS * width:
-        watch.problem, watch.far = THROWN, depth
+    watch.sink, watch.highest = max(watch.sink, -low), max(watch.highest, low)
+    if centre < 0.0:
+        watch.problem, watch.far = SANK, -low
+    elif low > THROWN_WIDTHS * width:
+        watch.problem, watch.far = THROWN, low
     elif watch.slide > SLIDE_WIDTHS * width and not watch.slides:
         watch.problem, watch.far = SLID, watch.slide
 
@@ -259,11 +310,12 @@ def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
     swing, side = watch.swing, math.copysign(1.0, row.theta)
     if swing.side != side:
         land(watch, events)
-        begin_swing(swing, side, watch.resting)
+        begin_swing(swing, side, watch.resting and not watch.loose)
         watch.hop = 0.0
         if watch.resting:
             watch.uplift = watch.events
-            note(watch, events, UPLIFT, watch.two[1, TIME], 0.0, 0.0)
+            since = watch.lean_since if watch.loose else watch.two[1, TIME]
+            note(watch, events, UPLIFT, since, 0.0, 0.0)
             watch.resting, watch.rocked = False, True
     add(swing, row, dt_s)
     if begun(swing):
@@ -341,46 +393,8 @@ def decide(watch: Watch, row: Row) -> None:
     """Say whether the response is decided."""
     size, outward = abs(row.theta), row.theta * row.rate > 0.0
     over = row.time >= watch.motion_end
-    watch.overturned = size >= LYING or (over and size > watch.alpha and outward)
-    settled = over and watch.end == math.inf and (watch.turned or watch.resting)
+    still = row.time - watch.turned_at >= watch.rest_time
+    lies = size >= LYING or (still and size > LYING_PART * LYING)
+    watch.overturned = lies or (over and size > watch.alpha and outward)
+    settled = over and watch.end == math.inf and (watch.turned or (watch.resting and still))
     watch.done = watch.overturned or settled or row.time >= watch.end
-
-
-def problem_of(watch: Watch) -> Problem | None:
-    """Return why the response is no longer that of a rocking block."""
-    words = {
-        DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
-        SANK: (Reason.SANK, f"the pivot sank {watch.far:.3g} m into the base"),
-        THROWN: (Reason.THROWN, f"the block was thrown {watch.far:.3g} m off the base"),
-        SLID: (Reason.SLID, f"the pivot slid {watch.far:.3g} m along the base"),
-    }
-    return Problem(*words[int(watch.problem)]) if watch.problem else None
-
-
-def response_of(
-    watch: Watch, events: FloatArray, history: History | None, *, steps: int, wall_s: float
-) -> Response:
-    """Return what was seen until now; `events` has room for one more."""
-    complete(watch, events)
-    if watch.overturned:
-        outcome, ratio = Outcome.OVERTURNED, math.inf
-    elif watch.rocked:
-        outcome, ratio = Outcome.ROCKED, float(watch.peak / watch.alpha)
-    else:
-        outcome, ratio = Outcome.AT_REST, 0.0
-    seen = events[: watch.events]
-    uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
-    return Response(
-        outcome=outcome,
-        peak_ratio=ratio,
-        crossed=bool(watch.crossed or watch.overturned),
-        impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
-        uplifts=tuple(uplifts[:, WHEN].tolist()),
-        rests=tuple(rests[:, WHEN].tolist()),
-        steps=steps,
-        wall_s=wall_s,
-        history=history,
-        slip_m=float(watch.slide),
-        sink_m=float(watch.sink),
-        hop_m=float(watch.highest),
-    )

@@ -7,14 +7,14 @@ STUDY = Study(
     module="studies.advise.study",
     help="""Which setting of which engine keeps an error, and how it is made in the library's words.
 
-For each engine and preset the cheapest step with which every published case keeps the error, or
+For each engine and preset the cheapest step that keeps the error with every finer one published, or
 that nothing does. It runs nothing: it reads the published tables, and names them.""",
     table="advice.csv",
     products=("advice.csv", "advice.png", "findings.txt"),
     captions={
         "advice": (
             "Time of a case over the largest error that is to be kept, a line for each engine and "
-            "preset that keeps it on every published case; beside the points their steps, p dt, "
+            "preset that keeps it with every finer step; beside the points their steps, p dt, "
             "or the accuracy of an engine's own."
         ),
     },
@@ -25,6 +25,26 @@ that nothing does. It runs nothing: it reads the published tables, and names the
             tables=("advice.csv",),
             quick=(),
             minutes=(0.1, 0.1),
+        ),
+    ),
+)
+
+STEPS = Study(
+    name="steps",
+    module="studies.advise.steps",
+    help="""Random cases at the published steps: which of these keep an error on them, too.
+
+At every published step from the coarsest that keeps an error of 10 % on the published cases, with
+every finer one. `rocking advise` reads what comes of it. Writes random.csv; resumable.""",
+    table="random.csv",
+    products=("random.csv", "findings.txt"),
+    chapters=(
+        Chapter(
+            folder="steps",
+            question="Do the steps that keep an error keep it on random cases?",
+            quick=("--cases", "20"),
+            minutes=(0.4, 3.0),
+            weaker="Fewer random cases.",
         ),
     ),
 )

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import Preset
+from studies.advise.tried import RANDOM, SETTING
 from studies.cases.paper import sweep_cases
 from studies.measures.verdicts import ACCEPTED
 from studies.sources.registry import resolve
@@ -18,12 +21,13 @@ LADDER = "precision/work-precision.csv"
 PAPER = ("sweep/summary.csv", "presets/summary.csv")
 """Tables of the paper's cases, with each preset as it is declared."""
 
-RANDOM, EXTREME = "validate/errors.csv", "stability/stability.csv"
-"""Tables of the cases that a setting is not chosen by, but that may be off all the same."""
+EXTREME, SHAPES = "stability/stability.csv", "validate/errors.csv"
+"""Tables of the cases that a setting is not chosen by, and of the shapes of the random ones."""
 
-TABLES = (LADDER, *PAPER, RANDOM, EXTREME)
+TABLES = (LADDER, *PAPER, EXTREME, SHAPES)
+"""Tables without which there is no advice."""
 
-SETTINGS = ["engine", "preset", "value", "wall_s", "cases", "max_error"]
+SETTINGS = ["engine", "preset", "value", "wall_s", "runs", "cases", "max_error"]
 """Columns of `settings`."""
 
 
@@ -40,17 +44,37 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     -------
     DataFrame
         engine, preset; value: p dt, or the dial of an engine with steps of its own, nan for a step
-        that the library has in seconds; wall_s: mean time of a case [s]; cases; max_error: the
-        largest error of the peak, inf where an outcome is wrong or a case failed.
+        that the library has in seconds; wall_s: mean time of a case [s]; runs: how often each was
+        timed at least; driver: who took the steps; cases; max_error: the largest error of the peak,
+        inf where an outcome is wrong or a case failed. Those of a preset from coarse to fine.
     """
     whole, ladder = of_paper(published, engines), along_steps(published, engines)
     found = pd.concat([ladder, whole], ignore_index=True)
     # where both tables know a setting, the ladder's time is the best of several
     kept = found.groupby(["engine", "preset", "value"], sort=False, dropna=False)
     lines = kept.agg(
-        wall_s=("wall_s", "first"), cases=("cases", "sum"), max_error=("max_error", "max")
-    )
-    return lines.reset_index()
+        wall_s=("wall_s", "first"),
+        runs=("runs", "first"),
+        cases=("cases", "sum"),
+        max_error=("max_error", "max"),
+    ).reset_index()
+    coarse = [-fineness(*line) for line in lines[SETTING].itertuples(index=False, name=None)]
+    lines["driver"] = lines["engine"].map(drivers(published))
+    preset = lines.groupby(["engine", "preset"], sort=False).ngroup()
+    return lines.iloc[np.lexsort(np.array([coarse, preset]))].reset_index(drop=True)
+
+
+def fineness(engine: str, preset: str, value: float) -> float:
+    """Return p dt, or the dial; of a step in seconds, the largest p dt in the paper."""
+    declared = ENGINES[engine].preset(preset)
+    return declared_step(declared) if math.isnan(value) else value
+
+
+def drivers(published: Path) -> dict[str, str]:
+    """Return who takes the steps of each engine: Python, or a compiled loop."""
+    table = pd.read_csv(published / LADDER, usecols=["method", "driver"]).dropna()
+    first = table["method"].str.partition(" ")[0]
+    return dict(zip(first, table["driver"], strict=True))
 
 
 def published_engines(published: Path) -> list[str]:
@@ -59,9 +83,14 @@ def published_engines(published: Path) -> list[str]:
     return [name for name in ENGINES if name in known]
 
 
+def read_from(published: Path) -> list[str]:
+    """Return the names of the published tables from which advice follows."""
+    return [*TABLES, *([RANDOM] if (published / RANDOM).is_file() else [])]
+
+
 def aspects(published: Path) -> tuple[float, float]:
     """Return the smallest and the largest H/B of the random cases."""
-    found = pd.read_csv(published / RANDOM, usecols=["aspect"])["aspect"]
+    found = pd.read_csv(published / SHAPES, usecols=["aspect"])["aspect"]
     return float(found.min()), float(found.max())
 
 
@@ -78,7 +107,12 @@ def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     mine = mine.assign(max_error=worst, wall_s=mine["wall_s"] * mine["cases"])
     lines = (
         mine.groupby(["method", "value"], sort=False)
-        .agg(wall_s=("wall_s", "sum"), cases=("cases", "sum"), max_error=("max_error", "max"))
+        .agg(
+            wall_s=("wall_s", "sum"),
+            runs=("runs", "min"),
+            cases=("cases", "sum"),
+            max_error=("max_error", "max"),
+        )
         .reset_index()
     )
     names = [uses[str(name)] for name in lines["method"]]
@@ -100,6 +134,7 @@ def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         preset=[source.preset for source in asked],
         max_error=lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
         wall_s=lines["wall_s"] / lines["cases"],
+        runs=1,
     )
     lines = lines[lines["engine"].isin(list(engines))]
     own = [
@@ -107,6 +142,13 @@ def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         for name, preset in zip(lines["engine"], lines["preset"], strict=True)
     ]
     return lines.assign(value=own)[SETTINGS].reset_index(drop=True)
+
+
+def options_at(preset: Preset, value: float) -> dict[str, Any]:
+    """Return the options of a scene that set a preset to a value; none for its own step."""
+    if math.isnan(value):
+        return {}
+    return {"settings": {preset.dial[0]: value}} if preset.dial else {"step": value}
 
 
 def declared_value(preset: Preset) -> float:
@@ -130,22 +172,18 @@ def declared_step(preset: Preset) -> float:
     return preset.step_s * max(case.block.p for case in sweep_cases((6,)))
 
 
-def elsewhere(published: Path, source: str, target: float) -> dict[str, int]:
-    """Count the random and the extreme cases of a preset, as it is declared, that are off.
+def extremes(published: Path, source: str, target: float) -> dict[str, int]:
+    """Count the extreme cases of a preset, as it is declared, that are off.
 
-    Off is another outcome, a failure, or an error above the target; extreme cases where the
-    reference does not hold, or whose rocking is too small to be seen, are not counted.
+    Off is another outcome, a failure, or an error above the target; cases where the reference does
+    not hold, or whose rocking is too small to be seen, are not counted.
     """
-    random = pd.read_csv(published / RANDOM)
-    extreme = pd.read_csv(published / EXTREME, keep_default_na=False, na_values=["nan"])
-    random = random[random["source"] == source]
-    extreme = extreme[extreme["source"] == source]
+    table = pd.read_csv(published / EXTREME, keep_default_na=False, na_values=["nan"])
+    mine = table[table["source"] == source]
     good = [verdict.value for verdict in ACCEPTED if verdict.value != "good"]
-    extreme = extreme[~extreme["verdict"].isin(good)]
-    right = extreme["outcome"] == extreme["exact_outcome"]
+    mine = mine[~mine["verdict"].isin(good)]
+    right = mine["outcome"] == mine["exact_outcome"]
     return {
-        "random_cases": len(random),
-        "random_off": int((~random["agrees"] | (random["error"].abs() > target)).sum()),
-        "extreme_cases": len(extreme),
-        "extreme_off": int((~right | (extreme["error"].abs() > target)).sum()),
+        "extreme_cases": len(mine),
+        "extreme_off": int((~right | (mine["error"].abs() > target)).sum()),
     }

@@ -54,7 +54,7 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
         # others go on where these end
         between = [end for end in ends if end.x not in (targets[0], last)]
         around(axes, [*steps, *between], 7.0)
-    drawing.supxlabel("largest error of a peak, kept on every published case", fontsize=10)
+    drawing.supxlabel("largest error of a peak, kept with every finer step", fontsize=10)
     drawing.suptitle(_title(lines, targets), fontsize=11)
     return drawing
 

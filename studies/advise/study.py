@@ -9,8 +9,8 @@ from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from studies.advise import STUDY
-from studies.advise.choice import advice
-from studies.advise.evidence import TABLES, aspects, published_engines
+from studies.advise.choice import TARGETS, advice
+from studies.advise.evidence import TABLES, aspects, published_engines, read_from
 from studies.advise.words import advice_text, claim, settings_text, told
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -22,24 +22,23 @@ from studies.kit.arguments import (
     several,
     several_or_none,
 )
-from studies.kit.journal import PROVENANCE
+from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
+from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
-"""Errors that somebody may ask for."""
-
-
-ELSEWHERE = (
-    "* of the random and the extreme cases with the preset as it is declared, outcomes or errors"
+NOTE = (
+    "* other outcomes or larger errors, of cases that were run at this very step; a step counts\n"
+    "  only where it and every finer published one keep the error, on random cases with "
+    f"κ < {WELL_CONDITIONED:g} too"
 )
-"""Note under the table of advice."""
+"""Under the table of advice."""
 
 
 def command(
@@ -55,9 +54,11 @@ def command(
 ) -> int:
     """Name the cheapest setting of every engine with which all published cases keep an error.
 
-    A setting counts if it keeps the error on every case on which it was published: 24 along all
-    steps, and the paper's 960 with each preset as it is declared. How many random and extreme cases
-    are off with the preset as it is declared stands beside it.
+    A step counts if it and every finer published one keep the error on every case on which they
+    were published: 24 along all steps, and the paper's with each preset as it is declared; and on
+    the random cases that were run at these steps (`rocking steps`), where κ is small. How many
+    random cases are off at the step that is advised stands beside it, and who takes the steps:
+    a compiled loop, or Python.
 
     Parameters
     ----------
@@ -79,6 +80,7 @@ def command(
     block = posed_block(width, height)
     if missing := [name for name in TABLES if not (tables / name).is_file()]:
         raise BadInputError(f"--published is {str(tables)!r}; it must hold {missing[0]}")
+    check(tables, TABLES, "--published")
     asked = published_engines(tables) if engines is None else engines
     check_engines(asked)
     lines = advice(tables, asked, error, block)
@@ -103,9 +105,9 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path) -> str:
     head = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s):"
     return "\n\n".join(
         [
-            f"{head}\n{advice_text(lines)}\n{ELSEWHERE}{_beyond(block, published)}",
+            f"{head}\n{advice_text(lines)}\n{NOTE}{_beyond(block, published)}",
             settings_text(lines, block) or "No setting to write out.",
-            fill(f"From {listed(TABLES)}, made with {_versions(published)}.", 99),
+            fill(f"From {listed(read_from(published))}, made with {_versions(published)}.", 99),
         ]
     )
 
@@ -124,13 +126,14 @@ def _beyond(block: RigidBlock, published: Path) -> str:
 def _versions(published: Path) -> str:
     """Return the versions of the engines that the tables were made with."""
     folder = published / Path(TABLES[0]).parent
-    if not (folder / PROVENANCE).is_file():
+    try:
+        versions = provenance.engines_of(provenance.record_of(folder))
+    except (KeyError, TypeError):
         return "unknown versions"
-    versions = provenance.engines_of(provenance.record_of(folder))
     return listed([f"{name} {version}" for name, version in versions.items()])
 
 
-def _read(folder: Path) -> pd.DataFrame:
+def read(folder: Path) -> pd.DataFrame:
     """Read advice back, with empty words as such."""
     path = folder / "advice.csv"
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype={"message": str})
@@ -138,16 +141,16 @@ def _read(folder: Path) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say what keeps each error cheapest."""
-    return claim(_read(folder))
+    return claim(read(folder))
 
 
 def paragraph(folder: Path) -> str:
     """Say of every preset which errors it keeps."""
-    return told(_read(folder))
+    return told(read(folder))
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 
-    return {"advice": draw_advice(_read(folder))}
+    return {"advice": draw_advice(read(folder))}

@@ -12,8 +12,10 @@ from analytic.motion import SinePulse
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset
 from engines.parts.settings import given
-from studies.advise.evidence import in_words
+from studies.advise.choice import random_text
+from studies.advise.evidence import in_words, options_at
 from studies.kit.tables import left_aligned
+from studies.measures.costs import LOOPS, cost_text
 from studies.measures.words import duration, listed, part, per_cent
 
 ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
@@ -30,10 +32,8 @@ def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> 
     value : float
         p dt, or the preset's dial; nan for its own step.
     """
-    options: dict[str, Any] = {}
-    if not math.isnan(value):
-        options = {"settings": {preset.dial[0]: value}} if preset.dial else {"step": value}
-    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, **options)
+    asked = options_at(preset, value)
+    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, **asked)
     lines = [*_settings(engine, preset, scene), *_besides(preset)]
     return "\n".join(lines)
 
@@ -65,10 +65,11 @@ def advice_text(lines: pd.DataFrame) -> str:
             "preset": lines["preset"],
             "setting": [_setting(line) for _, line in lines.iterrows()],
             "step here": lines["dt_s"].map(_time),
-            "a case": lines["wall_s"].map(_time),
+            "a case": list(map(cost_text, lines["wall_s"], lines["runs"])),
+            "loop": lines["driver"].where(lines["driver"] != "", "-"),
             "largest error": lines["max_error"].map(part),
             "cases": lines["cases"].map("{:d}".format),
-            "off elsewhere*": [elsewhere_text(line) for _, line in lines.iterrows()],
+            "off at this step*": [off_text(line) for _, line in lines.iterrows()],
             "": lines["message"].where(lines["message"] != "", lines["cheapest"].map(_mark)),
         }
     )
@@ -92,14 +93,13 @@ def _time(value: float) -> str:
     return "-" if math.isnan(value) else duration(value)
 
 
-def elsewhere_text(line: "pd.Series[Any]") -> str:
-    """Return how many random and extreme cases are off with the preset as it is declared."""
-    words = [
-        f"{line[f'{kind}_off']} of {line[f'{kind}_cases']} {kind}"
-        for kind in ("random", "extreme")
-        if line[f"{kind}_cases"]
-    ]
-    return ", ".join(words) or "-"
+def off_text(line: "pd.Series[Any]") -> str:
+    """Return how many random and extreme cases are off with the very setting that is advised."""
+    if line["message"]:
+        return "-"
+    random = random_text(line) or "no random case was run"
+    extreme = f", {line['extreme_off']} of {line['extreme_cases']} extreme"
+    return f"{random}{extreme if line['extreme_cases'] else ''}"
 
 
 def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
@@ -116,21 +116,33 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
 
 
 def claim(lines: pd.DataFrame) -> str:
-    """Say which engine keeps which error at what cost, and where nothing does."""
+    """Say which engine keeps which error at what cost with each loop, and where nothing does."""
     alike: dict[str, list[str]] = {}
     for target, group in lines.groupby("target", sort=False):
-        found = group[group["cheapest"]].sort_values("wall_s")
-        by = "nothing"
-        if not found.empty:
-            best = found.iloc[0]
-            by = (
-                f"{best['engine']} {best['preset']} at "
-                f"{in_words(preset_of(best), float(best['value']))} "
-                f"({duration(float(best['wall_s']))} a case)"
-            )
+        found = [_advised(best) for best in best_by_driver(group).values()]
+        by = " and ".join(found) or "nothing"
         alike.setdefault(by, []).append(per_cent(float(str(target))))
     words = [f"{listed(targets)} by {by}" for by, targets in alike.items()]
     return f"Errors are kept cheapest: {'; '.join(words)}."
+
+
+def best_by_driver(lines: pd.DataFrame) -> "dict[str, pd.Series[Any]]":
+    """Return for each loop that takes steps, compiled or Python, the cheapest line of advice."""
+    kept = lines[lines["message"] == ""].sort_values("wall_s").drop_duplicates("driver")
+    return {str(line["driver"]): line for _, line in kept.sort_values("driver").iterrows()}
+
+
+def _advised(line: "pd.Series[Any]") -> str:
+    """Return a line of advice in words: setting, time, who takes the steps, what is off."""
+    cost = cost_text(line["wall_s"], line["runs"], " a case")
+    said = [f"{cost}, {LOOPS[str(line['driver'])]}", random_text(line)]
+    return f"{setting_text(line)} ({'; '.join(filter(None, said))})"
+
+
+def setting_text(line: "pd.Series[Any]") -> str:
+    """Return the engine, the preset and the setting of a line of advice."""
+    at = in_words(preset_of(line), float(line["value"]))
+    return f"{line['engine']} {line['preset']} at {at}"
 
 
 def told(lines: pd.DataFrame) -> str:

@@ -13,12 +13,14 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome
 from studies.cases.paper import Case, free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
+from studies.kit.digests import check
 from studies.kit.executors import Executor
-from studies.kit.jobs import Job, one_line, summary
+from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_COMPUTING, Computing
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
+from studies.kit.refusing import one_line
 from studies.kit.runner import exit_code, run_jobs
 from studies.sources.groups import core_sources
 
@@ -75,6 +77,7 @@ def command(
         case = most_different(results, sources)
         block, posed = case.block, Posed(case.motion, (0.0, 0.0))
     window = free_rocking_window(block, posed.motion)
+    refuse_endless(block, window)
     frames = window * slower * FRAMES_A_SECOND
     if not frames < MOST_FRAMES:
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
@@ -99,10 +102,13 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
     ------
     BadInputError
         If there is no sweep.csv, or it lacks one of the sources.
+    FolderError
+        If it is not as the sweep left it.
     """
     path = results / "sweep.csv"
-    if not path.is_file():
+    if not path.exists():
         raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
+    check(results, [path.name], "--results")
     try:
         peaks = _peaks(path)
         missing = sorted(set(sources) - set(peaks.columns))

@@ -8,11 +8,15 @@ from itertools import count
 import numpy as np
 
 from analytic import simulate
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
+from analytic.response import Response
 
 LEAST_NORMAL = 0.2
-"""Cases are kept where the reference's normal force stays above this part of the weight."""
+"""Cases are kept where the reference's normal force stays above this part of the weight.
+
+That of a block that overturns until it passes the critical rotation for good.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +39,7 @@ class RandomCase:
     def motion(self) -> SinePulse:
         """The pulse."""
         return SinePulse(
-            amplitude=self.amplitude_g * STANDARD_GRAVITY,
+            amplitude=self.amplitude_g * GRAVITY,
             omega=self.omega_over_p * self.block.p,
             half_cycles=self.half_cycles,
         )
@@ -48,14 +52,13 @@ def draw(seed: int) -> Iterator[RandomCase]:
     and omega/p from 0.3 to 12, width and frequency with uniform logarithms; only where the
     reference's normal force stays above LEAST_NORMAL weights.
     """
-    for case, drawn in enumerate(
-        drawn for drawn, normal in everything(seed) if normal > LEAST_NORMAL
-    ):
+    kept = (drawn for drawn, exact in everything(seed) if exact.min_normal > LEAST_NORMAL)
+    for case, drawn in enumerate(kept):
         yield replace(drawn, case=case)
 
 
-def everything(seed: int) -> Iterator[tuple[RandomCase, float]]:
-    """Yield all that is drawn, numbered from 0, with the least normal force over the weight."""
+def everything(seed: int) -> Iterator[tuple[RandomCase, Response]]:
+    """Yield all that is drawn, numbered from 0, with its exact response."""
     generator = np.random.default_rng(seed)
     for number in count():
         aspect = float(generator.uniform(1.2, 12.0))
@@ -67,4 +70,4 @@ def everything(seed: int) -> Iterator[tuple[RandomCase, float]]:
             amplitude_g=float(generator.uniform(1.02, 4.0)) / aspect,
             omega_over_p=math.exp(generator.uniform(math.log(0.3), math.log(12.0))),
         )
-        yield drawn, simulate(drawn.block, drawn.motion).min_normal
+        yield drawn, simulate(drawn.block, drawn.motion)

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from analytic import simulate
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
 from studies.cases.paper import free_rocking_window
@@ -69,7 +69,7 @@ class Extreme:
     def motion(self) -> SinePulse:
         """The pulse."""
         return SinePulse(
-            amplitude=self.onsets * STANDARD_GRAVITY / self.aspect,
+            amplitude=self.onsets * GRAVITY / self.aspect,
             omega=self.omega_over_p * self.block.p,
             half_cycles=self.half_cycles,
         )

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse
 
 PULSES = {"half-sine": 1, "full-sine": 2}
@@ -55,7 +55,7 @@ class Case:
     def motion(self) -> SinePulse:
         """The pulse."""
         return SinePulse(
-            amplitude=self.amplitude_g * STANDARD_GRAVITY,
+            amplitude=self.amplitude_g * GRAVITY,
             omega=self.omega_over_p * self.block.p,
             half_cycles=PULSES[self.pulse],
         )
@@ -82,7 +82,7 @@ class HistoryCase:
     def motion(self) -> SinePulse:
         """The pulse."""
         return SinePulse(
-            amplitude=self.amplitude_g * STANDARD_GRAVITY,
+            amplitude=self.amplitude_g * GRAVITY,
             omega=self.omega_rad_s,
             half_cycles=PULSES[self.pulse],
         )

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.conditioning import Conditioning, condition_numbers
 from analytic.maps import Modes, overturning_modes
 from analytic.motion import FloatArray, SinePulse
@@ -162,7 +162,7 @@ class Window:
         alpha = float(self.alpha(np.array(x)))
         width = WIDTH_M
         if self.over == "size":
-            radius = 0.75 * STANDARD_GRAVITY / (2.0 * math.pi * x) ** 2
+            radius = 0.75 * GRAVITY / (2.0 * math.pi * x) ** 2
             width = 2.0 * radius * math.sin(alpha)
         block = RigidBlock(width=width, height=width / math.tan(alpha))
         return block, SinePulse(

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from analytic import conditioning, sensitivity
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.record import Record
@@ -19,7 +20,7 @@ from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_COMPUTING, OWN_EFFORT, Computing, EffortOptions
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
@@ -59,7 +60,8 @@ def command(
         8/p of free rocking.
     estimate
         Run every engine at half the step, too: the relative difference of the two peaks, and that
-        times the factor which bounds 95 % of the errors on random cases (`rocking estimate`).
+        times the factor which bounds 95 % of the errors on random cases, or that there is no such
+        bound (`rocking estimate`).
     plot
         Draw the time histories over each other into this file (.png, .pdf or .svg).
     json
@@ -72,6 +74,7 @@ def command(
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     window = _window(block, motion, duration)
+    refuse_endless(block, window, duration=duration, step=effort.step)
     rows = compare(
         block,
         posed,
@@ -83,12 +86,21 @@ def command(
         executor=computing.executor(),
     )
     if json:
-        print(json_lines(rows, note))
+        print(json_lines(conditioned(rows, block, posed), note))
     else:
         print(table_text(block, posed, window, rows, note, degrees=excitation.degrees))
     if plot:
         draw(rows, block, motion, plot)
     return exit_code(rows)
+
+
+def conditioned(rows: Sequence[Row], block: RigidBlock, posed: Posed) -> list[Row]:
+    """Add kappa and sensitivity of the exact peak to every row, where there is one."""
+    kappa = moved = math.nan
+    if rows[0]["exact"].outcome is not Outcome.FAILED:
+        kappa, _ = conditioning(block, posed.motion, start=posed.start)
+        moved = sensitivity(block, posed.motion, start=posed.start)
+    return [{**row, "kappa": kappa, "sensitivity": moved} for row in rows]
 
 
 def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:

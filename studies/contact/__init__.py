@@ -8,15 +8,15 @@ STUDY = Study(
     help="""Contact models: what each setting of an engine's contact costs and buys.
 
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
-contact.csv, variants.csv, contact.png and findings.txt; resumable. The full study takes
-some three minutes on one core, --quick half a minute.""",
+contact.csv, variants.csv, own-steps.csv, contact.png and findings.txt; resumable. The full study
+takes some four minutes on one core, --quick half a minute.""",
     table="contact.csv",
-    products=("contact.csv", "variants.csv", "contact.png", "findings.txt"),
+    products=("contact.csv", "variants.csv", "own-steps.csv", "contact.png", "findings.txt"),
     chapters=(
         Chapter(
             folder="contact",
             question="What does each setting of a contact cost and buy?",
-            tables=("variants.csv",),
+            tables=("variants.csv", "own-steps.csv"),
             full=(*("--engines", "pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier"),),
             minutes=(0.3, 1.5),
             weaker="Fewer cases, and longer steps.",

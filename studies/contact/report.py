@@ -14,6 +14,7 @@ from studies.contact.claims import errors_of, findings, first_claim, name_of, ov
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,8 +27,10 @@ def report(folder: Path) -> str:
     """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
     from studies.drawing.figures import save_all
 
-    lines = variant_table(read(folder / "contact.csv"))
-    provenance.write_text(folder / "variants.csv", lines.to_csv(index=False, na_rep="nan"))
+    rows = read(folder / "contact.csv")
+    lines, own = variant_table(rows[~rows["own_step"]]), variant_table(rows[rows["own_step"]])
+    for name, table in {"variants": lines, "own-steps": own}.items():
+        provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
     save_all(pictures(folder), folder)
     text = "\n".join(
         [
@@ -78,12 +81,13 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
     base = compared[compared["factor"] == ""].set_index(["engine", "preset", *case])["peak_ratio"]
     base = base.where(np.isfinite(base))  # a preset that overturns has no peak to move
     own = base.reindex(pd.MultiIndex.from_frame(compared[["engine", "preset", *case]])).to_numpy()
+    kinds = wrong_in(compared)
     compared = compared.assign(
         moved=(compared["peak_ratio"] / own - 1.0).where(compared["error"].notna()).abs(),
         typical=compared["error"].abs().where(compared["set"] == "typical"),
         step_s=compared["wall_s"] / compared["steps"].clip(lower=1),
-        failed=compared["outcome"] == "failed",
-        wrong=~compared["agrees"] & (compared["outcome"] != "failed"),
+        failed=kinds == NO_ANSWER,
+        wrong=kinds.isin((FALL, REST)),
     )
     groups = compared.groupby(KEY, sort=False)
     table = groups.agg(

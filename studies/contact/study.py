@@ -11,7 +11,7 @@ import numpy as np
 from analytic.response import Outcome, Response
 from engines import ENGINES, core_engines
 from engines.declaration import Stepping
-from engines.factors import OWN_STEPS
+from engines.factors import DEFAULT, OWN_STEPS
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, variants
@@ -43,8 +43,9 @@ def command(
     """Compare contact models: each setting alone, from the best setting and from the defaults.
 
     Solvers, geometry, friction, compliance, damping, integrators, ... of engines, on cases of the
-    paper with half and full sines and H/B of 2, 3 and 4, all at one p dt. A failure is an
-    answer: the exit code is 1 only where a preset as it is fails.
+    paper with half and full sines and H/B of 2, 3 and 4, all at one p dt; those that change the
+    defaults at the library's own step too. A failure is an answer: the exit code is 1 only where a
+    preset as it is fails at that p dt.
 
     Parameters
     ----------
@@ -63,8 +64,9 @@ def plan(engines: Sequence[str], quick: bool) -> Plan:
     """Return the plan that puts every variant of some engines to the cases."""
     return Plan(
         jobs=[
-            job_of(variant, kind, case, quick)
-            for variant in all_variants(engines)
+            job_of(variant, kind, case, quick, own_step)
+            for own_step, asked in ((False, all_variants), (True, of_defaults))
+            for variant in asked(engines)
             for kind, case in cases(quick)
         ],
         settings={"quick": quick},
@@ -75,13 +77,19 @@ def plan(engines: Sequence[str], quick: bool) -> Plan:
 
 
 def unchanged(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of presets as they are."""
-    return [row for row in rows if not row["factor"]]
+    """Return the rows of presets as they are, at equal steps."""
+    return [row for row in rows if not row["factor"] and not row["own_step"]]
 
 
 def all_variants(engines: Sequence[str]) -> list[Variant]:
     """Return every way to set some engines, engine by engine."""
     return [variant for engine in engines for variant in variants(engine)]
+
+
+def of_defaults(engines: Sequence[str]) -> list[Variant]:
+    """Return the ways to set some engines that have a step of the library's own."""
+    found = [v for v in all_variants(engines) if v.preset == DEFAULT]
+    return [variant for variant in found if variant.factor != OWN_STEPS]
 
 
 @functools.cache
@@ -93,11 +101,11 @@ def cases(quick: bool) -> tuple[tuple[str, Case], ...]:
     return tuple(chosen)
 
 
-def job_of(variant: Variant, kind: str, case: Case, quick: bool) -> Job:
-    """Return the job of a variant and a case."""
+def job_of(variant: Variant, kind: str, case: Case, quick: bool, own_step: bool = False) -> Job:
+    """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
-    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS:
+    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS and not own_step:
         options["step"] = QUICK_STEP if quick else STEP
     window = free_rocking_window(case.block, case.motion)
     return Job(
@@ -107,6 +115,7 @@ def job_of(variant: Variant, kind: str, case: Case, quick: bool) -> Job:
             "factor": variant.factor,
             "level": variant.level,
             "trap": variant.trap,
+            "own_step": own_step,
             "set": kind,
             **asdict(case),
         },

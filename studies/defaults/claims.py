@@ -10,6 +10,7 @@ from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.measures.presets import engine_of
 from studies.measures.words import alike, listed, part
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, WORDS, counted, kinds_of
 
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""
@@ -18,7 +19,9 @@ ALIKE = ["pulse", "aspect", "onsets", "omega_over_p", "source"]
 """Columns that similarity lets answers depend on."""
 
 RIGHT = ("both rock", "both overturn")
-OFF, FALSE, MISSED, FAILED = "peak off", "false overturning", "missed overturning", "failed"
+OFF, FALSE, MISSED = "peak off", "false overturning", "missed overturning"
+KIND = {FALSE: FALL, MISSED: FALL, REST: REST, NO_ANSWER: NO_ANSWER}
+"""Verdict on a wrong outcome -> its kind; a fall that is wrong has two sides."""
 INVALID = "invalid"
 """Where the block should slide or lift off, which the reference does not."""
 
@@ -31,20 +34,22 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     found, over = rows["outcome"].to_numpy(), right["outcome"].to_numpy() == "overturned"
     with np.errstate(invalid="ignore"):
         error = rows["peak_ratio"].to_numpy() / right["peak_ratio"].to_numpy() - 1.0
-    survive = ~over & np.isin(found, ("rocked", "at rest"))
+    wrong = kinds_of(found, right["outcome"].to_numpy())
     verdict = np.select(
         [
             right["needed"].to_numpy() > rows["source"].map(friction_of).to_numpy(),
-            found == "failed",
-            over & (found == "overturned"),
+            wrong == NO_ANSWER,
+            wrong == REST,
+            (wrong == FALL) & over,
+            wrong == FALL,
             over,
-            found == "overturned",
             np.abs(error) > CLOSE,
         ],
-        [INVALID, FAILED, RIGHT[1], MISSED, FALSE, OFF],
+        [INVALID, NO_ANSWER, REST, MISSED, FALSE, RIGHT[1], OFF],
         RIGHT[0],
     )
-    return rows.assign(error=np.where(survive, error, np.nan), verdict=verdict)
+    both_rocked = (wrong == "") & ~over
+    return rows.assign(error=np.where(both_rocked, error, np.nan), verdict=verdict)
 
 
 def friction_needed(case: "pd.Series[float]") -> float:
@@ -74,17 +79,18 @@ def shares(rows: pd.DataFrame) -> pd.DataFrame:
     """
     asked = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
     groups = asked.groupby(["source", "width_m"], sort=False)
-    return groups.agg(
+    kinds = pd.DataFrame(counted(found.map(KIND)) for _, found in groups["verdict"])
+    table = groups.agg(
         cases=("verdict", "size"),
         close=("verdict", lambda found: int(found.isin(RIGHT).sum())),
         far=("verdict", lambda found: int((found == OFF).sum())),
         false_overturnings=("verdict", lambda found: int((found == FALSE).sum())),
         missed_overturnings=("verdict", lambda found: int((found == MISSED).sum())),
-        failed=("verdict", lambda found: int((found == FAILED).sum())),
         median_error=("error", lambda error: error.abs().median()),
         p90_error=("error", lambda error: error.abs().quantile(0.9)),
         wall_s=("wall_s", "sum"),
-    ).reset_index()
+    )
+    return pd.concat([table.reset_index(), kinds], axis=1)
 
 
 def first_claim(table: pd.DataFrame) -> str:
@@ -128,14 +134,20 @@ def claims(table: pd.DataFrame, rows: pd.DataFrame) -> str:
             f"{row[column] / row['cases']:.1%} {what}".replace("%", " %")
             for column, what in (
                 ("far", "peaks off by more"),
-                ("false_overturnings", "overturned falsely"),
-                ("missed_overturnings", "overturnings missed"),
-                ("failed", "failed"),
+                (FALL, f"{WORDS[FALL]}{_sides(row)}"),
+                (REST, WORDS[REST]),
+                (NO_ANSWER, WORDS[NO_ANSWER]),
             )
             if row[column]
         ]
         words.append(f"{engine_of(str(name))} {listed(wrong)}")
-    return f"{_each(table)} Of the rest: {'; '.join(words)}. {similarity(rows)}"
+    return f"{_each(table)} Else: {'; '.join(words)}. {similarity(rows)}"
+
+
+def _sides(row: "pd.Series[float]") -> str:
+    """Return in brackets on which side falls are wrong."""
+    sides = (("false_overturnings", "falsely overturned"), ("missed_overturnings", "missed"))
+    return f" ({listed([f'{row[name]:.0f} {words}' for name, words in sides if row[name]])})"
 
 
 def similarity(rows: pd.DataFrame) -> str:

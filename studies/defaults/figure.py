@@ -9,9 +9,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from studies.defaults.claims import CLOSE, FAILED, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.defaults.claims import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT
 from studies.measures.presets import engine_of
 from studies.measures.words import part
+from studies.measures.wrongness import NO_ANSWER, REST, WORDS
 
 # the palette of Okabe and Ito, lightened where most of an area is filled
 COLOURS = {
@@ -20,16 +21,18 @@ COLOURS = {
     OFF: "#F7EE8A",
     FALSE: "#D55E00",
     MISSED: "#0072B2",
-    FAILED: "#000000",
+    REST: "#56B4E9",
+    NO_ANSWER: "#000000",
     INVALID: "#E6DCF0",
 }
-WORDS = {
+LABELS = {
     RIGHT[0]: f"survives, peak within {part(CLOSE)}",
     RIGHT[1]: "overturns, as it should",
     OFF: f"survives, peak off by more than {part(CLOSE)}",
     FALSE: "overturns falsely",
     MISSED: "overturning missed",
-    FAILED: "slid, sank or slept: no result",
+    REST: WORDS[REST],
+    NO_ANSWER: WORDS[NO_ANSWER],
     INVALID: "not judged: it should slide or lift off",
 }
 ACROSS = 4
@@ -67,7 +70,7 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
     )
     drawing.legend(
         handles=[
-            Patch(facecolor=colour, edgecolor="#888888", label=WORDS[name])
+            Patch(facecolor=colour, edgecolor="#888888", label=LABELS[name])
             for name, colour in COLOURS.items()
             if name in set(rows["verdict"])
         ],

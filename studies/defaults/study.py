@@ -136,7 +136,8 @@ def headline(folder: Path) -> str:
 
 def paragraph(folder: Path) -> str:
     """Say what each engine gets wrong, and what its defaults make of similarity."""
-    return claims(pd.read_csv(folder / "parts.csv"), read(folder))
+    rows = read(folder)
+    return claims(shares(rows), rows)
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

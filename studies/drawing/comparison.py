@@ -17,6 +17,7 @@ from studies.cases.paper import PULSES
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
 from studies.measures.differences import scientific
+from studies.measures.halving import NO_BOUND
 
 DRIFT = 1e-6
 """Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
@@ -24,6 +25,7 @@ DRIFT = 1e-6
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")
+CONDITIONED = ("kappa", "sensitivity")
 ESTIMATED = ("estimate", "bound")
 """Columns of a comparison that its JSON has, the last where asked for; a number that is not finite
 is null there."""
@@ -37,7 +39,9 @@ def json_lines(rows: list[Row], note: str = "") -> str:
     objects: list[dict[str, Any]] = []
     for row in rows:
         exact = row["exact"]
-        item = {name: row[name] for name in (*SHARED, *BESIDE, *ESTIMATED) if name in row}
+        item = {
+            name: row[name] for name in (*SHARED, *BESIDE, *CONDITIONED, *ESTIMATED) if name in row
+        }
         item["message"] = "; ".join(words for words in (item["message"], note) if words)
         item |= {name: getattr(exact, name) for name in ("min_normal", "friction_needed")}
         objects.append({**item, "valid": valid(exact)})
@@ -99,9 +103,16 @@ def table_text(
 
 def _estimates(rows: list[Row]) -> dict[str, list[str]]:
     """Return the columns of estimates, where they were asked for."""
-    columns = {"estimate": "estimate", "bound 95 %": "bound"}
-    asked = {head: name for head, name in columns.items() if name in rows[0]}
-    return {head: [_part(row[name]) for row in rows] for head, name in asked.items()}
+    if "estimate" not in rows[0]:
+        return {}
+    return {
+        "estimate": [_part(row["estimate"]) for row in rows],
+        "bound 95 %": [_bound(row["estimate"], row["bound"]) for row in rows],
+    }
+
+
+def _bound(estimate: float, bound: float) -> str:
+    return NO_BOUND if math.isnan(bound) and not math.isnan(estimate) else _part(bound)
 
 
 def _start(block: RigidBlock, posed: Posed, degrees: bool) -> str:
@@ -112,11 +123,8 @@ def _start(block: RigidBlock, posed: Posed, degrees: bool) -> str:
 
 
 def valid(exact: Response) -> bool | None:
-    """Say whether the pivot stays on the base in the exact solution; None if that does not tell.
-
-    Forces of a block that overturns are those of its fall, too, and say nothing.
-    """
-    if exact.outcome in (Outcome.FAILED, Outcome.OVERTURNED):
+    """Say whether the pivot stays on the base in the exact solution; None if there is none."""
+    if exact.outcome is Outcome.FAILED:
         return None
     return exact.min_normal >= 0.0
 
@@ -124,10 +132,8 @@ def valid(exact: Response) -> bool | None:
 def validity(exact: Response) -> str:
     """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
     holds = valid(exact)
-    if exact.outcome is Outcome.FAILED:
-        return "unknown: there is no exact solution to tell"
     if holds is None:
-        return "unknown: forces of a block that overturns are those of its fall, too"
+        return "unknown: there is no exact solution to tell"
     if not holds:
         return "not here: the pivot would lift off, and an engine is right to differ"
     least = f"the normal force stays above {exact.min_normal:.3g} of the weight"

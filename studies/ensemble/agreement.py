@@ -7,6 +7,7 @@ import pandas as pd
 from scipy.stats import binomtest, ks_2samp
 
 from studies.ensemble.fragility import BLOCK, Fragilities, Fragility, bounds, by_block
+from studies.measures.wrongness import NO_ANSWER, REST, wrong_in
 
 CASE = [*BLOCK, "motion", "intensity"]
 
@@ -20,8 +21,10 @@ def beside_exact(rows: pd.DataFrame) -> pd.DataFrame:
     exact = exact.rename(columns={"outcome": "exact_outcome", "peak_ratio": "exact_peak"})
     joined = rows[rows["source"] != "exact"].merge(exact, on=CASE, validate="many_to_one")
     both = (joined["outcome"] == "rocked") & (joined["exact_outcome"] == "rocked")
+    wrong = wrong_in(joined)
     return joined.assign(
-        agrees=joined["outcome"] == joined["exact_outcome"],
+        wrong=wrong,
+        agrees=wrong == "",
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both),
     )
 
@@ -32,8 +35,9 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        right, false and missed overturnings; median_error and p90_error of single peaks, predicted
-        (share of cases with the right outcome and, if rocked, a peak right within CLOSE);
+        right, false and missed overturnings, at rest for rocked or the reverse; median_error and
+        p90_error of single peaks, predicted (share of cases with the right outcome and, if rocked,
+        a peak right within CLOSE);
         ks, the largest distance between the distributions of the peaks over the intensities, ks_p
         its p-value and ks_rejected the intensities with one below 0.05; mcnemar_p, of as many
         overturnings too many as too few; the fitted capacity and its ratio to the exact
@@ -45,7 +49,7 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
         exact = fitted[(*known, "exact")]
         lines.append({**size, "source": "exact", **_capacity(exact, exact)})
         for source, group in block.groupby("source", sort=False):
-            usable = group[group["outcome"] != "failed"]
+            usable = group[group["wrong"] != NO_ANSWER]
             lines.append(
                 {
                     **size,
@@ -67,6 +71,7 @@ def _one_by_one(group: pd.DataFrame, usable: pd.DataFrame) -> dict[str, object]:
         "right": int(usable["agrees"].sum()),
         "false": int(((usable["outcome"] == "overturned") & ~usable["agrees"]).sum()),
         "missed": int(((usable["exact_outcome"] == "overturned") & ~usable["agrees"]).sum()),
+        REST: int((usable["wrong"] == REST).sum()),
         "median_error": errors.median(),
         "p90_error": errors.quantile(0.9) if len(errors) else math.nan,
         "predicted": close.sum() / len(group),

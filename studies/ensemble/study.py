@@ -23,6 +23,7 @@ from studies.kit.arguments import (
     Count,
     Place,
     check_sources,
+    one_of,
     refuse_given,
     refuse_repeats,
     several_or_none,
@@ -36,6 +37,8 @@ from studies.sources.groups import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+Family = Literal["noise", "near-fault", "ricker"]
 
 SIZES_M = ((0.5, 1.5), (1.0, 2.0), (1.0, 4.0))
 """Width and height of the blocks."""
@@ -132,12 +135,12 @@ def ensemble_cases(
 def command(
     *,
     out: Place,
-    family: Literal["noise", "near-fault", "ricker"] | None = None,
+    family: Annotated[Family, one_of(Family)] | None = None,
     motions: Count | None = None,
     seed: Count | None = None,
     records: Annotated[tuple[Place, ...] | None, several_or_none] = None,
-    units: Units | None = None,
-    baseline: Baseline | None = None,
+    units: Annotated[Units, one_of(Units)] | None = None,
+    baseline: Annotated[Baseline, one_of(Baseline)] | None = None,
     sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,

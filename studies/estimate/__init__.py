@@ -7,9 +7,10 @@ STUDY = Study(
     module="studies.estimate.study",
     help="""How far off an answer is, told by the engine itself at half the step.
 
-The difference of the two runs, held against the true error on random cases: by how much it is to
-be multiplied to bound it, and with which presets it does not see the error. Writes estimate.csv,
-estimates.csv, factors.csv, estimate.png and findings.txt; resumable.""",
+The difference of the two runs, held against the true error on random cases that survive: by how
+much it is to be multiplied to bound it, told by the upper end of that factor's 95 % interval and
+tried on other cases, and with which presets there is no bound. Writes estimate.csv, estimates.csv,
+factors.csv, estimate.png and findings.txt; resumable.""",
     table="estimate.csv",
     products=("estimate.csv", "estimates.csv", "factors.csv", "estimate.png", "findings.txt"),
     captions={
@@ -23,8 +24,9 @@ estimates.csv, factors.csv, estimate.png and findings.txt; resumable.""",
             folder="estimate",
             question="How far off is an answer, where there is no exact one?",
             tables=("factors.csv",),
-            quick=("--cases", "20"),
-            minutes=(0.3, 4.0),
+            quick=("--cases", "20", "--tests", "10"),
+            minutes=(0.5, 25.0),
+            weaker="So few random cases that no factor has an upper end.",
         ),
     ),
 )

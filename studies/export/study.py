@@ -9,11 +9,11 @@ from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from studies.cases.paper import free_rocking_window
 from studies.export.writing import Exported, files, written_engines
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, Positive
+from studies.kit.arguments import BadInputError, Place, Positive, Step
+from studies.kit.drafts import write_all
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
 
 
@@ -23,9 +23,9 @@ def command(
     out: Place,
     width: Positive,
     height: Positive,
-    preset: str = "fixed",
+    preset: str | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
-    step: Positive | None = None,
+    step: Step | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
     """Write a scene as a script that needs an engine's library alone, with the peak to expect.
@@ -33,7 +33,7 @@ def command(
     Parameters
     ----------
     engine
-        Name of an engine.
+        Name of an engine; a preset may follow after a colon.
     out
         Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
         library reads one.
@@ -42,7 +42,7 @@ def command(
     height
         Full height H of the block [m].
     preset
-        One of the engine's with equal steps: naive or fixed.
+        One of the engine's with equal steps: naive or fixed; fixed by default.
     step
         p dt [-], the step in units of 1/p; by default the preset's.
     time_limit
@@ -54,12 +54,13 @@ def command(
     motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
+    refuse_endless(block, window, step=step)
     begin: dict[str, Any] = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     options = begin if step is None else {**begin, "step": step}
     rows = run_jobs(
         [
             _job("exact", block, motion, window, begin),
-            _job(f"{engine}:{preset}", block, motion, window, options),
+            _job(f"{asked.name}:{used.name}", block, motion, window, options),
         ],
         executor=Local(workers=1, time_limit_s=time_limit),
         reduce=summary,
@@ -71,29 +72,34 @@ def command(
         raise BadInputError(
             f"--engine is {engine!r}; its block stays at rest, with no peak to tell"
         )
-    scene = Scene(block=block, motion=motion, preset=preset, duration=window, **options)
+    scene = Scene(block=block, motion=motion, preset=used.name, duration=window, **options)
     what = Exported(
         engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
     )
     out.mkdir(parents=True, exist_ok=True)
-    for name, text in files(what).items():
-        provenance.write_text(out / name, text)
+    texts = files(what)
+    write_all(out, texts)
+    for name in texts:
         print(out / name)
     print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
     return 0
 
 
-def _asked(engine: str, preset: str) -> tuple[Engine, Preset]:
+def _asked(engine: str, preset: str | None) -> tuple[Engine, Preset]:
     """Return an engine and its preset, which must be ones that can be written out."""
-    if engine not in (able := written_engines(ENGINES)):
+    name, colon, after = engine.partition(":")
+    if name not in (able := written_engines(ENGINES)):
         words = f"it must be one that can be written out: {', '.join(able)}"
         raise BadInputError(f"--engine is {engine!r}; {words}")
-    asked = ENGINES[engine]
-    equal = [use.name for use in asked.presets if use.stepping is Stepping.FIXED]
-    if preset not in equal:
-        words = f"it must have equal steps: {', '.join(equal)}"
+    if colon and preset is not None:
+        words = "it may be given only where --engine has none after a colon"
         raise BadInputError(f"--preset is {preset!r}; {words}")
-    return asked, asked.preset(preset)
+    asked, wanted = ENGINES[name], after if colon else preset or "fixed"
+    equal = [use.name for use in asked.presets if use.stepping is Stepping.FIXED]
+    if wanted not in equal:
+        begin = f"--engine is {engine!r}; its preset" if colon else f"--preset is {preset!r}; it"
+        raise BadInputError(f"{begin} must have equal steps: {', '.join(equal)}")
+    return asked, asked.preset(wanted)
 
 
 def _check_folder(out: Path) -> None:

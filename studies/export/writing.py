@@ -13,7 +13,7 @@ from engines.declaration import Engine, Preset
 from engines.script import Script
 from engines.stepping import ground
 from engines.world import Moment
-from studies.kit.provenance import version_of
+from studies.kit.provenance import project_version, version_of
 from studies.measures.words import listed
 
 BLOCK, GROUND = "block.py", "ground.py"
@@ -93,10 +93,13 @@ def block_text(what: Exported, script: Script) -> str:
         trim_blocks=True,
         keep_trailing_newline=True,
     )
+    packages = {name: version_of(name) for name in what.engine.packages}
     return environment.get_template(f"{BLOCK}.jinja").render(
         title=what.engine.title,
         preset=what.preset.title,
-        versions=listed([f"{name} {version_of(name)}" for name in what.engine.packages]),
+        version=project_version(),
+        versions=listed([" ".join(pair) for pair in packages.items()]),
+        packages=packages,
         beside="".join(f", {name}" for name in script.files),
         script=script,
         block=what.scene.block,

@@ -7,24 +7,26 @@ STUDY = Study(
     module="studies.harmonic.study",
     help="""Steady states under sustained harmonic shaking, over its frequency or amplitude.
 
-The exact solution swept up and down, each point starting from the state that the last one left, so
-that branches which live side by side are both found; its largest rotation to either side, the
-period of the orbit and its impacts, and where the block overturns. Engines start on the exact orbit
-at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt. About a minute.""",
+The exact solution from a grid of starts, rotations by rates, at every point, and each orbit that it
+finds followed to the points beside it: every attractor with its largest rotation to either side,
+its period and impacts, and the share of the starts that end on it or overturn. Engines start on the
+exact orbit at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt. About
+a minute.""",
     table="harmonic.csv",
     products=("harmonic.csv", "engines.csv", "harmonic.png", "findings.txt"),
     chapters=(
         Chapter(
             folder="harmonic",
             question="Which steady states does a block settle on under sustained shaking?",
-            minutes=(0.1, 1.5),
+            minutes=(0.2, 1.5),
             weaker="Fewer frequencies.",
         ),
     ),
     captions={
         "harmonic": (
-            "Largest steady rotation over the frequency of sustained shaking, swept up and down, "
-            "with the engines started on the exact orbit."
+            "Largest rotation of every steady state that was found over the frequency of sustained "
+            "shaking, with the engines started on the exact orbit, and the share of the starts "
+            "that end on each."
         ),
     },
 )

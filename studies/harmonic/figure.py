@@ -1,53 +1,72 @@
-"""The steady-state diagram: largest rotation against frequency or amplitude, up and down."""
+"""The steady-state diagram: every orbit that was found, and its share of the starts."""
 
-import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from analytic.response import Outcome
 from studies.drawing.styles import style_of
 
 LABELS = {
     "frequency": "frequency of the shaking  ω/p  [–]",
     "amplitude": "amplitude of the shaking over the onset  $a_p$ / (g tan α)  [–]",
 }
-ARROWS = {"up": ("#0072B2", "▸ swept up"), "down": ("#D55E00", "◂ swept down")}
+COLOURS = {1: "#0072B2", 2: "#E69F00", 3: "#D55E00", 0: "#555555"}
+"""Of the orbits of a period; 0: those that do not repeat."""
+LONGER, RESTING, FALLEN = "#CC79A7", "#9bd3c4", "#e4e4e4"
+"""Colours of all other periods, of a block at rest, and of overturning."""
+NAMES = {
+    **{COLOURS[period]: f"period {period}" for period in (1, 2, 3)},
+    **{LONGER: "another period", COLOURS[0]: "does not repeat"},
+}
 
 
 def draw_harmonic(table: pd.DataFrame, engines: pd.DataFrame, over: str) -> Figure:
-    """Draw the larger and the smaller side of every steady state, and the engines on them."""
-    drawing = Figure(figsize=(8.6, 4.8), layout="constrained")
-    axes = drawing.subplots()
-    for direction, (colour, label) in ARROWS.items():
-        part = table[table["direction"] == direction].sort_values("x")
-        settled = part.where(part["period"] > 0)
-        wide = {"up": 4.0, "down": 1.6}[direction]
-        axes.plot(part["x"], settled["larger_ratio"], color=colour, linewidth=wide, label=label)
-        axes.plot(part["x"], settled["smaller_ratio"], color=colour, linewidth=0.9, linestyle=":")
-        loose = part[(part["period"] == 0) & np.isfinite(part["larger_ratio"])]
-        axes.scatter(loose["x"], loose["larger_ratio"], s=8, color=colour, alpha=0.6)
-        fallen = part[part["outcome"] == "overturned"]
-        height = {"up": 1.12, "down": 1.15}[direction]
-        axes.scatter(fallen["x"], np.full(len(fallen), height), marker="|", s=30, color=colour)
-    if (table["outcome"] == "overturned").any():
-        axes.text(table["x"].min(), 1.17, "overturns", fontsize=8, va="bottom")
-    for source, rows in engines.groupby("source", sort=False) if len(engines) else ():
-        style = style_of(str(source))
-        axes.scatter(
-            rows["x"],
-            rows["larger_ratio"],
-            marker=style.marker or "o",
-            s=34,
-            facecolor="none",
-            edgecolor=style.colour,
-            label=f"{source}, from the exact orbit",
-            zorder=4,
-        )
-    axes.set_ylim(0.0, 1.24)
-    axes.set_xlabel(LABELS[over])
-    axes.set_ylabel("largest steady rotation  |θ|/θcr  [–]")
-    axes.plot(
-        [], [], color="#777777", linewidth=0.9, linestyle=":", label="largest to the other side"
-    )
-    axes.set_title("Steady states under sustained harmonic shaking", fontsize=10)
-    axes.legend(fontsize=8, frameon=False, ncols=2)
+    """Draw both sides of every steady state, the engines on them, and the shares of the starts."""
+    drawing = Figure(figsize=(8.6, 6.4), layout="constrained")
+    upper, lower = drawing.subplots(2, sharex=True, height_ratios=(3, 1.3))
+    _orbits(upper, table[table["outcome"] == Outcome.ROCKED.value])
+    _engines(upper, engines)
+    _shares(lower, table)
+    lower.set(xlabel=LABELS[over], ylabel="share of the starts  [–]", ylim=(0.0, 1.0))
+    lower.set_xlim(table["x"].min(), table["x"].max())
+    drawing.suptitle("Steady states under sustained harmonic shaking", fontsize=10)
+    drawing.legend(loc="outside right upper", fontsize=8, frameon=False)
     return drawing
+
+
+def _orbits(axes: Axes, rocked: pd.DataFrame) -> None:
+    drawn = rocked["period"].map(lambda period: COLOURS.get(period, LONGER))
+    for colour, name in NAMES.items():
+        rows = rocked[drawn == colour]
+        if rows.empty:
+            continue
+        axes.plot(rows["x"], rows["larger_ratio"], "o", color=colour, markersize=3.2, label=name)
+        axes.plot(rows["x"], rows["smaller_ratio"], "_", color=colour, markersize=4.0)
+    axes.plot([], [], "_", color="#555555", markersize=6.0, label="largest to the\nother side")
+    axes.set(ylabel="largest steady rotation  |θ|/θcr  [–]", ylim=(0.0, None))
+    axes.grid(alpha=0.25)
+
+
+def _engines(axes: Axes, engines: pd.DataFrame) -> None:
+    for source, rows in engines.groupby("source", sort=False) if len(engines) else ():
+        style = style_of(str(source)).points(7.0)
+        label = f"{source}, from\nthe exact orbit"
+        axes.plot(rows["x"], rows["larger_ratio"], **style, label=label, zorder=4)
+
+
+def _shares(axes: Axes, table: pd.DataFrame) -> None:
+    places = sorted(set(table["x"].tolist()))
+    fallen = table["outcome"] == Outcome.OVERTURNED.value
+    resting = table["outcome"] == Outcome.AT_REST.value
+    layers = [(resting, RESTING, "at rest"), (fallen, FALLEN, "overturns")]
+    for period in sorted(set(table["period"].tolist()), reverse=True):
+        here = ~fallen & ~resting & (table["period"] == period)
+        layers.insert(0, (here, COLOURS.get(period, LONGER), ""))
+    layers = [layer for layer in layers if layer[0].any()]
+    heights = [
+        table[here].groupby("x")["start_share"].sum().reindex(places, fill_value=0.0)
+        for here, _, _ in layers
+    ]
+    colours, names = [colour for _, colour, _ in layers], [name for _, _, name in layers]
+    axes.stackplot(places, *heights, colors=colours, labels=names)

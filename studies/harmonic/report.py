@@ -1,19 +1,22 @@
-"""What the steady states say: branches, doubled periods, overturning, and the engines on them."""
+"""What the steady states say: branches, their shares of the starts, and the engines on them."""
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
+from analytic.response import Outcome
 from studies.kit import provenance
 from studies.measures.differences import scientific
-from studies.measures.words import capital, out_of
+from studies.measures.words import out_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-APART = 1e-3
-"""Two branches further apart than this, relative, are two."""
+NO_PERIOD = "does not repeat"
+NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
 
 
 def report(folder: Path) -> str:
@@ -22,7 +25,7 @@ def report(folder: Path) -> str:
 
     save_all(pictures(folder), folder)
     table, engines = read(folder, "harmonic"), read(folder, "engines")
-    text = "\n\n".join([*branches_text(table), *engines_text(engines), paragraph(folder)])
+    text = "\n\n".join([branches_text(table), *engines_text(engines), paragraph(folder)])
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -38,33 +41,53 @@ def settings_of(folder: Path) -> dict[str, object]:
     return dict(provenance.record_of(folder)["settings"])
 
 
-def branches_text(table: pd.DataFrame) -> list[str]:
-    """Return where each kind of steady state lies, a line for each run of points."""
-    lines = ["Steady states of the exact solution (period in forcing periods; 0: none repeats):"]
-    for direction, part in table.groupby("direction", sort=False):
-        part = part.sort_values("x")
-        kind = part["outcome"].where(part["outcome"] != "rocked", part["period"].astype(str))
-        for _, run in part.groupby((kind != kind.shift()).cumsum()):
-            first, last = run.iloc[0], run.iloc[-1]
-            what = f"period {first['period']}, {first['impacts']} impacts"
-            if first["outcome"] != "rocked":
-                what = str(first["outcome"])
-            elif not first["period"]:
-                what = "does not repeat"
-            span = f"{run['larger_ratio'].min():.3g} to {run['larger_ratio'].max():.3g} θcr"
-            lines.append(
-                f"  {direction:4} {first['x']:.4g} to {last['x']:.4g}: {what}"
-                + (f", {span}" if first["outcome"] == "rocked" else "")
-            )
-    return ["\n".join(lines)]
+def branches_text(table: pd.DataFrame) -> str:
+    """Return where each kind of attractor lives and for what share of the starts, run by run."""
+    lines = [
+        "Attractors of the exact solution (period in forcing periods; orbits that are mirror "
+        "images are one, and all that do not repeat; 0 % of the starts: found by following the "
+        "orbit from the next point):"
+    ]
+    for kind, rows in runs(table):
+        peaks = rows["larger_ratio"]
+        size = f", {_range(peaks, '.3g')} θcr" if np.isfinite(peaks).all() else ""
+        share = _range(100.0 * rows["start_share"], ".0f")
+        lines.append(f"  {_range(rows['x'], '.4g')}: {kind}{size}, {share} % of the starts")
+    return "\n".join(lines)
 
 
-def coexisting(table: pd.DataFrame) -> "pd.Series[bool]":
-    """Return, at each abscissa, whether the sweeps up and down settle on different orbits."""
-    up, down = (
-        table[table["direction"] == name].set_index("x")["larger_ratio"] for name in ("up", "down")
-    )
-    return (up / down - 1.0).abs() > APART
+def _range(values: "pd.Series[float]", form: str) -> str:
+    return " to ".join(dict.fromkeys(format(end, form) for end in (values.min(), values.max())))
+
+
+def kind_of(row: "pd.Series[Any]") -> str:
+    """Return what a row of harmonic.csv is: an orbit of some period, or another end."""
+    if row["outcome"] != Outcome.ROCKED.value:
+        return str(row["outcome"])
+    return f"period {row['period']}, {row['impacts']} impacts" if row["period"] else NO_PERIOD
+
+
+def runs(table: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield each kind of attractor with its rows, for every run of neighbouring abscissae."""
+    grid = {x: place for place, x in enumerate(sorted(table["x"].unique()))}
+    for kind, rows in table.groupby(table.apply(kind_of, axis=1), sort=False):
+        rows = rows.sort_values("x", kind="stable")
+        for _, run in rows.groupby((rows["x"].map(grid).diff() > 1).cumsum()):
+            yield str(kind), run
+
+
+def counts(table: pd.DataFrame) -> dict[str, int]:
+    """Count abscissae: of several steady states, of a longer period, of some and all overturned."""
+    steady = table["outcome"].isin([Outcome.ROCKED.value, Outcome.AT_REST.value])
+    states = steady.groupby(table["x"]).sum()
+    fallen = (table["outcome"] == Outcome.OVERTURNED.value).groupby(table["x"]).any()
+    return {
+        "all": len(states),
+        "several": int((states > 1).sum()),
+        "longer": table.loc[table["period"] > 1, "x"].nunique(),
+        "both": int((fallen & (states > 0)).sum()),
+        "fallen": int((fallen & (states == 0)).sum()),
+    }
 
 
 def engines_text(engines: pd.DataFrame) -> list[str]:
@@ -88,29 +111,32 @@ def with_error(engines: pd.DataFrame) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say how many points survive, and at how many abscissae two orbits live side by side."""
-    table = read(folder, "harmonic")
-    survivors = int((table["outcome"] == "rocked").sum())
+    """Say at how many abscissae several steady states live, and where the start decides a fall."""
+    found = counts(read(folder, "harmonic"))
+    several, both = out_of(found["several"], found["all"]), out_of(found["both"], found["all"])
+    over = settings_of(folder)["over"]
     return (
-        f"{capital(out_of(survivors, len(table)))} points survive; sweeps up and down settle on "
-        f"different orbits at {out_of(int(coexisting(table).sum()), table['x'].nunique())} "
-        "abscissae."
+        f"{NOUNS[str(over)].format(several)} a block has more than one steady state, and at {both} "
+        "its start decides whether it overturns."
     )
 
 
 def paragraph(folder: Path) -> str:
-    """Say how many points settle, on how many two orbits live side by side, and the engines."""
-    table, engines = read(folder, "harmonic"), read(folder, "engines")
-    rocked = table[table["outcome"] == "rocked"]
+    """Say from how many starts, how many steady states were found and where, and the engines."""
+    table, engines, asked = read(folder, "harmonic"), read(folder, "engines"), settings_of(folder)
+    found, side = counts(table), asked["starts"]
+    total = found["all"]
     sentence = (
-        f"Of {len(table)} points {len(rocked)} survive and {int((rocked['period'] > 0).sum())} "
-        f"repeat, {int((rocked['period'] > 1).sum())} of them after more than one forcing period; "
-        f"at {int(coexisting(table).sum())} of {table['x'].nunique()} abscissae the sweeps up and "
-        "down settle on different orbits."
+        f"From {side} rotations by {side} rates at each of {total} abscissae, with steady states "
+        f"counted and overturning not: {out_of(found['several'], total)} have more than one, "
+        f"{out_of(found['longer'], total)} one that takes more than one forcing period; at "
+        f"{out_of(found['both'], total)} some starts overturn and others do not, at "
+        f"{out_of(found['fallen'], total)} all overturn. An orbit may live where no start of the "
+        "grid found it."
     )
     if len(engines):
-        found = with_error(engines).groupby("source", sort=False)["error"].max()
-        words = ", ".join(f"{name} {scientific(value)}" for name, value in found.items())
+        largest = with_error(engines).groupby("source", sort=False)["error"].max()
+        words = ", ".join(f"{name} {scientific(value)}" for name, value in largest.items())
         sentence += f" Engines on the exact orbit, largest difference of its rotation: {words}."
     return sentence
 

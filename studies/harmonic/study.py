@@ -1,4 +1,4 @@
-"""Steady states under sustained harmonic shaking: the exact branches, up and down, and engines."""
+"""Steady states under sustained harmonic shaking: every attractor that is found, and engines."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -11,8 +11,8 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.response import Response
 from studies.harmonic import STUDY
+from studies.harmonic.attractors import Attractor, Shaking, State, attractors
 from studies.harmonic.report import headline, paragraph, pictures, report
-from studies.harmonic.sweeps import Shaking, State, sweep
 from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
@@ -33,22 +33,29 @@ RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}
 FIXED = {"frequency": 1.5, "amplitude": 4.0}
 """a_p over g tan α of a sweep over frequency, ω/p of one over amplitude."""
 POINTS, QUICK_POINTS = 141, 36
-PERIODS, QUICK_PERIODS = 400, 200
+STARTS, QUICK_STARTS = 11, 5
+PERIODS, QUICK_PERIODS = 200, 100
 ENGINE_POINTS, QUICK_ENGINE_POINTS = 12, 3
 ENGINE_PERIODS = 60
 """Forcing periods that an engine runs from the state of the exact orbit."""
+FOLLOWED = 4
+"""About how many orbits are followed to a point."""
 PERIOD_S, POINT_BYTES = 3e-5, 2e3
-"""About how long a period of a point takes [s], and what a point of both sweeps holds."""
+"""About how long a period of a start takes [s], and what a point holds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Branch:
-    """A point of a sweep: where it is, how it was reached, and what the block settled on."""
+    """A point of a branch: where it is, and what some of the starts settled on."""
 
-    direction: str
     x: float
     shaking: Shaking
-    state: State
+    attractor: Attractor
+
+    @property
+    def state(self) -> State:
+        """What the starts settled on."""
+        return self.attractor.state
 
 
 def command(
@@ -61,15 +68,15 @@ def command(
     high: Positive | None = None,
     onsets: Positive | None = None,
     omega_over_p: Positive | None = None,
-    tilt: float = 0.3,
     points: Count | None = None,
+    starts: Count | None = None,
     periods: Count | None = None,
     sources: Annotated[tuple[str, ...], several_engines] = core_sources(),
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
-    """Sweep a sustained harmonic motion up and down, and read the steady states.
+    """Shake a block harmonically from many starts, and read the steady states.
 
     Parameters
     ----------
@@ -89,13 +96,14 @@ def command(
         Amplitude over g tan α [-] of a sweep over frequency; 1.5 by default.
     omega_over_p
         Frequency ω/p [-] of a sweep over amplitude; 4 by default.
-    tilt
-        Rotation from which a sweep starts, and starts again where the block overturned, in units
-        of α; within 1 of zero.
     points
-        Points of a sweep; 141, with --quick 36.
+        Points over the range; 141, with --quick 36.
+    starts
+        At each point so many rotations by as many rates, each from -0.9 to 0.9 of α and α p, where
+        the shaking begins at its crest; 11 (121 starts), with --quick 5 (25).
     periods
-        Forcing periods at each point before its steady state is read; 400, with --quick 200.
+        Forcing periods from each start before its steady state is read; 200, with --quick 100. What
+        does not repeat by then goes on for longer.
     sources
         Engines that start on the exact orbit at some points.
     quick
@@ -104,8 +112,6 @@ def command(
         Begin even what takes longer than a day.
     """
     check_sources(sources)
-    if not abs(tilt) < 1.0:
-        raise BadInputError(f"--tilt is {tilt}; it must lie between -1 and 1")
     for name in sources:
         if resolve(name).kind == "model":
             raise BadInputError(f"--sources names {name}; it must name engines, peers or solvers")
@@ -120,13 +126,15 @@ def command(
     block = posed_block(width, height)
     count = points or (QUICK_POINTS if quick else POINTS)
     cycles = periods or (QUICK_PERIODS if quick else PERIODS)
-    asked = f"--points is {count} and --periods is {cycles}"
+    each = starts or (QUICK_STARTS if quick else STARTS)
+    asked = f"--points is {count}, --starts is {each} and --periods is {cycles}"
     refuse_excess(asked, count * POINT_BYTES)
-    refuse_days(asked, 2.0 * count * cycles * PERIOD_S, yes)
+    refuse_days(asked, count * (each**2 + FOLLOWED) * cycles * PERIOD_S, yes)
 
     @cache
     def branches() -> list[Branch]:
-        return sweeps(block, over, np.linspace(begin, end, count).tolist(), fixed, tilt, cycles)
+        grid = np.linspace(begin, end, count).tolist()
+        return found(block, over, grid, fixed, each, cycles)
 
     def jobs() -> list[Job]:
         some = chosen(branches(), QUICK_ENGINE_POINTS if quick else ENGINE_POINTS)
@@ -134,12 +142,15 @@ def command(
 
     settings = {
         "block": asdict(block),
-        **{"over": over, "low": begin, "high": end, "fixed": fixed, "tilt": tilt},
-        **{"points": count, "periods": cycles, "quick": quick},
+        **{"over": over, "low": begin, "high": end, "fixed": fixed},
+        **{"points": count, "starts": each, "periods": cycles, "quick": quick},
     }
 
     def tabulate(rows: Sequence[Row]) -> Tables:
-        return {STUDY.name: pd.DataFrame(map(row_of, branches())), **by_label("table")(rows)}
+        return {
+            STUDY.name: pd.DataFrame([row_of(branch, each**2) for branch in branches()]),
+            **by_label("table")(rows),
+        }
 
     plan = Plan(
         jobs=jobs,
@@ -151,31 +162,28 @@ def command(
     return carry_out(STUDY, plan, out, running, report)
 
 
-def sweeps(
-    block: RigidBlock, over: Over, grid: list[float], fixed: float, tilt: float, periods: int
+def found(
+    block: RigidBlock, over: Over, grid: list[float], fixed: float, starts: int, periods: int
 ) -> list[Branch]:
-    """Return the points of a sweep up and one down."""
-    start = (tilt * block.alpha, 0.0)
-    branches = []
-    for direction, ordered in (("up", grid), ("down", grid[::-1])):
-        posed = [
-            Shaking(block=block, onsets=fixed, omega_over_p=x)
-            if over == "frequency"
-            else Shaking(block=block, onsets=x, omega_over_p=fixed)
-            for x in ordered
-        ]
-        branches += [
-            Branch(direction=direction, x=x, shaking=shaking, state=state)
-            for x, (shaking, state) in zip(ordered, sweep(posed, start, periods), strict=True)
-        ]
-    return branches
+    """Return every attractor that is found, from the first point to the last."""
+    points = [
+        Shaking(block=block, onsets=fixed, omega_over_p=x)
+        if over == "frequency"
+        else Shaking(block=block, onsets=x, omega_over_p=fixed)
+        for x in grid
+    ]
+    living = zip(grid, points, attractors(points, starts, periods), strict=True)
+    return [
+        Branch(x=x, shaking=shaking, attractor=attractor)
+        for x, shaking, here in living
+        for attractor in here
+    ]
 
 
-def row_of(branch: Branch) -> Row:
-    """Return a branch as a row of harmonic.csv."""
+def row_of(branch: Branch, starts: int) -> Row:
+    """Return a branch as a row of harmonic.csv, of so many starts in all."""
     alpha = branch.shaking.block.alpha
     return {
-        "direction": branch.direction,
         "x": branch.x,
         "onsets": branch.shaking.onsets,
         "omega_over_p": branch.shaking.omega_over_p,
@@ -184,12 +192,15 @@ def row_of(branch: Branch) -> Row:
         "smaller_ratio": branch.state.left / alpha,
         "period": branch.state.period,
         "impacts": branch.state.impacts,
+        "starts": branch.attractor.starts,
+        "start_share": branch.attractor.starts / starts,
     }
 
 
 def chosen(branches: list[Branch], count: int) -> list[Branch]:
-    """Return some of the points, evenly, at which the exact response repeats."""
+    """Return some of the orbits that repeat, evenly, those of each period in turn."""
     settled = [branch for branch in branches if branch.state.period and branch.state.right > 0.0]
+    settled.sort(key=lambda branch: branch.state.period)
     places = np.linspace(0, len(settled) - 1, min(count, len(settled)))
     return [settled[round(place)] for place in places.tolist()]
 
@@ -200,7 +211,6 @@ def engine_job(branch: Branch, source: str) -> Job:
     return Job(
         labels={
             "table": "engines",
-            "direction": branch.direction,
             "x": branch.x,
             "larger_exact": branch.state.right / branch.shaking.block.alpha,
             "smaller_exact": branch.state.left / branch.shaking.block.alpha,
@@ -211,7 +221,7 @@ def engine_job(branch: Branch, source: str) -> Job:
         source=source,
         duration=motion.duration,
         times=sample_times(motion),
-        options={"start": branch.state.start},
+        options={"start": branch.state.end},
     )
 
 

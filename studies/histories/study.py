@@ -13,11 +13,12 @@ from studies.drawing.comparison import samples
 from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
+from studies.kit.digests import seal
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, Tables, fill
+from studies.kit.plan import Plan, Tables, blaming_its_rows, fill
 from studies.kit.runner import exit_code
 from studies.measures.claims import (
     TABLE,
@@ -77,8 +78,10 @@ def command(
     refuse_repeats("--figure", figure)
     if sources is not None:
         check_sources(sources)
-    rows = fill(STUDY, plan(figure, sources), out, running)
-    print(report(out, rows))
+    with blaming_its_rows(out):
+        rows = fill(STUDY, plan(figure, sources), out, running)
+        print(report(out, rows))
+    seal(out)
     return exit_code(rows)
 
 

@@ -57,7 +57,10 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
         kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
         streams.say(f"rocking: {kind}; {stop}".rstrip("; "))
         return 128 + number
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit) as stop:
+        # what sets the help makes another of it
+        if BrokenPipeError not in (type(stop), type(stop.__context__)):
+            raise
         # whoever read the output has gone: nothing more can be said there, not even on exit
         streams.give_up_output()
         return 128 + signal.SIGPIPE
@@ -72,6 +75,8 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
 
+    if "--version" in arguments and len(arguments) > 1:
+        return refuse(f"--version is one of {len(arguments)} arguments; it must stand alone")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
         if not argument or (name.startswith("--") and equals and not value):

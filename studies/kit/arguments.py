@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from cyclopts import Parameter, Token
 
@@ -69,6 +69,13 @@ def _finite(type_: type, text: str) -> Any:
     return value
 
 
+def _step(type_: type, text: str) -> Any:
+    value = _number(math.nextafter(math.inf, 0.0))(type_, text)
+    if value < LEAST_STEP:
+        raise ValueError(text)
+    return value
+
+
 def _path(type_: type, text: str) -> Path:
     if not text or text.startswith("-") or "\0" in text:
         raise ValueError(text)
@@ -85,6 +92,43 @@ Finite = Annotated[float, _read("a finite number", _finite)]
 
 Count = Annotated[int, _read(f"a positive whole number up to {MOST}", _number(MOST))]
 """A positive whole number."""
+
+LEAST_STEP = 1e-7
+"""The smallest step: ten million of them last as long as 1/p."""
+
+MOST_HALF_CYCLES = 10**6
+"""Half cycles of which an engine's process holds the times in half a GB."""
+
+Step = Annotated[
+    float,
+    _read(
+        f"a positive number of at least {LEAST_STEP:g}: {1 / LEAST_STEP:g} of them make up 1/p",
+        _step,
+    ),
+]
+"""p dt of a solver or an engine."""
+
+HalfCycles = Annotated[
+    int,
+    _read(
+        f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory",
+        _number(MOST_HALF_CYCLES),
+    ),
+]
+"""Length of a pulse."""
+
+
+def one_of(words: Any) -> Any:
+    """Return what makes an argument take one of a Literal's words, and no other way to say none."""
+    allowed = get_args(words)
+
+    def convert(_: type, text: str) -> str:
+        if text not in allowed:
+            raise ValueError(text)
+        return text
+
+    return _read(f"among {', '.join(allowed)}", convert)
+
 
 Place = Annotated[Path, _read("a path; one that begins with a dash is written ./-name", _path)]
 """A file or folder."""
@@ -148,7 +192,8 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
         raise BadInputError(f"{argument} is empty; it must have at least one value")
     for number, value in enumerate(values):
         if value in values[:number]:
-            raise BadInputError(f"{argument} names {value!r} twice; each may be named once")
+            shown = str(value) if isinstance(value, Path) else value
+            raise BadInputError(f"{argument} names {shown!r} twice; each may be named once")
 
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:

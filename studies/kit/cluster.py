@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from analytic.response import Response
 from studies.kit.alongside import alongside
 from studies.kit.dask_client import AsyncClient, ClusterError, client_of, gone, workers_of
-from studies.kit.jobs import Job, ask, one_line
+from studies.kit.jobs import Job, ask
+from studies.kit.refusing import one_line
 from studies.kit.worker import RefusedError, fitness, work
 from studies.sources.registry import Source, resolve
 

@@ -12,7 +12,7 @@ from contextlib import asynccontextmanager, suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from studies.kit.arguments import BadInputError
-from studies.kit.jobs import one_line
+from studies.kit.refusing import one_line
 from studies.kit.worker import START, fitness, unfit
 
 if TYPE_CHECKING:

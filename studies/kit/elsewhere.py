@@ -98,9 +98,12 @@ def take(
     FolderError
         If there is no row of the jobs, or one of an engine that is installed in another version.
     """
-    asked = [job.key for job in jobs if job.key in other.rows]
+    by_key = {job.key: job for job in jobs}
+    asked = [key for key in by_key if key in other.rows]
     if not asked:
         raise FolderError(other.folder, "it holds no row of what is asked for", OPTION)
+    if not all(by_key[key].has_made(other.rows[key]) for key in asked):
+        raise FolderError(other.folder, f"its {JOURNAL} has a row of something else", OPTION)
     lacking = {key: other.rows[key] for key in asked if key not in journal.rows}
     found = {key: row for key, row in lacking.items() if _is_wanted(row)}
     engines = {resolve(row["source"]).engine for row in found.values()} - {""}

@@ -1,10 +1,8 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import Future, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import Protocol
 
 from analytic.response import Response
@@ -12,8 +10,8 @@ from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
+from studies.kit.pool import Pool, StartError
 from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
-from studies.kit.signals import left_to_this_process
 from studies.sources.registry import Source, resolve
 
 
@@ -63,34 +61,23 @@ class Local:
             yield from self._in_processes(slow)
 
     def _in_processes(self, jobs: Mapping[int, Job]) -> Generator[tuple[int, Response], None, None]:
-        # loaded by those alone who need processes: it takes as long to load as matplotlib's axes
-        from pebble import ProcessPool
-
-        # engines hold state of their own: no fork of a process that has loaded them
-        pool = ProcessPool(max_workers=min(self.workers, len(jobs)), context=get_context("spawn"))
-        try:
-            firsts: dict[str, Job] = {}
-            for job in jobs.values():
-                firsts.setdefault(job.source, job)
+        firsts: dict[str, Job] = {}
+        for job in jobs.values():
+            firsts.setdefault(job.source, job)
+        with Pool(min(self.workers, len(jobs))) as pool:
             compile_ahead(pool, self.ask, [(job, resolve(job.source)) for job in firsts.values()])
-            with left_to_this_process():
-                # the source travels with the job, so that a worker needs no registry of its own
-                tasks: dict[Future[Response], int] = {
-                    pool.schedule(
-                        ask_loaded,
-                        args=(self.ask, job, resolve(job.source)),
-                        timeout=self.time_limit_s,
-                    ): number
-                    for number, job in jobs.items()
-                }
-            for task in as_completed(tasks):
-                yield tasks[task], outcome_of(task.result, self.time_limit_s)
-        except BrokenProcessPool as error:
-            problem = f"a process could not be started ({error.__cause__ or error})"
-            raise OSError(problem) from error
-        finally:
-            pool.stop()  # type: ignore[no-untyped-call]
-            pool.join()
+            # the source travels with the job, so that a worker needs no registry of its own
+            tasks = {
+                pool.schedule(
+                    ask_loaded, (self.ask, job, resolve(job.source)), self.time_limit_s
+                ): number
+                for number, job in jobs.items()
+            }
+            try:
+                for task in as_completed(tasks):
+                    yield tasks[task], outcome_of(task.result, self.time_limit_s)
+            except StartError as error:
+                raise OSError(f"a process could not be started ({error})") from error
 
 
 def choose(

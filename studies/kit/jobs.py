@@ -13,6 +13,7 @@ from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
 from studies.kit.journal import Row
+from studies.kit.refusing import brief, one_line
 from studies.sources.registry import Source, resolve
 
 LONG_S = 1.0
@@ -61,6 +62,11 @@ class Job:
         parts = [_plain(self), type(self.motion).__name__, preset]
         text = json.dumps(parts, default=_plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+    def has_made(self, row: Row) -> bool:
+        """Whether a row is one of this job: its labels and its source come first in it."""
+        mine = {**self.labels, "source": self.source}
+        return json.dumps(mine) == json.dumps({name: row.get(name) for name in mine})
 
     def needs_process(self, source: Source) -> bool:
         """Whether a source may crash over it, or take so long that it must be stoppable."""
@@ -113,10 +119,5 @@ def summary(_: Job, response: Response) -> Row:
         "impacts": len(response.impacts),
         "steps": int(response.steps),
         "wall_s": round(float(response.wall_s), 9),
-        "message": response.message,
+        "message": brief(response.message),
     }
-
-
-def one_line(error: Exception) -> str:
-    """Return an exception in one line, its kind first."""
-    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -64,6 +64,11 @@ class Journal:
             problem = f"its {JOURNAL} was removed during the run, and its rows with it"
             raise FolderError(self._path.parent, problem)
 
+    def stranger(self, key: str) -> FolderError:
+        """Return the refusal of a row that is not one of the job which its key names."""
+        problem = f"its {JOURNAL} has a row of something else under the key {key}"
+        return FolderError(self._path.parent, problem)
+
     def close(self) -> None:
         """Bring the rows to the disk."""
         os.fsync(self._descriptor)
@@ -129,6 +134,9 @@ def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[
     for name in (LOCK, JOURNAL, PROVENANCE):
         # a link leads elsewhere, and on a pipe or a device a run would hang
         if os.path.lexists(folder / name) and not stat.S_ISREG((folder / name).lstat().st_mode):
+            raise FolderError(folder, f"its {name} must be a file")
+    for name in products:
+        if (folder / name).is_dir():
             raise FolderError(folder, f"its {name} must be a file")
     content = path.read_bytes() if path.exists() else b""
     # a run may have been killed while it wrote the first line

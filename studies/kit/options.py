@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from analytic.response import Response
-from studies.kit.arguments import Count, Place, Positive, several_or_none
+from studies.kit.arguments import Count, Place, Positive, Step, one_of, several_or_none
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, ask
@@ -114,8 +114,8 @@ class EffortOptions(Effort):
         loose, standard or tight, for engines whose steps land on impacts; standard by default.
     """
 
-    step: Positive | None = None
-    accuracy: Accuracy | None = None
+    step: Step | None = None
+    accuracy: Annotated[Accuracy, one_of(Accuracy)] | None = None
 
 
 OWN_EFFORT = EffortOptions()

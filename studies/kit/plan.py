@@ -13,9 +13,11 @@ import pandas as pd
 from analytic.response import Response
 from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
+from studies.kit.digests import seal
 from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import PROVENANCE, FolderError, Journal, Row, open_journal
+from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Row, open_journal
 from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.refusing import one_line
 from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study
 from studies.kit.tables import write_table
@@ -72,8 +74,12 @@ def carry_out(
     study: Study, plan: Plan, out: Path, running: Running, report: Callable[[Path], str]
 ) -> int:
     """Run a study into a folder, print what `report` makes of it and return the exit code."""
-    rows = fill(study, plan, out, running)
-    print(report(out))
+    began = time.perf_counter()
+    with blaming_its_rows(out):
+        rows = fill(study, plan, out, running)
+        print(report(out))
+    provenance.finish(out / PROVENANCE, provenance.record_of(out), began)
+    seal(out)
     return exit_code(plan.needed(rows))
 
 
@@ -96,6 +102,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
         record = provenance.begin(path, identity, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
         taken = [elsewhere.take(other, jobs, journal, identity["engines"]) for other in others]
+        known = len(journal.rows)
         with _going_on(journal, out, len(jobs)):
             drivers: dict[str, set[str]] = {}
 
@@ -109,10 +116,12 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
             tabulate = plan.tabulate or partial(_whole, study.name)
             for name, table in tabulate(rows).items():
                 write_table(out / f"{name}.csv", table)
-            found: dict[str, Any] = {"rows": len(rows)} if jobs else {}
+            computed = {"rows": len(rows), "computed": len(journal.rows) - known}
+            found: dict[str, Any] = computed if jobs else {}
             found |= {"drivers": _listed(drivers)} if drivers else {}
             found |= {"also": taken} if taken else {}
             provenance.finish(path, record, began, **found)
+            seal(out)
     return rows
 
 
@@ -139,6 +148,22 @@ def _refuse_a_part(folder: Path, rows: Iterable[Row], growing: Mapping[str, Sequ
     if left_out:
         problem = f"it also holds results of {' and '.join(left_out)}, which must be named too"
         raise FolderError(folder, problem)
+
+
+@contextmanager
+def blaming_its_rows(folder: Path) -> Iterator[None]:
+    """Refuse in one line a folder that already held rows of which no table can be made."""
+    resumed = (folder / JOURNAL).is_file()
+    try:
+        yield
+    except (BadInputError, FolderError, OSError):
+        raise
+    except Exception as error:
+        if not resumed:
+            raise
+        # rows that no study wrote may break its tables in any way
+        problem = f"of the rows in its {JOURNAL} no tables can be made ({one_line(error)})"
+        raise FolderError(folder, problem) from error
 
 
 @contextmanager

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
@@ -16,16 +16,23 @@ from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import (
     BadInputError,
-    Count,
     Finite,
+    HalfCycles,
     Place,
     Positive,
     as_bad_input,
+    one_of,
     refuse_given,
 )
 
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
 OF_A_RECORD = ("units", "scale", "pga", "baseline")
+
+MOST_TIME, MOST_STEPS = 1e6, 1e9
+"""How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
+solver minutes and an engine hours."""
+
+Pulse = Literal["half-sine", "full-sine"]
 
 
 class Posed(NamedTuple):
@@ -43,8 +50,8 @@ class Excitation:
     Attributes
     ----------
     amplitude
-        Amplitude of the ground acceleration [g], positive: the mirror image of a pulse has the
-        mirror image of its response.
+        Amplitude of the ground acceleration [g of 9.81 m/s²], positive: the mirror image of a pulse
+        has the mirror image of its response.
     omega
         Circular frequency of the pulse [rad/s].
     pulse
@@ -57,7 +64,7 @@ class Excitation:
         A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
         a table of time [s] and acceleration. It is straight between its samples.
     units
-        Of the record's acceleration, where the file does not state them.
+        Of the record's acceleration, where the file does not state them; g is 9.81 m/s².
     scale
         Factor on the record's acceleration.
     pga
@@ -79,14 +86,14 @@ class Excitation:
 
     amplitude: Positive | None = None
     omega: Positive | None = None
-    pulse: Literal["half-sine", "full-sine"] | None = None
-    half_cycles: Count | None = None
+    pulse: Annotated[Pulse, one_of(Pulse)] | None = None
+    half_cycles: HalfCycles | None = None
     phase: Finite | None = None
     record: Place | None = None
-    units: Units | None = None
+    units: Annotated[Units, one_of(Units)] | None = None
     scale: Positive | None = None
     pga: Positive | None = None
-    baseline: Baseline | None = None
+    baseline: Annotated[Baseline, one_of(Baseline)] | None = None
     tilt: Finite | None = None
     rate: Finite | None = None
     degrees: bool = False
@@ -166,6 +173,42 @@ DEFAULT_EXCITATION = Excitation()
 """Nothing is given."""
 
 
+def refuse_endless(
+    block: RigidBlock, watched_s: float, *, duration: float | None = None, step: float | None = None
+) -> None:
+    """Refuse what no computer sees the end of.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    watched_s : float
+        How long it is watched [s].
+    duration, step : float, optional
+        What was given of that, and p dt.
+
+    Raises
+    ------
+    BadInputError
+    """
+    most_s = MOST_TIME / block.p
+    if watched_s > most_s:
+        asked = (
+            f"--width is {block.width:g} and --height {block.height:g}; what moves the block"
+            if duration is None
+            else f"--duration is {duration:g}; it"
+        )
+        raise BadInputError(
+            f"{asked} must last at most {most_s:.4g} s, {MOST_TIME:g} times 1/p, "
+            f"and the block is watched for {watched_s:.4g} s"
+        )
+    if step is not None and watched_s * block.p > MOST_STEPS * step:
+        least = watched_s * block.p / MOST_STEPS
+        raise BadInputError(
+            f"--step is {step:g}; it must be at least {least:.4g} for a run of {watched_s:.4g} s, "
+            f"so that this takes at most {MOST_STEPS:g} steps"
+        )
+
+
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height."""
     with as_bad_input():
@@ -185,5 +228,5 @@ def _recorded(
     with as_bad_input("--record: "):
         record = corrected(record, baseline)
         if pga is not None:
-            return record.scaled_to(pga * STANDARD_GRAVITY)
+            return record.scaled_to(pga * GRAVITY)
         return record.scaled(1.0 if scale is None else scale)

@@ -2,20 +2,18 @@
 
 import signal
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future, TimeoutError
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import CancelledError, Future
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 from analytic.response import Reason, Response
 from engines import ENGINES
 from engines.look import compile_look
-from studies.kit.jobs import Job, ask, one_line, short
-from studies.kit.signals import left_to_this_process
+from studies.kit.jobs import Job, ask, short
+from studies.kit.pool import MEMORY_BYTES, EndedError, OvertimeError, Pool, StartError, TaskError
+from studies.kit.refusing import one_line
 from studies.sources.registry import Source
-
-if TYPE_CHECKING:
-    from pebble import ProcessPool
 
 COMPILING_S = 1800.0
 """Nothing takes longer to compile [s]."""
@@ -25,7 +23,7 @@ _loaded: set[str] = set()
 
 
 def compile_ahead(
-    pool: "ProcessPool",
+    pool: Pool,
     ask_: Callable[[Job, Source], Response],
     asked: Iterable[tuple[Job, Source]],
 ) -> None:
@@ -33,7 +31,7 @@ def compile_ahead(
 
     Parameters
     ----------
-    pool : ProcessPool
+    pool : Pool
         One of its processes compiles; the others load what was compiled.
     ask_ : callable
         How a job is put to its source.
@@ -41,15 +39,13 @@ def compile_ahead(
         A job of each source.
     """
     tasks: list[Future[Any]] = []
-    with left_to_this_process():
-        for job, source in asked:
-            if source.engine not in ENGINES or not source.declared.installed:
-                continue
-            if not tasks:
-                tasks.append(pool.schedule(compile_look, timeout=COMPILING_S))
-            if source.declared.compiles:
-                order = (ask_, short(job), source)
-                tasks.append(pool.schedule(ask_loaded, args=order, timeout=COMPILING_S))
+    for job, source in asked:
+        if source.engine not in ENGINES or not source.declared.installed:
+            continue
+        if not tasks:
+            tasks.append(pool.schedule(compile_look, (), COMPILING_S))
+        if source.declared.compiles:
+            tasks.append(pool.schedule(ask_loaded, (ask_, short(job), source), COMPILING_S))
     for task in tasks:
         with suppress(Exception):  # the cases will say what is wrong
             task.result()
@@ -63,28 +59,32 @@ def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source
     if source.kind != "engine" and job.source not in _loaded:
         _loaded.add(job.source)
         ask(short(job), source)
-    return ask_(job, source)
+    response = ask_(job, source)
+    if response.message.startswith(MemoryError.__name__):
+        words = f"{response.message.rstrip(': ')}; a process may take {MEMORY_BYTES / 1e9:g} GB"
+        return replace(response, message=words)
+    return response
 
 
 def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
     """Return the result of a process, or the failure as which it ended."""
-    from pebble import ProcessExpired
-
     try:
         return result()
-    except TimeoutError:
+    except OvertimeError:
         words = f"no result within the time limit of {time_limit_s:g} s"
         return Response.failure(words, reason=Reason.UNDECIDED)
-    except ProcessExpired as error:
-        return Response.failure(_cause_of_death(error.exitcode))
-    except BrokenProcessPool:
-        # no case is to blame
-        raise
+    except EndedError as error:
+        return Response.failure(cause_of_death(error.exitcode))
+    except TaskError as error:
+        return Response.failure(str(error))
+    except (CancelledError, StartError):
+        raise  # no case is to blame
     except Exception as error:
         return Response.failure(one_line(error))
 
 
-def _cause_of_death(exitcode: int) -> str:
+def cause_of_death(exitcode: int) -> str:
+    """Say how a process ended, from its exit code."""
     if exitcode < 0:
         return f"the process was ended by signal {signal.Signals(-exitcode).name}"
     return f"the process ended by itself with exit code {exitcode}"

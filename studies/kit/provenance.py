@@ -1,6 +1,8 @@
 """What ran: versions, settings, commit, machine."""
 
+import errno
 import json
+import math
 import os
 import platform
 import subprocess
@@ -20,7 +22,7 @@ NOT_INSTALLED = "not installed"
 """What stands for the version of a package that is not there."""
 NUMERICAL_PACKAGES = ("numpy", "scipy", "numba")
 """Packages that a number may depend on."""
-TOOLS = ("pandas", "matplotlib", "cyclopts", "pebble", "tqdm")
+TOOLS = ("pandas", "matplotlib", "cyclopts", "tqdm")
 """Packages that run, keep and show what the others find."""
 
 
@@ -106,11 +108,16 @@ def usable_cores() -> int:
 def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dict[str, Any]:
     """Write the provenance of a run that begins, after those that were made here before.
 
+    A run is the first after an installation where what it calls has yet to be compiled.
+
     Raises
     ------
     FolderError
         If there is a provenance of something else.
     """
+    from analytic.kernels.compiled import are_compiled
+
+    earlier = _earlier(path, subject)
     record = {
         **subject,
         "git": git_commit(),
@@ -120,9 +127,14 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
             "cores": usable_cores(),
             "os": platform.platform(),
         },
+        "tables": dict(earlier.get("tables", {})),
         "runs": [
-            *_earlier_runs(path, subject),
-            {"start": datetime.now(UTC).isoformat(timespec="seconds"), **arguments},
+            *earlier["runs"],
+            {
+                "start": datetime.now(UTC).isoformat(timespec="seconds"),
+                "first": not are_compiled(),
+                **arguments,
+            },
         ],
     }
     write_text(path, json.dumps(record, indent=2) + "\n")
@@ -130,8 +142,12 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
 
 
 def record_of(folder: Path) -> dict[str, Any]:
-    """Return the provenance of a results folder."""
-    return dict(json.loads((folder / PROVENANCE).read_text(encoding="utf-8")))
+    """Return the provenance of a results folder; OSError if there is no such file."""
+    path = folder / PROVENANCE
+    if not path.is_file():
+        # a pipe would be waited for
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
+    return dict(json.loads(path.read_text(encoding="utf-8")))
 
 
 def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
@@ -143,13 +159,18 @@ def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
     return versions
 
 
-def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
+def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the runs of a record that computed all rows, and went on until the end."""
+    return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
+
+
+def _earlier(path: Path, subject: dict[str, Any]) -> dict[str, Any]:
     if not path.exists():
-        return []
+        return {"runs": []}
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
         if all(record[name] == value for name, value in subject.items()):
-            return list(record["runs"])
+            return {**record, "runs": list(record["runs"])}
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
     problem = "it must be new, or hold results of the same version and settings"
@@ -157,7 +178,10 @@ def _earlier_runs(path: Path, subject: dict[str, Any]) -> list[Any]:
 
 
 def finish(path: Path, record: dict[str, Any], began: float, **found: Any) -> None:
-    """Add to the last run how long it took since `began` (`time.perf_counter`), and what it did."""
+    """Add to the last run how long it took since `began` (`time.perf_counter`), and what it did.
+
+    A command finishes twice: when its tables are written, and when it has reduced and drawn them.
+    """
     record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **found}
     write_text(path, json.dumps(record, indent=2) + "\n")
 

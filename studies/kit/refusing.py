@@ -19,6 +19,15 @@ def brief(message: str) -> str:
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)
 
 
+def one_line(error: BaseException) -> str:
+    """Return an exception in one line, its kind first, whatever it does when it is printed."""
+    kind = type(error).__name__
+    try:
+        return brief(f"{kind}: {error}".removesuffix(": "))
+    except BaseException:
+        return kind
+
+
 def _shortened(text: str, longest: int) -> str:
     half = longest // 2
     return text if len(text) <= longest else f"{text[:half]}…{text[-half:]}"

@@ -32,6 +32,9 @@ def run_jobs(
     """
     keys = [job.key for job in jobs]
     done = dict(journal.rows) if journal else {}
+    for job, key in zip(jobs, keys, strict=True):
+        if journal and key in done and not job.has_made(done[key]):
+            raise journal.stranger(key)
     pending = [number for number, key in enumerate(keys) if key not in done]
     finished = len(jobs) - len(pending)
     with (

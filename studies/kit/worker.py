@@ -4,22 +4,26 @@ Models and solvers run in the worker's own process, engines and long solves in a
 own, so that a crash or the time limit is a failed row and costs no worker.
 """
 
-import atexit
+import asyncio
 import multiprocessing
 import platform
 import threading
 from collections.abc import Callable
+from concurrent.futures import CancelledError
 from functools import cache
-
-from pebble import ProcessPool
+from typing import TYPE_CHECKING
 
 from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.fingerprint import EVERY_STUDY, fingerprint
 from studies.kit.jobs import Job
+from studies.kit.pool import Pool
 from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
 from studies.sources.registry import Source
+
+if TYPE_CHECKING:
+    from distributed import Worker
 
 START = "dask worker ADDRESS --no-nanny --nthreads 1"
 
@@ -75,17 +79,29 @@ def work(
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
     if job.needs_process(source):
-        with _compiling:  # a case of another thread's waits for what it needs, too
-            if job.source not in _compiled:
-                compile_ahead(_processes(), ask, [(job, source)])
-                _compiled.add(job.source)
-        task = _processes().schedule(ask_loaded, args=(ask, job, source), timeout=time_limit_s)
-        return outcome_of(task.result, time_limit_s)
+        return _work_in_process(job, source, ask, time_limit_s)
     if job.source not in _loaded:
         # loading the compiled kernels is no part of the first case's run time
         _loaded.add(job.source)
         ask(job, source)
     return ask(job, source)
+
+
+def _work_in_process(
+    job: Job, source: Source, ask: Callable[[Job, Source], Response], time_limit_s: float
+) -> Response:
+    from distributed import Reschedule, get_worker
+
+    try:
+        with _compiling:  # a case of another thread's waits for what it needs, too
+            pool = _processes_of(get_worker())
+            if job.source not in _compiled:
+                compile_ahead(pool, ask, [(job, source)])
+                _compiled.add(job.source)
+        task = pool.schedule(ask_loaded, (ask, job, source), time_limit_s)
+        return outcome_of(task.result, time_limit_s)
+    except CancelledError:  # this worker is closing
+        raise Reschedule from None
 
 
 _loaded: set[str] = set()
@@ -94,11 +110,15 @@ _compiling = threading.Lock()
 
 
 @cache
-def _processes() -> ProcessPool:
-    """Return this worker's processes, one for each of its threads."""
-    from distributed import get_worker
+def _processes_of(worker: "Worker") -> Pool:
+    """Return a worker's processes, one for each of its threads; they end when it closes."""
+    from distributed import WorkerPlugin
 
-    threads = get_worker().state.nthreads
-    pool = ProcessPool(max_workers=threads, context=multiprocessing.get_context("spawn"))
-    atexit.register(pool.stop)
+    pool = Pool(worker.state.nthreads)
+
+    class Ending(WorkerPlugin):
+        async def teardown(self, worker: "Worker") -> None:
+            await asyncio.to_thread(pool.stop)
+
+    worker.loop.add_callback(worker.plugin_add, Ending(), name="rocking")
     return pool

@@ -6,7 +6,7 @@ named.
 
 import math
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse, Still
 from studies.literature.problems import (
     Cascade,
@@ -33,7 +33,7 @@ COSINE = 0.5 * math.pi
 
 def block_of(alpha: float, p: float, restitution: float = math.nan) -> RigidBlock:
     """Return the block of a slenderness [rad] and a frequency parameter [rad/s]."""
-    diagonal = 1.5 * STANDARD_GRAVITY / p**2
+    diagonal = 1.5 * GRAVITY / p**2
     return RigidBlock(
         width=diagonal * math.sin(alpha),
         height=diagonal * math.cos(alpha),

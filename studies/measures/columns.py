@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from studies.measures.wrongness import MEANINGS, WORDS
+
 
 class Column(NamedTuple):
     """The unit of a column, empty for words, "-" for numbers without one, and its meaning."""
@@ -29,7 +31,12 @@ CASES = {
     "alpha": Column("rad", "atan(B/H), the critical rotation θcr"),
     "tilt": Column("-", "rotation from which the block falls, over θcr"),
     "case": Column("", "number or name of the case"),
-    "set": Column("", "typical, or near overturning; in releases.csv figure 8, or random"),
+    "set": Column(
+        "",
+        "typical, or near overturning; in releases.csv figure 8, or random; in drawn.csv all that "
+        "were drawn, kept, left out near the limit, or with a pivot that lifts; in estimates.csv "
+        "calibrate (the factors come from these cases), or test",
+    ),
     "group": Column("", "what is extreme in the case"),
     "grid": Column("", "the paper's grid, or a wider one"),
     "x": Column("-", "abscissa of an overturning map: ω/p, slenderness or size"),
@@ -64,15 +71,28 @@ ANSWERS = {
 REFERENCE = {
     "exact_outcome": Column("", "outcome of the exact solution"),
     "exact_peak": Column("-", "largest |θ|/θcr of the exact solution"),
-    "agrees": Column("", "whether the outcome is the exact one"),
-    "error": Column("-", "peak over the exact one, less 1; nan unless both rocked"),
+    "agrees": Column("", "whether the outcome is the exact one; else it is wrong"),
+    "error": Column(
+        "-",
+        "peak over the exact one, less 1; nan unless both rocked; in random.csv its size, 0 where "
+        "both overturn or stay at rest, inf where the outcome is another",
+    ),
     "difference": Column("-", "peak_ratio less the exact one"),
     "false_overturning": Column("", "overturned, and the exact solution survives"),
     "missed_overturning": Column("", "survived, and the exact solution overturns"),
     "kappa": Column("-", "κ = ∂ln θmax/∂ln a_p of the exact solution"),
     "kappa_eta": Column("-", "κη = ∂ln θmax/∂ln η of the exact solution"),
-    "min_normal": Column("-", "least normal force over the weight in the exact solution"),
-    "friction_needed": Column("-", "friction that the exact solution needs not to slide"),
+    "sensitivity": Column(
+        "-",
+        "largest relative change of the exact peak over that of a_p or η, when one of these moves "
+        "by ±1e-4 or ±1e-6; inf where that changes the outcome",
+    ),
+    "min_normal": Column(
+        "-", "least normal force over the weight in the exact solution, before its fall"
+    ),
+    "friction_needed": Column(
+        "-", "friction that the exact solution needs not to slide, before its fall"
+    ),
     "invalid": Column("", "why the reference does not hold here; empty where it does"),
     "verdict": Column("", "what an answer is worth, or what the pivot did"),
     "reason": Column("", "why, with the numbers"),
@@ -83,7 +103,8 @@ REFERENCE = {
 SUMMARIES = {
     "cases": Column("-", "cases"),
     "failed": Column("-", "cases without a usable result"),
-    "wrong": Column("-", "outcomes that are not the exact ones"),
+    "wrong": Column("-", "outcomes that are not the exact ones, those without an answer apart"),
+    **{kind: Column("-", f"how many: {name} ({MEANINGS[kind]})") for kind, name in WORDS.items()},
     "right": Column("-", "outcomes that are the exact ones"),
     "close": Column("-", "of these, peaks within a tenth, and overturnings"),
     "far": Column("-", "of these, peaks off by more than a tenth"),
@@ -99,27 +120,35 @@ SUMMARIES = {
     "rms_error": Column("-", "root of the mean square of the error"),
     "rms_difference": Column("-", "root of the mean square of the difference"),
     "max_difference": Column("-", "largest |difference|"),
-    "max_error_over_kappa": Column("-", "largest |error| over the larger of |κ|, |κη| and 1"),
+    "max_error_over_kappa": Column(
+        "-", "largest |error| over the largest of |κ|, |κη|, sensitivity and 1"
+    ),
     "statement": Column("", "a statement of the paper, or about its cases"),
     "holds": Column("", "whether it holds; nan: a source was not asked"),
     "numbers": Column("", "the numbers that say so"),
     "title": Column("", "the linearization in words"),
     "changed": Column("", "onset, frequency, saddle: 1 where not Housner's"),
+    "by": Column("", "what the cases are divided by: the exact peak over θcr, or κ"),
+    "band": Column("", "between which values of it"),
     "quantile": Column("-", "part of the cases whose |error| is below"),
 }
 
 ESTIMATES = {
     "half": Column("-", "1 for the run at half the step"),
     "estimate": Column("-", "relative difference of the peak from that at half the step"),
-    "bound": Column("-", "the estimate times its published factor_95"),
+    "bound": Column("-", "the estimate times its published factor_95_high; nan: no bound"),
     "over": Column("-", "|error| over the estimate; 0 where the error is below 1e-9"),
     "median_estimate": Column("-", "median of the estimates"),
     "factor_50": Column("-", "factor on the estimates that bounds half of the errors"),
     "factor_95": Column("-", "factor on the estimates that bounds 95 % of the errors"),
+    "factor_95_low": Column("-", "lower end of its 95 % interval"),
+    "factor_95_high": Column("-", "upper end of it, which is used; inf: too few cases"),
     "factor_all": Column("-", "factor on the estimates that bounds all errors"),
     "within_3": Column("-", "part of the errors that three estimates bound"),
     "within_10": Column("-", "part of the errors that ten estimates bound"),
     "told": Column("-", "wrong outcomes with another one at half the step"),
+    "tested": Column("-", "other cases that survive, on which factor_95_high is tried"),
+    "bounded": Column("-", "of these, errors that factor_95_high bounds"),
 }
 
 SYMPTOMS = {
@@ -130,10 +159,13 @@ SYMPTOMS = {
         "-", "the measure with these; inf where there is no result; in changes.csv a release"
     ),
     "setting": Column("", "the one setting that helps most; empty where none halves it"),
-    "literal": Column("", "what it changes in the library's words, B = 0.5 m, H = 1.5 m"),
+    "formula": Column("", "lines of an exported script that go (-) and come (+), by its step DT"),
+    "literal": Column("", "the same at the step dt_s, B = 0.5 m, H = 1.5 m"),
     "after": Column("-", "the measure with this setting alone"),
     "tuned": Column("-", "the measure with a tuned contact and a fixed step"),
     "landing": Column("-", "the measure with steps that land on impacts"),
+    "before_own": Column("-", "before, at the library's own step"),
+    "after_own": Column("-", "after, at the library's own step"),
     "asked_in": Column("", "threads of trackers in which it is asked"),
     "command": Column("", "what makes the table that says so"),
 }
@@ -156,6 +188,7 @@ RESTITUTION = {
     "off_dt_s": Column("-", "the same at other steps"),
     "off_speed": Column("-", "the same at other speeds"),
     "off_radius": Column("-", "the same at other radii"),
+    "off_over_all": Column("-", "the largest of all these"),
     "off_p_dt": Column("-", "the same at other steps"),
     "off_rate_over_alpha_p": Column("-", "the same at other rates"),
     "off_height_m": Column("-", "the same at other heights"),
@@ -178,9 +211,17 @@ VERSIONS = {
 ADVICE = {
     "target": Column("-", "error of the peak that is to be kept"),
     "dt_s": Column("s", "step for the block of the advice; nan where an engine chooses its own"),
-    "random_cases": Column("-", "random cases on which the preset was published as it is"),
+    "random_cases": Column("-", "random cases that were run at this very setting"),
     "random_off": Column("-", "of these, other outcomes, or errors above the target"),
-    "extreme_cases": Column("-", "extreme cases, where the reference holds"),
+    "random_calm_off": Column("-", "of these, cases with κ and κη below 10"),
+    "condition": Column(
+        "-",
+        "the larger of |κ|, |κη| and 1; of a case that overturns 1, or inf where it would not with "
+        "one per cent less or more of the pulse",
+    ),
+    "extreme_cases": Column(
+        "-", "extreme cases where the reference holds; 0 if they were run at another setting"
+    ),
     "extreme_off": Column("-", "of these, other outcomes, or errors above the target"),
     "cheapest": Column("", "whether it is the cheapest of the engine's presets"),
 }
@@ -210,6 +251,7 @@ METHODS = {
     "change_over_exact": Column("-", "|change| over that of the exact solution"),
     "factor": Column("", "setting that differs from the preset; in steps.csv between two steps"),
     "level": Column("", "what it is set to"),
+    "own_step": Column("", "whether the step is the library's own, not that of all"),
     "trap": Column("", "why a setting goes wrong without a word"),
     "moved": Column(
         "-", "largest relative change of a peak of the preset; in releases.csv from the one before"
@@ -224,13 +266,13 @@ METHODS = {
     "largest_accurate": Column("1/p", "largest step from which on peaks are right to 1 %"),
     "stable_over_contact": Column("-", "largest_stable over contact_s"),
     "accurate_over_contact": Column("-", "largest_accurate over contact_s"),
-    "runs": Column("-", "runs that a search took"),
+    "runs": Column("-", "runs that a search took; of a time, runs of which it is the best"),
     "scene": Column("", "what was put back into a scene, or left out of the exact solution"),
     "memory_kib": Column("KiB", "memory of a process with the scene"),
     "engine_s": Column("s", "of a step, the engine's own"),
     "adapter_s": Column("s", "of a step, the adapter around it"),
     "pose_s": Column("s", "of a step, reading the pose"),
-    "driver": Column("-", "who takes one step after the other: Python, or a compiled loop"),
+    "driver": Column("", "who takes one step after the other: Python, or a compiled loop"),
     "look_s": Column("s", "of a step, seeing the pose and choosing the next step"),
     "threads": Column("-", "threads"),
     "seconds": Column("s", "time of all cases"),
@@ -256,7 +298,7 @@ MAPS = {
     "table": Column("", "the table that a row belongs to"),
     "hint": Column("", "what landing steps are told: true, or false by so much"),
     "still": Column("-", "outcomes that are the exact ones, of pulses too weak to lift the block"),
-    "over_kappa": Column("-", "largest error of a peak over its condition number"),
+    "over_kappa": Column("-", "largest |error| over the largest of |κ|, |κη|, sensitivity and 1"),
     "edge": Column("onsets", "amplitude of an exact edge"),
     "overturns": Column("", "above or below the edge"),
     "offset": Column("-", "relative distance from the edge"),
@@ -280,8 +322,8 @@ STATISTICS = {
     "ks_tests": Column("-", "intensities tested"),
     "ks_rejected": Column("-", "of these with p < 0.05"),
     "mcnemar_p": Column("-", "p-value of as many overturnings too many as too few"),
-    "overturned": Column("-", "motions that overturn"),
-    "share": Column("-", "part of the motions that overturn"),
+    "overturned": Column("-", "motions that overturn; in drawn.csv cases"),
+    "share": Column("-", "part of the motions, or of the cases, that overturn"),
     "share_low": Column("-", "lower bound of it"),
     "share_high": Column("-", "upper bound of it"),
     "median_peak": Column("-", "median of peak_ratio"),
@@ -292,7 +334,7 @@ PRINTS = {
     "problem": Column("", "what was printed, in a word"),
     "side": Column("-", "0 for the first number, 1 for the other side, or a rate beside a time"),
     "of": Column("", "theory, or test: a measurement"),
-    "why": Column("", "why a print does not come out"),
+    "why": Column("", "why a print does not come out; in drawn.csv why cases are left out"),
     "work": Column("", "who printed it"),
     "where": Column("", "the place in the work, or what it says of the block"),
     "printed": Column("", "the print, digit by digit; a bracket of two"),
@@ -303,10 +345,11 @@ PRINTS = {
 }
 
 STEADY = {
-    "direction": Column("", "whether the sweep goes up or down"),
     "larger_ratio": Column("-", "largest steady rotation over θcr, on its larger side"),
     "smaller_ratio": Column("-", "the same on the other side"),
     "period": Column("-", "forcing periods after which the response repeats; 0 if it does not"),
+    "starts": Column("-", "starts of the grid that end there; 0: followed from the next point"),
+    "start_share": Column("-", "part of the grid's starts that end there"),
     "larger_exact": Column("-", "larger_ratio of the exact orbit on which an engine starts"),
     "smaller_exact": Column("-", "smaller_ratio of that orbit"),
     "period_exact": Column("-", "period of that orbit"),

@@ -11,6 +11,7 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines.declaration import Stepping
+from studies.kit.digests import check
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.measures.published import PUBLISHED
@@ -26,8 +27,11 @@ ELSEWHERE = "the factor was found at the preset's own step"
 """Of landing steps twice and four times as long it is the same to 3 %, of a fixed MuJoCo step eight
 times as long it is twice as large."""
 
-MOST_TRUSTED = 10.0
-"""A factor above says that the estimate does not see the error."""
+MOST_TRUSTED = 30.0
+"""A factor above is no bound: the estimate does not see the error."""
+
+NO_BOUND = "no bound"
+"""What is said of such an estimate."""
 
 
 def halved(job: Job) -> Job | None:
@@ -88,8 +92,8 @@ def with_estimates(
 ) -> list[Row]:
     """Return rows of different sources with their estimates, and with what these bound.
 
-    bound is the estimate times the published factor. A source whose estimates do not see the error
-    has a bound of nan, and its message says so; and that the factor was found at another step,
+    bound is the estimate times the published factor; nan, and said in the message, for a source
+    whose estimates give none. The message also says that the factor was found at another step,
     where the presets' own were not used.
     """
     halves = {row["source"]: row for row in finer}
@@ -115,7 +119,8 @@ class Trust(NamedTuple):
     """What published random cases say of a source's estimates."""
 
     factor: float
-    """By how much they are to be multiplied to bound the errors of `BOUNDED` of the cases."""
+    """By how much they are to be multiplied to bound the errors of `BOUNDED` of the cases: the
+    upper end of its 95 % interval, inf where the cases are too few for one."""
     cases: int
 
     @property
@@ -124,21 +129,25 @@ class Trust(NamedTuple):
         return self.factor <= MOST_TRUSTED
 
     def warning(self) -> str:
-        """Say that they do not, or nothing."""
+        """Say that they give no bound, or nothing."""
         if self.holds:
             return ""
-        part = f"{BOUNDED:.0%} of {self.cases} random cases".replace("%", " %")
-        return f"the estimate does not see the error: {self.factor:.3g} times it bounds {part}"
+        part = f"{BOUNDED:.0%} of the errors".replace("%", " %")
+        if math.isinf(self.factor):
+            return f"{NO_BOUND}: {self.cases} random cases tell no factor that bounds {part}"
+        needed = f"from {self.cases} random cases it may take {self.factor:.3g} estimates"
+        return f"{NO_BOUND}: {needed} to bound {part}"
 
 
 def published_trust(source: str, path: Path = FACTORS) -> Trust | None:
     """Return what was published of a source's estimates, as the preset is declared, if it was."""
     if not path.is_file():
         return None
+    check(path.parent, [path.name], "the folder of the factors")
     table = pd.read_csv(path)
     asked = resolve(source)
     for line in table.to_dict("records"):
         known = resolve(str(line["source"]))
         if (known.engine, known.preset) == (asked.engine, asked.preset):
-            return Trust(float(line["factor_95"]), int(line["survivors"]))
+            return Trust(float(line["factor_95_high"]), int(line["survivors"]))
     return None

@@ -1,5 +1,6 @@
 """Steady states: from the end of a long response, the orbit on which it has settled."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ LONGEST = 16
 """Longest orbit, in forcing periods, that is told from chaos."""
 SAME = 1e-6
 """Two states this close, in units of alpha and alpha p, are the same."""
+SETTLING = 100.0
+"""States less than so many times further apart may become the same: the response still settles."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +30,7 @@ class Orbit:
     right, left : float
         Largest rotations [rad] to either side, the larger first.
     period : int
-        Forcing periods after which the response repeats; 0 if it does not.
+        Forcing periods after which the response repeats; 0 if it does not, or not yet.
     impacts : int
         Impacts in that time; 0 if it does not repeat.
     """
@@ -78,10 +81,13 @@ def orbit_of(block: RigidBlock, motion: SinePulse, response: Response) -> Orbit:
 
 
 def _period(states: FloatArray) -> int:
-    """Return after how many states they repeat; 0 if they do not."""
+    """Return after how many states they repeat; 0 if they do not, or still settle."""
+    closest = math.inf
     for period in range(1, LONGEST + 1):
-        if np.abs(states[:, period:] - states[:, :-period]).max() < SAME:
-            return period
+        missed = float(np.abs(states[:, period:] - states[:, :-period]).max())
+        if missed < SAME:
+            return period if closest > SETTLING * SAME else 0
+        closest = min(closest, missed)
     return 0
 
 

@@ -8,6 +8,7 @@ from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies.cases.extreme import Extreme
 from studies.measures.energy import growth
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, WORDS, kinds_of
 from studies.sources.registry import resolve
 
 BAND, WIDE_BAND = 0.01, 0.1
@@ -36,8 +37,9 @@ class Verdict(enum.Enum):
     OFF = "off"
     SLIDES = "slides"
     ENERGY = "energy"
-    OUTCOME = "outcome"
-    FAILED = "failed"
+    FALL = FALL
+    REST = REST
+    FAILED = NO_ANSWER
     INVALID = "invalid"
 
     @property
@@ -53,8 +55,9 @@ _SENTENCES = {
     Verdict.OFF: f"peak off by more than {WIDE_BAND:.0%}",
     Verdict.SLIDES: f"slides more than {SLIP_BAND:.0%} of B",
     Verdict.ENERGY: f"energy grows by more than {ENERGY_BAND:.0%}",
-    Verdict.OUTCOME: "another outcome",
-    Verdict.FAILED: "no result",
+    Verdict.FALL: WORDS[FALL],
+    Verdict.REST: f"{WORDS[REST]}, or the reverse",
+    Verdict.FAILED: WORDS[NO_ANSWER],
     Verdict.INVALID: "the reference is not valid here",
 }
 
@@ -97,16 +100,17 @@ def _verdict(
     case: Extreme, response: Response, exact: Response, error: float, grown: float
 ) -> tuple[Verdict, str]:
     found, right = response.outcome, exact.outcome
+    wrong = str(kinds_of([found.value], [right.value])[0])
     slip = response.slip_m / case.block.width
     peak_error = f"peak {error:+.2g} of {exact.peak_ratio:.3g} θcr"
     absolute = abs(error) * exact.peak_ratio
-    if found is Outcome.FAILED:
+    if wrong == NO_ANSWER:
         return Verdict.FAILED, response.message
-    if found is Outcome.AT_REST and exact.peak_ratio < SMALLEST and right is not found:
+    if wrong == REST and found is Outcome.AT_REST and exact.peak_ratio < SMALLEST:
         return Verdict.UNSEEN, f"the exact peak is {exact.peak_ratio:.1e} θcr"
-    if found is not right:
+    if wrong:
         edge = f", {EDGE_BAND:g} from its edge" if is_at_an_edge(case, right) else ""
-        return Verdict.OUTCOME, f"{found.value}; the exact solution: {right.value}{edge}"
+        return Verdict(wrong), f"{found.value}; the exact solution: {right.value}{edge}"
     if grown > ENERGY_BAND:
         return Verdict.ENERGY, f"energy grows by {grown:.2g} in free rocking, {peak_error}"
     if slip > SLIP_BAND:
@@ -125,11 +129,10 @@ def is_at_an_edge(case: Extreme, outcome: Outcome) -> bool:
 def invalidity(case: Extreme, source: str, exact: Response) -> str:
     """Say why an engine may differ from the exact solution, or return an empty string.
 
-    Models, solvers and peers solve the same equation and may not. Forces of a block that overturns
-    are those of its fall, too, and say nothing.
+    Models, solvers and peers solve the same equation and may not.
     """
     friction = friction_of(case, source)
-    if math.isnan(friction) or exact.outcome is Outcome.OVERTURNED:
+    if math.isnan(friction):
         return ""
     if exact.min_normal < 0.0:
         return f"the pivot lifts off: N falls to {exact.min_normal:.2g} m g"

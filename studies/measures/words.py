@@ -2,8 +2,12 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pandas as pd
 
 from studies.measures.differences import scientific
+from studies.measures.wrongness import MEANINGS, WORDS, Counts, counted, wrong_in
 
 NAMED = 2
 """Engines up to which a sentence names each; of more it says the sum or the range."""
@@ -85,3 +89,52 @@ def duration(seconds: float) -> str:
 def capital(sentence: str) -> str:
     """Return a sentence with its first letter large."""
     return sentence[:1].upper() + sentence[1:]
+
+
+def in_kinds(counts: Counts) -> str:
+    """Return counts in words, those that are not zero: "the fall wrong in 3 and no answer in 2"."""
+    words = [f"{name} in {counts[kind]:.0f}" for kind, name in WORDS.items() if counts[kind]]
+    return listed(words) if words else "none wrong"
+
+
+def right_of(rows: pd.DataFrame) -> str:
+    """Return how many outcomes are right of how many, and the kinds of the others in brackets."""
+    return right_but(counted(wrong_in(rows)), len(rows))
+
+
+def right_but(counts: Counts, cases: float) -> str:
+    """Return the same from the counts, which may be the line of a summary."""
+    lost = sum(counts[kind] for kind in WORDS)
+    return out_of(cases - lost, cases) + (f" ({in_kinds(counts)})" if lost else "")
+
+
+def meant() -> str:
+    """Return what each kind of a wrong outcome counts."""
+    return listed([f"{name} ({MEANINGS[kind]})" for kind, name in WORDS.items()])
+
+
+def between(lines: pd.DataFrame, names: "pd.Series[Any]") -> str:
+    """Return between what counts several sources lie, kind by kind, and who is at the ends.
+
+    "the fall wrong in 1 (a) to 44 (b) and no answer in up to 3 (b)"; never the sum over sources,
+    of whom one may have most of it.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        A line for each source, with a column for each kind.
+    names : Series
+        What each is called.
+    """
+    words = [
+        f"{name} in {_ends(lines[kind], names)}" for kind, name in WORDS.items() if any(lines[kind])
+    ]
+    return listed(words) if words else "none wrong"
+
+
+def _ends(counts: "pd.Series[Any]", names: "pd.Series[Any]") -> str:
+    low, high = counts.min(), counts.max()
+    least, most = (names.iloc[int(place)] for place in (counts.argmin(), counts.argmax()))
+    if low == high:
+        return f"{high:.0f} each" if len(counts) > 1 else f"{high:.0f}"
+    return f"{f'{low:.0f} ({least}) to' if low else 'up to'} {high:.0f} ({most})"

@@ -9,8 +9,10 @@ import pandas as pd
 from analytic.criteria import overturning_amplitude
 from analytic.models import MODELS
 from analytic.motion import FloatArray
+from analytic.response import Outcome
 from studies.cases.window import Window
 from studies.kit import provenance
+from studies.measures.wrongness import FALL, kinds_of
 
 
 def window_of(folder: Path) -> Window:
@@ -39,10 +41,11 @@ def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArr
 def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
     """Return the engines' cells with the exact mode, the verdict and the impacts."""
     mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
-    over = engines["outcome"] == "overturned"
-    right = mode >= 0
-    wrong = [engines["outcome"] == "failed", over & ~right, ~over & right]
-    verdict = np.select(wrong, ["failed", "false", "missed"], default="right")
+    # no pulse of the map is too weak to lift the block
+    right = np.where(mode >= 0, Outcome.OVERTURNED.value, Outcome.ROCKED.value)
+    wrong = kinds_of(engines["outcome"], right)
+    verdict = np.where(wrong == FALL, np.where(mode >= 0, "missed", "false"), wrong)
+    verdict = np.where(wrong == "", "right", verdict)
     return engines.assign(exact_mode=mode, verdict=verdict)
 
 

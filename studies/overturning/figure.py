@@ -16,6 +16,7 @@ from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.styles import style_of
 from studies.measures.differences import conditioning_of
+from studies.measures.wrongness import NO_ANSWER, REST, WORDS
 from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
 
 AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
@@ -39,6 +40,8 @@ MODE_WORDS = {
     "after 2": "overturns after 2",
     "after 3 or more": "overturns after 3 or more",
 }
+CELLS = ("false", "missed", REST, NO_ANSWER)
+"""Verdicts on cells that are wrong, in the order of their colours below."""
 ROOM = 0.08
 """Distance to its edge, over the size of the picture, of an area that has room for words."""
 DIFFERENCE_COLOURS = {
@@ -46,7 +49,8 @@ DIFFERENCE_COLOURS = {
     "both overturn": "#CCCCCC",
     "false overturning": "#E69F00",
     "missed overturning": "#0072B2",
-    "failed": "#000000",
+    WORDS[REST]: "#56B4E9",
+    WORDS[NO_ANSWER]: "#000000",
 }
 
 
@@ -131,7 +135,9 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     drawing.supylabel(AMPLITUDE, fontsize=10)
     title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * across)
     drawing.suptitle(title, fontsize=11)
-    shown = [name for name in DIFFERENCE_COLOURS if name != "failed" or _any_failed(cells)]
+    seen = set(cells["verdict"]) if len(cells) else set()
+    left_out = {WORDS[kind] for kind in (REST, NO_ANSWER) if kind not in seen}
+    shown = [name for name in DIFFERENCE_COLOURS if name not in left_out]
     drawing.legend(
         handles=[
             Patch(facecolor=DIFFERENCE_COLOURS[name], edgecolor="#888888", label=name)
@@ -143,10 +149,6 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
         fontsize=9,
     )
     return drawing
-
-
-def _any_failed(cells: pd.DataFrame) -> bool:
-    return len(cells) > 0 and bool((cells["verdict"] == "failed").any())
 
 
 def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
@@ -188,9 +190,7 @@ def picture(areas: pd.DataFrame, window: Window) -> FloatArray:
 
 def _cell_codes(cells: pd.DataFrame) -> FloatArray:
     both = np.where(cells["exact_mode"] >= 0, 1, 0)
-    codes = np.select(
-        [cells["verdict"] == name for name in ("false", "missed", "failed")], [2, 3, 4], both
-    )
+    codes = np.select([cells["verdict"] == name for name in CELLS], range(2, 2 + len(CELLS)), both)
     marked = cells.assign(code=codes)
     return marked.pivot_table(index="x", columns="onsets", values="code").to_numpy()
 

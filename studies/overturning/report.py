@@ -13,7 +13,8 @@ from studies.cases.window import LEAST_ONSETS, Window
 from studies.kit import provenance
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
-from studies.measures.words import gathered, listed, out_of, part
+from studies.measures.words import gathered, in_kinds, listed, part, right_but
+from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
 
@@ -80,8 +81,8 @@ def headline(folder: Path) -> str:
     words = f"Of an overturning map is wrong: {listed(shares)}"
     if engines.empty:
         return f"{words}."
-    cells = ((row["source"], out_of(_lost(row), row["cells"])) for _, row in engines.iterrows())
-    return f"{words}. Of the cells of a coarse grid: {gathered(cells)}."
+    cells = ((row["source"], in_kinds(_kinds(row))) for _, row in engines.iterrows())
+    return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {gathered(cells)}."
 
 
 def paragraph(folder: Path) -> str:
@@ -99,13 +100,14 @@ def _share(line: "pd.Series[Any]") -> tuple[str, str]:
             if line[name]
         ]
         return line["source"], listed(wrong) if wrong else "gets all of it right"
-    right = out_of(line["cells"] - _lost(line), line["cells"])
+    right = right_but(_kinds(line), line["cells"])
     return line["source"], f"right in {right} cells of a coarse grid"
 
 
-def _lost(line: "pd.Series[Any]") -> int:
-    """Return how many cells an engine gets wrong, or fails in."""
-    return round(float(line["cells"]) * float(line["false"] + line["missed"])) + int(line["failed"])
+def _kinds(line: "pd.Series[Any]") -> dict[str, int]:
+    """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
+    fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
+    return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}
 
 
 def _between(line: "pd.Series[Any]", name: str) -> str:
@@ -132,7 +134,7 @@ def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, obj
             for i, name in enumerate(("false", "missed"))
             for end, share in (("from", 0.05), ("to", 0.95))
         }
-        rows.append({**counts, "cells": math.nan, "failed": 0, **places})
+        rows.append({**counts, "cells": math.nan, REST: 0, NO_ANSWER: 0, **places})
     return rows
 
 
@@ -172,7 +174,7 @@ def engine_differences(engines: pd.DataFrame, window: Window) -> list[dict[str, 
             "missed": float((group["verdict"] == "missed").mean()),
             "other_mode": math.nan,
             "cells": len(group),
-            "failed": int((group["verdict"] == "failed").sum()),
+            **{kind: int((group["verdict"] == kind).sum()) for kind in (REST, NO_ANSWER)},
         }
         for source, group in compared.groupby("source", sort=False)
     ]

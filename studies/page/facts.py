@@ -1,5 +1,7 @@
 """What README.md and the page of the published results say, from the published tables alone."""
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +11,9 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Help, Stepping
 from engines.registry import OWN
+from studies.advise.choice import random_text
+from studies.advise.study import read as read_advice
+from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
@@ -16,13 +21,25 @@ from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.columns import GROUPS
-from studies.measures.differences import scientific
+from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
+from studies.measures.differences import WELL_CONDITIONED, scientific
+from studies.measures.posed import Posed, posed
 from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import capital, duration, listed, out_of, part, per_cent
+from studies.measures.words import (
+    capital,
+    duration,
+    in_kinds,
+    listed,
+    part,
+    per_cent,
+    right_of,
+)
+from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
 from studies.page.markdown import table
 from studies.precision.choices import NEAR, TYPICAL, Choice, choices
 from studies.sweep.claims import linearized, preset_table, whole
+from studies.sweep.study import read as read_sweep
 
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
@@ -96,6 +113,11 @@ def presets(published: Path) -> pd.DataFrame:
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
+def asked(published: Path) -> Posed:
+    """Return what the engines' presets were asked of the paper's cases."""
+    return posed(read_sweep(_with_presets(published)[0]))
+
+
 def _with_presets(published: Path) -> list[Path]:
     folders = [published / name for name in PRESETS_FROM]
     return [folder for folder in folders if (folder / "summary.csv").is_file()]
@@ -127,9 +149,9 @@ def presets_short(lines: pd.DataFrame) -> str:
 
 def _short(row: "pd.Series[Any]") -> str:
     """Return a line of the presets in a cell: outcomes, errors of the peak, time."""
-    lost = int(row["cases"] - row["right"])
+    wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
     parts = (
-        f"**{lost} wrong**" if lost else "none wrong",
+        f"**{wrong}**" if any(row[list(KINDS)]) else wrong,
         f"{part(row['median'])}, max {part(row['max'])}",
         duration(1e-3 * row["ms"]),
     )
@@ -138,12 +160,16 @@ def _short(row: "pd.Series[Any]") -> str:
 
 def presets_text(lines: pd.DataFrame) -> str:
     """Return the presets as a table of Markdown: a row for each, with all that is known."""
-    heads = ("engine", "how it is used", "outcomes right", "median", "p90", "max", "a case")
+    heads = (
+        *("engine", "how it is used", "outcomes right", *WORDS.values()),
+        *("median", "p90", "max", "a case"),
+    )
     rows = [
         (
             f"`{row['source']}`",
             in_words(row["preset"]),
             f"{row['right']} of {row['cases']}",
+            *(f"{row[kind]}" for kind in KINDS),
             *(part(row[name]) for name in ("median", "p90", "max")),
             duration(1e-3 * row["ms"]),
         )
@@ -152,30 +178,30 @@ def presets_text(lines: pd.DataFrame) -> str:
     return table(heads, rows)
 
 
-def models(published: Path) -> dict[str, int]:
-    """Return how many outcomes of the paper's cases each linearization gets wrong."""
+def models(published: Path) -> dict[str, str]:
+    """Return which outcomes of the paper's cases each linearization gets wrong."""
     lines = linearized(whole(published / "sweep"))
-    return {str(row["source"]): int(row["cases"] - row["agree"]) for _, row in lines.iterrows()}
+    return {str(row["source"]): in_kinds(row) for _, row in lines.iterrows()}
 
 
-def choices_short(lines: pd.DataFrame) -> str:
-    """Return the cheapest setting for each accuracy as a table of Markdown.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of work-precision.csv.
-    """
-    heads = ("largest error", "typical cases", "a case", "also near overturning", "a case")
-    rows = [
-        (per_cent(chosen.target), *_cheapest(chosen.typical), *_cheapest(chosen.everywhere))
-        for chosen in choices(lines)
-    ]
+def advised(published: Path) -> str:
+    """Return the cheapest advice for each error with each loop as a table of Markdown."""
+    lines = read_advice(published / "advice")
+    heads = ("largest error", *(head for loop in LOOPS.values() for head in (loop, "a case")))
+    rows = []
+    for target, group in lines.groupby("target", sort=False):
+        best = best_by_driver(group)
+        cells = [cell for loop in LOOPS for cell in _advice(best.get(loop))]
+        rows.append((per_cent(float(str(target))), *cells))
     return table(heads, rows)
 
 
-def _cheapest(chosen: Choice | None) -> tuple[str, str]:
-    return (chosen.setting, duration(chosen.wall_s)) if chosen else ("none tried", "–")
+def _advice(line: "pd.Series[Any] | None") -> tuple[str, str]:
+    if line is None:
+        return "nothing does", "–"
+    at = setting_text(line)
+    off = random_text(line)
+    return (f"{at}; {off}" if off else at), cost_text(line["wall_s"], line["runs"])
 
 
 def choices_text(lines: pd.DataFrame) -> str:
@@ -187,23 +213,28 @@ def choices_text(lines: pd.DataFrame) -> str:
         The columns of work-precision.csv.
     """
     heads = (
-        *("largest error", "cheapest on typical cases", "a case", "its largest error"),
+        *("largest error", "steps", "cheapest on typical cases", "a case", "its largest error"),
         *("near overturning", "cheapest on all cases", "a case"),
     )
     rows = [
-        (per_cent(chosen.target), *_typical(chosen.typical), *_cheapest(chosen.everywhere))
-        for chosen in choices(lines)
+        (per_cent(chosen.target), words, *_typical(chosen.typical), *_cheapest(chosen.everywhere))
+        for pair in zip(*(choices(lines, loop) for loop in LOOPS), strict=True)
+        for chosen, words in zip(pair, LOOPS.values(), strict=True)
     ]
     return table(heads, rows)
 
 
+def _cheapest(chosen: Choice | None) -> tuple[str, str]:
+    return (chosen.setting, cost_text(chosen.wall_s, chosen.runs)) if chosen else ("none", "–")
+
+
 def _typical(chosen: Choice | None) -> tuple[str, str, str, str]:
     if chosen is None:
-        return "none tried", "-", "-", "-"
+        return "none", "-", "-", "-"
     near = chosen.near_error
     return (
         chosen.setting,
-        duration(chosen.wall_s),
+        cost_text(chosen.wall_s, chosen.runs),
         part(chosen.typical_error),
         "an outcome wrong" if near == float("inf") else part(near),
     )
@@ -236,22 +267,50 @@ def counts(published: Path) -> dict[str, int]:
         "engines": presets(published)["engine"].nunique(),
         "typical": int(each[TYPICAL]),
         "near": int(each[NEAR]),
+        "calm": int(WELL_CONDITIONED),
+        "runs": LEAST_RUNS,
     }
 
 
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
     sweep = provenance.record_of(published / "sweep")
-    machine, run = sweep["machine"], sweep["runs"][-1]
+    machine = sweep["machine"]
     versions = provenance.engines_of(provenance.record_of(_with_presets(published)[0]))
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
     return {
         "engines": listed([f"{name} {versions[name]}" for name in packages]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
-        "date": run["start"][:10],
-        "sweep": f"{run['duration_s']:.0f} s",
+        "date": sweep["runs"][-1]["start"][:10],
+        "sweep": lasts(sweep, *_first_of(published)),
     }
+
+
+FIRST = "first.json"
+"""Provenance of the sweep in another folder, where it was the first run after an installation."""
+
+
+def _first_of(published: Path) -> list[dict[str, Any]]:
+    path = published / "sweep" / FIRST
+    return [json.loads(path.read_text(encoding="utf-8"))] if path.is_file() else []
+
+
+def lasts(*records: Mapping[str, Any]) -> str:
+    """Return how long the same command takes, at the first run after an installation and later.
+
+    Raises
+    ------
+    ValueError
+        If the records are of different commands, machines or versions.
+    """
+    same = ("study", "code", "engines", "machine", "settings")
+    if len({json.dumps([record[name] for name in same]) for record in records}) > 1:
+        raise ValueError(f"the provenances of two runs differ in one of {', '.join(same)}")
+    runs = [run for record in records for run in provenance.whole_runs(record)]
+    times = {run["first"]: f"{run['duration_s']:.0f} s" for run in runs}
+    first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
+    return f"{first} the first time, when its functions are compiled, and for {later} later"
 
 
 def glossary() -> list[tuple[str, str]]:
@@ -315,7 +374,7 @@ def random_fixed(published: Path) -> str:
     """Return which presets with a fixed step get random cases wrong; empty if none does."""
     compared = pd.read_csv(published / "validate" / "errors.csv")
     words = [
-        f"`{source}` gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right"
+        f"`{source}` gets {right_of(rows)} outcomes right"
         for source, rows in compared.groupby("source", sort=False)
         if preset_of(str(source)) == "fixed" and not rows["agrees"].all()
     ]

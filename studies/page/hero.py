@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Response
 from studies.cases.paper import free_rocking_window
@@ -15,7 +15,7 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * STANDARD_GRAVITY, omega=6.2832, half_cycles=2)
+PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
 SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 SAMPLES = 401
 

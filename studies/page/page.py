@@ -18,9 +18,10 @@ from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.presets import in_words
-from studies.measures.words import part
+from studies.measures.words import in_kinds, meant, part
+from studies.measures.wrongness import KINDS
 from studies.page.engine_cases import engine_cases
-from studies.page.facts import MANY, presets, shared, told_of
+from studies.page.facts import MANY, asked, presets, shared, told_of
 from studies.sweep.claims import verdict
 
 GOOD, BAD = 1e-3, 0.1
@@ -55,12 +56,12 @@ def first_sight(folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        verdict: in words; presets: how they are used, in words; tiles: engine -> a tile for each
-        of these, or None.
+        verdict, and what each kind of wrong counts, in words; presets: how they are used, in
+        words; tiles: engine -> a tile for each of these, or None.
     """
     lines = presets(folder)
     if lines.empty:
-        return {"verdict": "", "presets": [], "tiles": {}}
+        return {"verdict": "", "wrong": "", "presets": [], "tiles": {}}
     names = shared(lines)
     tiles = {}
     for engine, group in lines.groupby("engine", sort=False):
@@ -69,7 +70,8 @@ def first_sight(folder: Path) -> dict[str, Any]:
         alone = [{**tile, "preset": name} for name, tile in mine.items() if name not in names]
         tiles[ENGINES[str(engine)].title] = [*row[:-1], row[-1] or next(iter(alone), None)]
     return {
-        "verdict": verdict(lines),
+        "verdict": verdict(lines, asked(folder)),
+        "wrong": meant(),
         "presets": list(map(in_words, names)),
         "tiles": tiles,
     }
@@ -77,11 +79,11 @@ def first_sight(folder: Path) -> dict[str, Any]:
 
 def _tile(row: "pd.Series[Any]") -> dict[str, str]:
     """Return a line of presets in words, and whether it is good, bad or neither."""
-    lost = int(row["cases"] - row["right"])
+    lost = any(row[list(KINDS)])
     good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD
     return {
         "kind": "good" if good else "bad" if bad else "",
-        "wrong": f"{lost} wrong" if lost else "none wrong",
+        "wrong": in_kinds(row),
         "median": _unbroken(part(row["median"])),
         "max": f"max {_unbroken(part(row['max']))}",
     }

@@ -1,12 +1,17 @@
 """README.md and the pages of the published results, written from the published tables."""
 
+import json
 from pathlib import Path
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
+from studies.kit.digests import check, seal
+from studies.kit.journal import PROVENANCE
+from studies.measures.words import capital, meant
 from studies.page import facts, hero
 from studies.sweep.claims import verdict
 
@@ -30,8 +35,14 @@ def command(*, root: Path = Path()) -> int:
     folder = root / PUBLISHED / "hero"
     if not (root / PUBLISHED).is_dir():
         raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
+    for study, chapter in CHAPTERS:
+        tables = [name for name in study.products if name.endswith(".csv")]
+        check(root / PUBLISHED / chapter.folder, tables, "a published folder")
     folder.mkdir(exist_ok=True)
     hero.measure(folder / "hero.csv")
+    made_with = provenance.identity("readme", hero.__name__)
+    provenance.write_text(folder / PROVENANCE, json.dumps(made_with, indent=2) + "\n")
+    seal(folder)
     samples = pd.read_csv(folder / "hero.csv")
     drawn = {"block": draw_block(), "hero": draw_hero(hero.BLOCK, samples, hero.summary(samples))}
     save_all(drawn, folder)
@@ -56,12 +67,14 @@ def pages(root: Path) -> dict[Path, str]:
     known = {
         "many": facts.MANY,
         "chapters": facts.chapters(published),
-        "verdict": verdict(lines),
+        "verdict": verdict(lines, facts.asked(published)),
+        "wrong": meant(),
+        "asked": capital(facts.asked(published).words),
         "missing": facts.missing(published),
         "presets": facts.presets_short(lines),
         "presets_all": facts.presets_text(lines),
         "models": facts.models(published),
-        "choices": facts.choices_short(steps),
+        "advised": facts.advised(published),
         "choices_all": facts.choices_text(steps),
         "counts": facts.counts(published),
         "hero": facts.hero_lines(published),

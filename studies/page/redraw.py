@@ -8,7 +8,8 @@ from typing import Literal
 from studies.catalogue import STUDIES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place
-from studies.kit.jobs import one_line
+from studies.kit.digests import check
+from studies.kit.refusing import one_line
 from studies.kit.study import Study
 
 
@@ -29,6 +30,8 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
         tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
     for study in found:
+        check(folder, [name for name in study.products if name.endswith(".csv")], "FOLDER")
+    for study in found:
         print(*draw(study, folder, f".{suffix}"), sep="\n")
     return 0
 
@@ -37,7 +40,7 @@ def _recorded(folder: Path) -> str:
     """Return the name of the study that left a folder, which may hold its smaller tables only."""
     try:
         return str(provenance.record_of(folder)["study"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return ""
 
 

@@ -50,11 +50,15 @@ def command(*, out: Place, full: bool = False) -> int:
 
 
 def _prepare(out: Path, full: bool) -> None:
-    """Make the folder, and refuse one that holds a report of the other kind."""
+    """Make the folder, and refuse one of somebody else, or with a report of the other kind."""
     path, kind = out / "kind.txt", "full" if full else "quick"
     try:
         out.mkdir(parents=True, exist_ok=True)
-        held = path.read_text().strip() if path.is_file() else kind
+        strange = sorted(each.name for each in out.iterdir() if each.name != f".part.{path.name}")
+        if strange and not path.is_file():
+            problem = f"it must be new or empty, or hold a report, and it holds {strange[0]!r}"
+            raise FolderError(out, problem)
+        held = path.read_text(errors="replace").strip() if path.is_file() else kind
         if held != kind:
             raise FolderError(out, f"it holds a {held} report; a {kind} one needs another folder")
         provenance.write_text(path, kind + "\n")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from studies.measures.finer import with_every_finer
 from studies.precision.methods import METHODS
 from studies.sources.registry import resolve
 
@@ -34,6 +35,10 @@ class Choice:
         Mean time of a case [s], over the cases among which it was chosen.
     over_exact : float
         That over the exact solution's.
+    runs : int
+        How often a case was timed at least.
+    loop : str
+        Who took the steps: compiled, or python.
     typical_error, near_error : float
         Its largest error on typical cases and near overturning; inf where an outcome is wrong.
     """
@@ -43,6 +48,8 @@ class Choice:
     setting: str
     wall_s: float
     over_exact: float
+    runs: int
+    loop: str
     typical_error: float
     near_error: float
 
@@ -56,15 +63,19 @@ class Choices:
     everywhere: Choice | None
 
 
-def choices(table: pd.DataFrame) -> tuple[Choices, ...]:
+def choices(table: pd.DataFrame, loop: str = "") -> tuple[Choices, ...]:
     """Return what to choose for each target.
 
     Parameters
     ----------
     table : DataFrame
         The columns of work-precision.csv.
+    loop : str, optional
+        compiled or python, for the engines alone that are stepped so; by default all.
     """
     typical, engines = table[table["set"] == TYPICAL], engines_of(table)
+    if loop:
+        engines = engines[engines["driver"] == loop]
     return tuple(
         Choices(
             target=target,
@@ -89,14 +100,26 @@ def _choice(
         setting=setting_of(best),
         wall_s=float(best["wall_s"]),
         over_exact=float(best["wall_s"]) / exact_cost(timed),
+        runs=int(best["runs"]),
+        loop=str(best["driver"]),
         typical_error=float(errors.get(TYPICAL, math.nan)),
         near_error=float(errors.get(NEAR, math.nan)),
     )
 
 
 def cheapest_below(lines: pd.DataFrame, target: float) -> "pd.Series[Any] | None":
-    """Return the cheapest line whose largest error is below a target, if there is one."""
-    good = lines[(lines["failed"] == 0) & (lines["max_error"] <= target)]
+    """Return the cheapest line whose largest error is below a target, if there is one.
+
+    Every finer setting of its method must stay below it, too: a coarse one may be lucky.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        Those of each method from coarse to fine.
+    target : float
+    """
+    keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
+    good = lines[keeps.groupby(lines["method"], sort=False).transform(with_every_finer)]
     return None if good.empty else good.sort_values("wall_s").iloc[0]
 
 
@@ -118,6 +141,8 @@ def joint(table: pd.DataFrame) -> pd.DataFrame:
         failed=("failed", "sum"),
         max_error=("max_error", "max"),
         wall_s=("wall_s", "sum"),
+        runs=("runs", "min"),
+        driver=("driver", "first"),
     )
     return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()
 

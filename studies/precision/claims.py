@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pandas as pd
 
+from studies.measures.costs import LOOPS, cost_text
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed, part, times
 from studies.precision.choices import (
@@ -48,7 +49,7 @@ def first_claim(table: pd.DataFrame) -> str:
         return "No engine setting reaches any of the errors asked for on every typical case."
     last = reached[-1]
     engines = [
-        f"{times(chosen.over_exact)} that {words}"
+        f"{times(chosen.over_exact)} that {words}, {LOOPS[chosen.loop]}"
         for chosen, words in (
             (last.typical, "on typical cases"),
             (last.everywhere, "with those near overturning"),
@@ -80,20 +81,29 @@ def _on_targets(table: pd.DataFrame) -> Iterable[str]:
 
     A target that a tighter one's setting is the cheapest for, too, is passed over.
     """
-    found = choices(table)
-    for chosen, tighter in zip(found, (*found[1:], None), strict=True):
+    found, others = choices(table), choices(table, "python")
+    for chosen, other, tighter in zip(found, others, (*found[1:], None), strict=True):
         if chosen.typical is None:
             yield f"No engine setting stays below {part(chosen.target)} on every typical case."
         elif tighter is None or replace(tighter, target=chosen.target) != chosen:
-            yield _on_target(chosen.target, chosen.typical, chosen.everywhere)
+            beside = "" if other == chosen else _beside(other.typical)
+            yield _on_target(chosen.target, chosen.typical, chosen.everywhere, beside)
 
 
-def _on_target(target: float, typical: Choice, everywhere: Choice | None) -> str:
+def _on_target(target: float, typical: Choice, everywhere: Choice | None, beside: str) -> str:
     return (
         f"Below {part(target)} on every typical case the cheapest engine setting is "
-        f"{typical.setting}: {duration(typical.wall_s)} a case, {times(typical.over_exact)} the "
-        f"exact solution's; {_elsewhere(typical, target)}{_on_all(typical, everywhere)}."
+        f"{typical.setting}: {cost_text(typical.wall_s, typical.runs, ' a case')}, "
+        f"{LOOPS[typical.loop]}, {times(typical.over_exact)} the exact solution's{beside}; "
+        f"{_elsewhere(typical, target)}{_on_all(typical, everywhere)}."
     )
+
+
+def _beside(other: Choice | None) -> str:
+    """Say what is the cheapest of the engines that are stepped from Python."""
+    if other is None:
+        return f" (none that is {LOOPS['python']})"
+    return f" ({LOOPS[other.loop]}, {other.setting}: {cost_text(other.wall_s, other.runs)})"
 
 
 def _elsewhere(typical: Choice, target: float) -> str:

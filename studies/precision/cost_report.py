@@ -1,12 +1,15 @@
 """What a scene costs, reported: three tables and a figure, from their CSVs alone."""
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 from studies.kit import provenance
+from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
+from studies.measures.words import duration, listed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,14 +45,20 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how long a step takes, and how much of that is the engine's own."""
-    shares = read(folder, "shares").dropna(subset=["step_s", "engine_s"])
+    """Say how long a step takes with each loop, and how much of that is the engine's own."""
+    shares = read(folder, "shares").dropna(subset=["step_s"])
     words = [
-        f"{line['engine']} {1e6 * line['step_s']:.3g} µs "
-        f"(the engine's own step {1e6 * line['engine_s']:.2g} µs)"
-        for _, line in shares.drop_duplicates("engine", keep="last").iterrows()
+        f"{listed([_step(line) for _, line in lines.iterrows()])} with {engine}"
+        for engine, lines in shares.groupby("engine", sort=False)
     ]
     return f"A step of the stepping loop takes {', '.join(words)}."
+
+
+def _step(line: "pd.Series[Any]") -> str:
+    """Return how long a step takes, who takes it, and what of it is the engine's own."""
+    own = line["engine_s"]
+    part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"
+    return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"
 
 
 def paragraph(folder: Path) -> str:
@@ -79,6 +88,8 @@ def scenes_text(scenes: pd.DataFrame) -> str:
             "steps": scenes["steps"],
             "time": (scenes["wall_s"] / base).map("{:.2f} x".format),
             "step µs": (1e6 * scenes["step_s"]).map("{:.1f}".format),
+            "loop": scenes["driver"],
+            "runs": scenes["runs"],
             "set-up ms": (1e3 * scenes["setup_s"]).map("{:.2f}".format),
             "memory KiB": scenes["memory_kib"].map("{:.0f}".format),
         }

@@ -47,7 +47,7 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
     # the first run of each driver may compile, which would spend the whole budget
     for compiled in (False, True):
         run(engine, replace(scene, compiled=compiled))
-    plain, _ = best_of(partial(run, engine, scene), budget_s)
+    plain = best_of(partial(run, engine, scene), budget_s)
     if plain.outcome is Outcome.FAILED:
         yield {"engine": engine, "driver": DRIVERS[0], **dict.fromkeys(SHARES, math.nan)}
         return
@@ -62,7 +62,7 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
     )
     yield {"engine": engine, "driver": DRIVERS[0], **dict(zip(SHARES, shares, strict=True))}
     if getattr(example_world(engine), "drive", None) is not None:
-        at_once, _ = best_of(partial(run, engine, replace(scene, compiled=True)), budget_s)
+        at_once = best_of(partial(run, engine, replace(scene, compiled=True)), budget_s)
         unknown = dict.fromkeys(SHARES, math.nan)
         known = {"step_s": at_once.wall_s / at_once.steps, "engine_s": own}
         yield {"engine": engine, "driver": DRIVERS[1], **unknown, **known}

@@ -1,11 +1,11 @@
 """Error against run time: every method along its own setting, on the same cases."""
 
 import json
-import time
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
+from time import perf_counter
 from typing import Annotated
 
 import numpy as np
@@ -23,13 +23,13 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost, cost_report
 from studies.precision.methods import Method, methods_of
-from studies.precision.repeats import best_of
+from studies.precision.repeats import Timed, best_of
 from studies.precision.report import headline, paragraph, pictures, report
 from studies.sources.registry import Source
 
 __all__ = ["command", "headline", "paragraph", "pictures", "report"]
 
-BUDGET_S, QUICK_BUDGET_S = 0.1, 0.02
+BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 """Time [s] spent at most on timing one case with one setting."""
 
 
@@ -44,8 +44,9 @@ def command(
 
     Every method along its own setting (tolerance, step, solver iterations) on 12 cases of the
     paper whose peaks lie before or after impacts, and 12 near overturning. Timing is serial, on
-    one thread, warm, the best of several runs, until the shortest two agree; building and
-    compiling are apart.
+    one thread, warm, the best of five runs or more, until the shortest two agree, or of fewer where
+    these take longer than half a second: how many is a column, and so is who takes the steps of an
+    engine, a compiled loop or Python. Building and compiling are apart.
 
     Parameters
     ----------
@@ -131,30 +132,32 @@ def measure(job: Job, source: Source, *, budget_s: float) -> Response:
     plain = replace(job, duration=None, times=None)
 
     def timed() -> Response:
-        start = time.perf_counter()
+        start = perf_counter()
         response = ask(plain, source)
         # by the same clock for all sources, of which only engines know their own
-        return replace(response, setup_s=time.perf_counter() - start - response.wall_s)
+        return replace(response, setup_s=perf_counter() - start - response.wall_s)
 
-    best, setup_s = best_of(timed, budget_s)
+    best = best_of(timed, budget_s)
     if Outcome.FAILED in (recorded.outcome, best.outcome):
         return best if best.outcome is Outcome.FAILED else recorded
     return replace(
-        recorded,
+        Timed.of(recorded, best.runs),
         outcome=best.outcome,
         peak_ratio=best.peak_ratio,
         steps=best.steps,
         wall_s=best.wall_s,
-        setup_s=setup_s,
+        setup_s=best.setup_s,
     )
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the summary, the set-up time, the first impact times and the drift of energy."""
+    """Return the summary, the set-up time, the runs, the first impacts, the drift of energy."""
     times = [impact.time * job.block.p for impact in response.impacts[:COMPARED_IMPACTS]]
     return {
         **summary(job, response),
         "setup_s": round(response.setup_s, 9),
+        "runs": response.runs if isinstance(response, Timed) else 0,
+        "driver": response.driver,
         "impact_times": json.dumps(times),
         "energy_drift": energy_drift(job, response),
     }

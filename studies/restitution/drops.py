@@ -1,14 +1,15 @@
 """Drops that vary one thing at a time, and what each engine makes of them."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Hashable, Sequence
+from dataclasses import asdict, replace
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.drop import Drop
+from engines.drop import SHOWN, Drop
 from studies.kit.journal import Row
+from studies.measures.formulas import by_step
 from studies.restitution.asked import one_at_a_time
 
 BASE = Drop(restitution=0.0)
@@ -58,7 +59,8 @@ def kept(rows: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         engine, way; off: the largest difference of what is found from what is wanted, wherever the
         impact falls in a step; off_dt_s, off_speed, off_radius: the same over what is varied;
-        broken: drops that the library did not survive; literal: what is set for 0.6.
+        off_over_all: the largest of these; broken: drops that the library did not survive; literal:
+        what is set for 0.6, what follows the step being a formula of DT, the step [s].
     """
     table = []
     for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
@@ -66,9 +68,19 @@ def kept(rows: pd.DataFrame) -> pd.DataFrame:
         off = off.where(group["speed_ratio"] < BROKEN, math.inf)
         names = {"": "off", **{name: f"off_{name}" for name in VARIED}}
         mine = {column: off[group["varied"] == name].max() for name, column in names.items()}
-        shown = group[(group["wanted"] == 0.6) & (group["varied"] == "")].iloc[0]
-        broken = int((off == math.inf).sum())
         table.append(
-            {"engine": engine, "way": way, **mine, "broken": broken, "literal": shown["literal"]}
+            {
+                **{"engine": engine, "way": way, **mine, "off_over_all": off.max()},
+                **{
+                    "broken": int((off == math.inf).sum()),
+                    "literal": _formula(str(engine), str(way)),
+                },
+            }
         )
     return pd.DataFrame(table)
+
+
+def _formula(engine: Hashable, name: Hashable) -> str:
+    """Return what is set for the coefficient that is quoted, by the step."""
+    way = next(way for way in ENGINES[str(engine)].bouncing if way.name == name)
+    return by_step(lambda dt_s: way.setting(replace(BASE, restitution=SHOWN, dt_s=dt_s)))

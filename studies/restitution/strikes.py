@@ -58,7 +58,8 @@ def struck(rows: pd.DataFrame) -> pd.DataFrame:
     -------
     DataFrame
         engine, way; off: the largest difference of the ratio of rates from that of the theory,
-        wherever in a step the impact falls; off_p_dt, ...: the same over what is varied; corner:
+        wherever in a step the impact falls; off_p_dt, ...: the same over what is varied;
+        off_over_all: the largest of these; corner:
         the largest difference of the corner's ratio of speeds from what is wanted; slide: the
         largest speed of the corner along the base, over that of its approach.
     """
@@ -71,6 +72,9 @@ def struck(rows: pd.DataFrame) -> pd.DataFrame:
         mine = {column: off[group["varied"] == name].max() for name, column in names.items()}
         slide = group["slide_ratio"].abs()[usual].max()
         table.append(
-            {"engine": engine, "way": way, **mine, "corner": corner[usual].max(), "slide": slide}
+            {
+                **{"engine": engine, "way": way, **mine, "off_over_all": off.max()},
+                **{"corner": corner[usual].max(), "slide": slide},
+            }
         )
     return pd.DataFrame(table)

@@ -7,7 +7,7 @@ STUDY = Study(
     module="studies.score.study",
     help="""One engine on one page, registered or at MODULE:ENGINE or MODULE:build.
 
-The paper's 960 cases with each of its presets, its errors along the step beside the published
+The paper's cases with each of its presets, its errors along the step beside the published
 engines, its verdicts on extreme cases, what it is helped by. Writes score-sweep.csv,
 score-steps.csv, score-extremes.csv, score.txt, two figures and provenance.json; resumable.""",
     table="score-sweep.csv",

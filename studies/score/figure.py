@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, Style
+from studies.measures.words import listed
 from studies.precision.choices import engines_of, joint
 from studies.precision.figure import style_of
 
@@ -30,11 +31,13 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     mine, others = joint(along), joint(engines_of(published))
     others = others[~others["method"].isin(mine["method"])]
     grey = Style(BACKGROUND, "-", ".", 0.9)
-    names = [_line(axes, str(name), line, grey) for name, line in _methods(others)]
-    names += [_line(axes, str(name), line, style_of(str(name))) for name, line in _methods(mine)]
+    names = [_line(axes, name, line, grey) for name, line in _methods(others)]
+    names += [_line(axes, name, line, style_of(name)) for name, line in _methods(mine)]
     axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
-    axes.text(0.01, 0.985, "failed, or a wrong outcome", va="top", fontsize=8, color="#666666",
-              transform=axes.transAxes)  # fmt: skip
+    failed = "failed, or a wrong outcome"
+    if untimed := sorted(set(mine["method"]) - set(_timed(mine)["method"])):
+        failed += f"; without a run time: {listed(untimed)}"
+    axes.text(0.01, 0.985, failed, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
     axes.set_xlabel("run time of a case, set-up apart  [s]")
     counts = dict.fromkeys(f"{lines['cases'].max()}" for lines in (mine, others) if len(lines))
     axes.set_ylabel(f"largest relative error of the peak, {' (grey: '.join(counts)} cases"
@@ -45,8 +48,12 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _methods(lines: pd.DataFrame) -> list[tuple[object, pd.DataFrame]]:
-    return list(lines.groupby("method", sort=False))
+def _methods(lines: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    return [(str(name), line) for name, line in _timed(lines).groupby("method", sort=False)]
+
+
+def _timed(lines: pd.DataFrame) -> pd.DataFrame:
+    return lines[lines["wall_s"] > 0.0]
 
 
 def _line(axes: Axes, name: str, line: pd.DataFrame, style: Style) -> Name:

@@ -10,9 +10,12 @@ from engines import ENGINES
 from engines.declaration import Engine, Precision
 from studies.advise.evidence import LADDER
 from studies.kit import provenance
+from studies.kit.digests import check
+from studies.measures.costs import cost_text
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
+from studies.measures.posed import posed
 from studies.measures.published import PUBLISHED
-from studies.measures.words import listed, out_of, part
+from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
 from studies.stability.findings import first_claim
@@ -36,8 +39,7 @@ def report(folder: Path) -> str:
     text = "\n\n".join(
         [
             introduction(engine),
-            "The paper's cases: errors of the peak are relative, over cases that survive:\n"
-            + summary_text(swept(folder)),
+            asked_text(folder) + "\n" + summary_text(swept(folder)),
             "Along the step, on typical cases and near overturning together:\n" + along_text(along),
             "The cheapest setting below an error on all of these, and the published one:\n"
             + places_text(along),
@@ -51,6 +53,16 @@ def report(folder: Path) -> str:
     return text
 
 
+def asked_text(folder: Path) -> str:
+    """Say what the paper's cases are, and what of them is counted."""
+    asked = posed(_table(folder, "sweep")).words
+    return fill(
+        f"The paper's cases: {asked}. Errors of the peak are relative, over cases that survive. "
+        f"Wrong are outcomes in three kinds, fall (falsely + missed), rest and none: {meant()}.",
+        WIDTH,
+    )
+
+
 def engine_of(folder: Path) -> str:
     """Return the name of the engine that a folder is about."""
     return str(provenance.record_of(folder)["settings"]["engine"])
@@ -59,7 +71,7 @@ def engine_of(folder: Path) -> str:
 def headline(folder: Path) -> str:
     """Say how many outcomes the engine's presets get right, and how far peaks are off."""
     words = [
-        f"{line['source']} gets {out_of(line['agree'], line['cases'])} outcomes right, "
+        f"{line['source']} gets {right_but(line, line['cases'])} outcomes right, "
         f"and peaks to {part(line['max_error'])}"
         for _, line in swept(folder).iterrows()
     ]
@@ -95,7 +107,8 @@ def ladder(folder: Path) -> pd.DataFrame:
 
 
 def published() -> pd.DataFrame:
-    """Return the published table of the same."""
+    """Return the published table of the same; FolderError if it was edited."""
+    check(PUBLISHED, [LADDER], "the published folder")
     return pd.read_csv(PUBLISHED / LADDER)
 
 
@@ -129,6 +142,8 @@ def along_text(along: pd.DataFrame) -> str:
             "largest": lines["max_error"].map(scientific),
             "failed": lines["failed"],
             "ms a case": (1e3 * lines["wall_s"]).map("{:.3g}".format),
+            "runs": lines["runs"],
+            "loop": lines["driver"],
         }
     ).to_string(index=False)
 
@@ -149,7 +164,8 @@ def places_text(along: pd.DataFrame) -> str:
 def _setting(line: "pd.Series[Any] | None") -> str:
     if line is None:
         return "none"
-    return f"{line['method']} at {line['value']:g}, {1e3 * line['wall_s']:.3g} ms"
+    cost = cost_text(line["wall_s"], line["runs"])
+    return f"{line['method']} at {line['value']:g}, {cost}, {line['driver']}"
 
 
 def help_text(engine: Engine) -> str:

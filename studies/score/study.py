@@ -22,7 +22,8 @@ from studies.kit.plan import Plan, by_label, carry_out
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
-from studies.score.report import headline, paragraph, pictures, report
+from studies.score.loading import guarded, problem_elsewhere
+from studies.score.report import headline, paragraph, pictures, published, report
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
@@ -58,6 +59,7 @@ def command(
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
     """
     chosen = plan(known(engine), quick, running.time_limit)
+    published()  # what it is held against is refused now, and not after the last run
     return carry_out(STUDY, chosen, out, running, report)
 
 
@@ -75,8 +77,11 @@ def known(engine: str) -> str:
         words = f"{', '.join(ENGINES)}, MODULE:ENGINE or MODULE:build"
         raise BadInputError(f"ENGINE is {engine!r}; it must be one of {words}")
     sys.path.insert(0, str(Path.cwd()))
+    if problem := problem_elsewhere(engine):
+        raise BadInputError(f"ENGINE: {problem}")
     try:
-        return announce(engine)
+        with guarded():
+            return announce(engine)
     except ValueError as error:
         raise BadInputError(f"ENGINE: {error}") from error
 
@@ -95,9 +100,8 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
 
 def adapter(name: str) -> str:
     """Return a hash of the module that builds an engine's worlds, which may be anybody's."""
-    module = inspect.getmodule(ENGINES[name].build)
-    source = inspect.getsource(module) if module else ""
-    return hashlib.sha256(source.encode()).hexdigest()[:12]
+    file = getattr(inspect.getmodule(ENGINES[name].build), "__file__", None)
+    return hashlib.sha256(Path(file).read_bytes() if file else b"").hexdigest()[:12]
 
 
 def score_jobs(name: str, quick: bool) -> list[Job]:

@@ -25,7 +25,7 @@ a minute.""",
     captions={
         "stability": (
             "A matrix of extreme cases and methods: a symbol in each cell says whether the "
-            "outcome is right, the peak off, energy made or no result found."
+            "outcome is right or in which kind wrong, the peak off, or energy made."
         ),
     },
 )

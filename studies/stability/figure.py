@@ -30,7 +30,8 @@ MARKS = {
     Verdict.OFF: Mark("#F2B33D", "≠"),
     Verdict.SLIDES: Mark("#E3B3CE", "→"),
     Verdict.ENERGY: Mark("#56A0D3", "↑"),
-    Verdict.OUTCOME: Mark("#D55E00", "✗", "#FFFFFF"),
+    Verdict.FALL: Mark("#D55E00", "✗", "#FFFFFF"),
+    Verdict.REST: Mark("#8B5A3C", "–", "#FFFFFF"),
     Verdict.FAILED: Mark("#222222", "!", "#FFFFFF"),
     Verdict.INVALID: Mark("#FFFFFF", "○", "#555555", "////"),
 }

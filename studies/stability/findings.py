@@ -1,6 +1,7 @@
 """What the study of extreme cases found, in a paragraph made from its tables."""
 
 import math
+from collections.abc import Iterable
 
 import pandas as pd
 
@@ -8,7 +9,8 @@ from analytic.response import Reason
 from studies.measures.differences import scientific
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import NAMED, each_out_of, listed, out_of
+from studies.measures.words import NAMED, each_out_of, in_kinds, listed, meant, out_of
+from studies.measures.wrongness import KINDS
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
 from studies.stability.remedies import NOTHING
@@ -31,24 +33,56 @@ def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> 
 
 
 def first_claim(matrix: pd.DataFrame) -> str:
-    """Say how many of the extreme cases each preset of the engines gets right."""
+    """Say how many of the extreme cases each preset gets right, of how many engines and cases.
+
+    Cases beyond what the reference is valid for are in no count. Engines that have a preset with
+    which they were not asked are named, and so is who gave no answer.
+    """
     valid = matrix["verdict"] != Verdict.INVALID.value
     asked = matrix[matrix["source"].map(is_engine) & valid]
     right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
     counts: dict[str, list[tuple[int, int]]] = {}
     for source, good in right:
         counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
-    parts = [f"{in_words(name)} {_counted(counts[name])}" for name in in_order(counts)]
     engines = list(dict.fromkeys(map(engine_of, asked["source"])))
     named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
     verb = "get" if len(engines) > 1 else "gets"
-    return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
+    parts = [
+        f"{in_words(name)} {_counted(counts[name], len(engines))}" for name in in_order(counts)
+    ]
+    left = [*_not_asked(asked["source"].unique(), counts), *_no_answers(asked)]
+    return f"Of extreme cases {named} {verb} right: {'; '.join([', '.join(parts), *left])}."
 
 
-def _counted(pairs: list[tuple[int, int]]) -> str:
-    """Return how many are right of how many, of each engine or of all."""
+def _counted(pairs: list[tuple[int, int]], engines: int) -> str:
+    """Return how many are right of how many, of each engine or of all; and of how many engines."""
     right, total = zip(*pairs, strict=True)
-    return each_out_of(right, total) if len(pairs) <= NAMED else out_of(sum(right), sum(total))
+    if len(pairs) <= NAMED:
+        return each_out_of(right, total)
+    few = f" ({len(pairs)} engines)" if len(pairs) < engines else ""
+    return f"{out_of(sum(right), sum(total))}{few}"
+
+
+def _not_asked(sources: Iterable[str], presets: Iterable[str]) -> list[str]:
+    """Name the engines that have one of the presets, and were not asked with it."""
+    asked = {(engine_of(source), preset_of(source)): resolve(source) for source in sources}
+    words = []
+    for name in in_order(presets):
+        have = [
+            engine
+            for engine, declared in {key[0]: its.declared for key, its in asked.items()}.items()
+            if any(preset.name == name for preset in declared.presets)
+        ]
+        missing = [engine for engine in have if (engine, name) not in asked]
+        words += [f"{listed(missing)} {in_words(name)}"] if missing else []
+    return [f"not asked: {', '.join(words)}"] if words else []
+
+
+def _no_answers(asked: pd.DataFrame) -> list[str]:
+    """Name who gave no answer, and in how many of the cases that count."""
+    lost = asked.loc[asked["verdict"] == Verdict.FAILED.value, "source"].map(engine_of)
+    words = [f"{engine} in {count}" for engine, count in lost.value_counts().items()]
+    return [f"no answer: {listed(words)}"] if words else []
 
 
 def verdicts_sentence(matrix: pd.DataFrame) -> str:
@@ -64,7 +98,7 @@ def verdicts_sentence(matrix: pd.DataFrame) -> str:
     )
     return (
         "Extreme cases, outcome right and peak within 1 % or 1e-6 of θcr, counted strictly: "
-        f"{scores}. {reference_sentence(matrix)}".rstrip()
+        f"{scores}. The kinds are {meant()}. {reference_sentence(matrix)}".rstrip()
     )
 
 
@@ -74,7 +108,9 @@ def _score(source: str, verdicts: "pd.Series[str]") -> str:
         int(counts.get(verdict.value, 0)) for verdict in (Verdict.INVALID, Verdict.UNSEEN)
     )
     good = int(counts.get(Verdict.GOOD.value, 0))
+    wrong = {kind: counts.get(kind, 0) for kind in KINDS}
     besides = [
+        *([in_kinds(wrong)] if any(wrong.values()) else []),
         *([f"{unseen} too small to be seen"] if unseen else []),
         *([f"{beyond} more beyond the reference"] if beyond else []),
     ]

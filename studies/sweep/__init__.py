@@ -7,7 +7,8 @@ STUDY = Study(
     module="studies.sweep.study",
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
-240 cases a figure through every named source. Writes sweep.csv (a row for each case and source), a
+240 cases a figure, which are 120 problems in two sizes that similarity makes alike, through every
+named source. Writes sweep.csv (a row for each case and source), a
 PNG for each figure, summary.csv, findings.txt and provenance.json. Finished cases are stored at
 once: a run that was interrupted goes on where it stopped when the same command is given again.""",
     table="sweep.csv",
@@ -29,7 +30,7 @@ once: a run that was interrupted goes on where it stopped when the same command 
     chapters=(
         Chapter(
             folder="sweep",
-            question="Do the engines and the linearizations get the paper's 960 cases right?",
+            question="Do the engines and the linearizations get the paper's cases right?",
             tables=("summary.csv",),
             quick=("--accuracy", "loose"),
             minutes=(0.1, 0.6),
@@ -57,7 +58,8 @@ once: a run that was interrupted goes on where it stopped when the same command 
     captions={
         "overview": (
             "Error against run time: for each engine and preset a bar from the median to the "
-            "largest error of the peak over all cases, and how many outcomes are wrong."
+            "largest error of the peak over all cases; in brackets how many outcomes are wrong: "
+            "the fall, at rest for rocked, no answer."
         ),
         "figure-6": (
             "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
@@ -82,22 +84,26 @@ once: a run that was interrupted goes on where it stopped when the same command 
         "presets-6": (
             "Relative error of the largest rotation over the frequency of the half-sine pulses of "
             "figure 6, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong."
+            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
+            "dash), no answer (a cross)."
         ),
         "presets-7": (
             "Relative error of the largest rotation over the frequency of the half-sine pulses of "
             "figure 7, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong."
+            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
+            "dash), no answer (a cross)."
         ),
         "presets-8": (
             "Relative error of the largest rotation over the frequency of the full-sine pulses of "
             "figure 8, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong."
+            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
+            "dash), no answer (a cross)."
         ),
         "presets-9": (
             "Relative error of the largest rotation over the frequency of the full-sine pulses of "
             "figure 9, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong."
+            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
+            "dash), no answer (a cross)."
         ),
     },
 )

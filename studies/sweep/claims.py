@@ -5,8 +5,20 @@ from typing import Any
 
 import pandas as pd
 
+from studies.measures.posed import Posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
-from studies.measures.words import NAMED, alike, capital, each_out_of, listed, out_of, part
+from studies.measures.words import (
+    NAMED,
+    alike,
+    between,
+    capital,
+    each_out_of,
+    in_kinds,
+    listed,
+    out_of,
+    part,
+)
+from studies.measures.wrongness import KINDS
 from studies.sources.registry import resolve
 
 
@@ -37,9 +49,18 @@ def preset_claim(preset: str, lines: pd.DataFrame) -> str:
     verb = "get" if len(lines) > 1 else "gets"
     medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
     return capital(
-        f"{in_words(preset)}, {names} {verb} {right} outcomes right, and peaks wrong by "
+        f"{in_words(preset)}, {names} {verb} {right} outcomes right{_kinds(lines)}, and peaks "
+        "wrong by "
         f"{alike(medians)} in the median and {alike(largest)} at most."
     )
+
+
+def _kinds(lines: pd.DataFrame) -> str:
+    """Return in brackets what the wrong outcomes of one or several sources are; empty of none."""
+    if (lines["agree"] == lines["cases"]).all():
+        return ""
+    names = lines["source"].map(engine_of)
+    return f" ({between(lines, names) if len(lines) > 1 else in_kinds(lines.iloc[0])})"
 
 
 def _range(preset: str, lines: pd.DataFrame) -> str:
@@ -53,15 +74,15 @@ def _range(preset: str, lines: pd.DataFrame) -> str:
     right = out_of(few, cases) if few == most else f"{few} ({fewest}) to {out_of(most, cases)}"
     medians = dict.fromkeys([part(lines["median_error"].min()), part(lines["median_error"].max())])
     return (
-        f"{in_words(preset)}, {len(lines)} engines get {right} outcomes right, and peaks wrong by "
-        f"{' to '.join(medians)} in the median and at most by {part(lines['max_error'].max())} "
-        f"({worst})."
+        f"{in_words(preset)}, {len(lines)} engines get {right} outcomes right{_kinds(lines)}, and "
+        f"peaks wrong by {' to '.join(medians)} in the median and at most by "
+        f"{part(lines['max_error'].max())} ({worst})."
     )
 
 
 def model_claim(line: "pd.Series[Any]") -> str:
     """Say how many outcomes a linearization gets right, on which side it errs, and how far."""
-    wrong = [
+    sides = [
         f"{line[column]:.0f} {words}"
         for column, words in (
             ("false_overturnings", "falsely overturned"),
@@ -69,31 +90,34 @@ def model_claim(line: "pd.Series[Any]") -> str:
         )
         if line[column]
     ]
+    kinds = _kinds(line.to_frame().T).rstrip(")")
     return (
         f"{line['source']} {out_of(line['agree'], line['cases'])}"
-        + (f" ({listed(wrong)})" if wrong else "")
+        + (f"{kinds}{f': {listed(sides)}' if sides else ''})" if kinds else "")
         + f", {part(line['median_error'])} in the median and {part(line['max_error'])} at most"
     )
 
 
 def first_claim(lines: pd.DataFrame) -> str:
     """Say in a sentence what each preset, and each linearization, is off by."""
-    parts = [_short(*item) for item in engines_by_preset(lines).items()]
-    models = [
-        f"{row['source']} {row['cases'] - row['agree']}" for _, row in linearized(lines).iterrows()
+    parts = [
+        _wrong_by_up_to(preset, group["max_error"], group)
+        for preset, group in engines_by_preset(lines).items()
     ]
-    parts += [f"outcomes wrong by linearization: {listed(models)}"] if models else []
+    models = [f"{row['source']} {in_kinds(row)}" for _, row in linearized(lines).iterrows()]
+    parts += [f"by linearization: {'; '.join(models)}"] if models else []
     return capital("; ".join(parts)) + "."
 
 
-def _short(preset: str, lines: pd.DataFrame) -> str:
-    if len(lines) > NAMED:
-        lost = out_of((lines["cases"] - lines["agree"]).sum(), lines["cases"].sum())
-        largest = part(lines["max_error"].max())
-    else:
-        lost = each_out_of(list(lines["cases"] - lines["agree"]), list(lines["cases"]))
-        largest = alike([part(error) for error in lines["max_error"]])
-    return f"{in_words(preset)} {lost} outcomes are wrong, and peaks by up to {largest}"
+def _wrong_by_up_to(preset: str, errors: "pd.Series[float]", lines: pd.DataFrame) -> str:
+    """Say of a preset what is wrong, source by source or between which counts, and how far."""
+    cases = alike([f"{count:.0f}" for count in lines["cases"]])
+    said = between(lines, lines["source"].map(engine_of))
+    engines = f"{len(lines)} engines have" if len(lines) > 1 else "one engine has"
+    return (
+        f"{in_words(preset)}, {engines} {said} of {cases} cases{' each' * (len(lines) > 1)}, and "
+        f"peaks off by up to {part(errors.max())}"
+    )
 
 
 def linearized(lines: pd.DataFrame) -> pd.DataFrame:
@@ -124,6 +148,7 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
             "engine": found["source"].map(engine_of),
             "source": found["source"],
             "right": found["agree"],
+            **{kind: found[kind] for kind in KINDS},
             "cases": found["cases"],
             "median": found["median_error"],
             "p90": found["p90_error"],
@@ -133,22 +158,17 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def verdict(table: pd.DataFrame) -> str:
-    """Say in a sentence each what the first and the best of the presets are off by, at worst.
+def verdict(table: pd.DataFrame, asked: Posed) -> str:
+    """Say what was asked, and what the first and the best of the presets are off by, at worst.
 
     Parameters
     ----------
     table : DataFrame
         From `preset_table`, of one folder or several.
+    asked : Posed
+        What was asked.
     """
     names = in_order(table["preset"])
-    parts = [_of_preset(name, table[table["preset"] == name]) for name in (names[0], names[-1])]
-    return " ".join(dict.fromkeys(parts))
-
-
-def _of_preset(name: str, lines: pd.DataFrame) -> str:
-    lost = out_of((lines["cases"] - lines["right"]).sum(), lines["cases"].sum())
-    return capital(
-        f"{in_words(name)}, {len(lines)} engines are wrong about whether the block falls in {lost} "
-        f"cases, and about how far it rocks by up to {part(lines['max'].max())}."
-    )
+    ends = {name: table[table["preset"] == name] for name in (names[0], names[-1])}
+    parts = [_wrong_by_up_to(name, lines["max"], lines) for name, lines in ends.items()]
+    return f"{capital(asked.words)}. {' '.join(f'{capital(words)}.' for words in parts)}"

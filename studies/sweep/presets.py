@@ -13,6 +13,7 @@ from studies.drawing.labels import Name, around
 from studies.drawing.styles import preset_style, style_of
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.words import capital, per_cent
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors along the frequency."""
@@ -20,6 +21,8 @@ LETTERS = 26
 """In a line beside a panel."""
 ROW = 0.045
 """Height of a row of wrong outcomes over that of a panel."""
+MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
+"""Kind of a wrong outcome -> its mark in that row."""
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:
@@ -40,8 +43,8 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         axes.plot(*zip(*ends, strict=True), color=style.colour, linewidth=1.6, alpha=0.45)
         axes.plot(*ends[1], **style.points(7.0))
         axes.plot(*ends[0], "_", color=style.colour, markersize=8)
-        lost = int(line["cases"] - line["right"])
         title = ENGINES[str(line["engine"])].title
+        lost = " + ".join(f"{line[kind]:.0f}" for kind in KINDS) if any(line[list(KINDS)]) else ""
         words = f"{title} ({lost})" if lost else title
         names.append(Name(words, *ends[1], style.colour))
     axes.margins(x=0.12, y=0.08)
@@ -49,8 +52,9 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     axes.set_ylabel("error of the largest rotation: median (bar) to largest (dot)")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_major_formatter(_mark)
-    axes.set_title(f"{int(table['cases'].max())} cases: errors by engine and by how it is used; "
-                   "in brackets, how many outcomes are wrong", fontsize=11)  # fmt: skip
+    axes.set_title(f"{int(table['cases'].max())} cases: errors by engine and by how it is used;\n"
+                   f"in brackets how many outcomes are wrong: {' + '.join(WORDS.values())}",
+                   fontsize=11)  # fmt: skip
     axes.grid(alpha=0.25)
     around(axes, names, 9.5)
     handles = [
@@ -91,10 +95,16 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         axes.set_xlabel("frequency  ω/p  [–]")
     first, *others = (f"B = {width_m:g} m" for width_m in sorted(rows["width_m"].unique()))
     pale = f" (pale: {', '.join(others)})" if others else ""
-    title = f"errors of the peak, {first}{pale}; in the grey band outcomes that are wrong"
+    title = f"errors of the peak, {first}{pale}; in the grey band wrong outcomes"
     drawing.suptitle(f"Figure {rows['figure'].iloc[0]}: {title}", fontsize=11)
     handles = [Line2D([], [], **style_of(name).points(5.0), label=name) for name in engines]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False, fontsize=9)
+    handles += [
+        Line2D(
+            [], [], color="#555555", linestyle="", marker=mark, markersize=4.0, label=WORDS[kind]
+        )
+        for kind, mark in MARKERS.items()
+    ]
+    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
     return drawing
 
 
@@ -118,8 +128,10 @@ def _panel(axes: Axes, rows: pd.DataFrame, engines: list[str]) -> None:
         axes.plot(known["omega_over_p"], error, **look, alpha=0.3 if pale else 1.0)
         row = engines.index(engine_of(str(source)))
         level = (MOST / LEAST) ** (1.0 + ROW * (row + 1)) * LEAST
-        wrong = points.loc[~points["agrees"], "omega_over_p"]
-        axes.plot(wrong, [level] * len(wrong), "s", color=look["color"], markersize=2.6)
+        wrong = wrong_in(points)
+        for kind, mark in MARKERS.items():
+            x = points.loc[wrong == kind, "omega_over_p"]
+            axes.plot(x, [level] * len(x), mark, color=look["color"], markersize=2.6)
     axes.set_yticks([1e-8, 1e-6, 1e-4, 1e-2, 1.0])
     axes.set_yticks([], minor=True)
     axes.grid(alpha=0.25)

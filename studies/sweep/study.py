@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
@@ -24,6 +25,8 @@ from studies.measures.differences import (
     worst_text,
 )
 from studies.measures.findings import findings
+from studies.measures.posed import posed
+from studies.measures.words import capital
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
@@ -98,8 +101,11 @@ def report(folder: Path) -> str:
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
-            "survive, κ being the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|; outcomes",
-            "right, overturned falsely, overturning missed:",
+            "survive, S being the largest of |∂ln θmax/∂ln a_p|, |∂ln θmax/∂ln η| and the change",
+            "of the peak over that of a_p or η when one of these moves by ±1e-4 or ±1e-6; outcomes",
+            "right; wrong in three kinds: the fall (overturned falsely + overturning missed), at",
+            "rest for rocked or the reverse, and none, no answer.",
+            fill(f"{capital(posed(rows).words)}:", 99),
             summary_text(table),
             "\nThe case where each source errs most; κ = ∂ln θmax/∂ln a_p, κη = ∂ln θmax/∂ln η:",
             worst_text(worst_cases(compared)),
@@ -131,8 +137,8 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
 
 
 def headline(folder: Path) -> str:
-    """Say how many outcomes each preset of the engines gets wrong, and how far peaks are off."""
-    return first_claim(whole(folder))
+    """Say what each preset of the engines gets wrong, and how far peaks are off."""
+    return f"{capital(posed(read(folder)).words)}. {first_claim(whole(folder))}"
 
 
 def paragraph(folder: Path) -> str:

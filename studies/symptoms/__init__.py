@@ -8,9 +8,9 @@ STUDY = Study(
     help="""From what users see to the setting that mends it, with the effect that was measured.
 
 A block creeps, sinks, bounces, tips too early, a moved base carries nothing, ...: for each engine
-what it is by default, the one setting that helps most, and what is left with all of them. It runs
-nothing: it reads the published tables of `rocking contact`, `rocking precision` and `rocking
-restitution`.""",
+what it is by default, the one setting that helps most, line by line in an exported script and for
+your own step (--dt), and what is left with all of them. It runs nothing: it reads the published
+tables of `rocking contact`, `rocking precision` and `rocking restitution`.""",
     table="symptoms.csv",
     products=("symptoms.csv", "symptoms.png", "findings.txt"),
     captions={

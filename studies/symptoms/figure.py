@@ -17,7 +17,7 @@ MEASURES = {
     "slip_widths": "slide of the pivot over B  [–]",
     "sink_widths": "depth of a corner over B  [–]",
     "energy_growth": "rise of energy  [–]",
-    "off": "off by  [–]",
+    "off_over_all": "off by  [–]",
 }
 """Column -> what it is called at an axis."""
 WHY = {HULL: "adapters with a hull"}
@@ -25,7 +25,7 @@ WHY = {HULL: "adapters with a hull"}
 FLOOR = 1e-12
 """Sizes below are drawn here."""
 BROKEN = 10.0
-"""Where a setting without a result is drawn."""
+"""Where settings with cases that fail are drawn."""
 
 
 def draw_symptoms(lines: pd.DataFrame) -> Figure:
@@ -89,5 +89,5 @@ def _panel(axes: Axes, group: pd.DataFrame) -> None:
     if axes.get_ylim()[1] >= BROKEN:
         axes.set_ylim(top=10.0 * BROKEN)
         axes.axhline(BROKEN, color="#999999", linewidth=0.6)
-        axes.annotate("no result", (1.0, BROKEN), fontsize=8, color="#555555", va="bottom")
+        axes.annotate("cases fail", (1.0, BROKEN), fontsize=8, color="#555555", va="bottom")
     axes.grid(alpha=0.25)

@@ -2,14 +2,18 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import BEST, DEFAULT, MOVING_BASE
+from engines.drop import SHOWN, Drop
+from engines.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from studies.kit.journal import Row
+from studies.measures.formulas import by_step
+from studies.symptoms.patch import own_step_s, patch
 from studies.symptoms.seen import (
     BOUNCE,
     HULL,
@@ -20,18 +24,18 @@ from studies.symptoms.seen import (
     UNMOVED,
     Symptom,
 )
-from studies.symptoms.words import changed
 
-VARIANTS, LADDER = "contact/variants.csv", "precision/work-precision.csv"
-BOUNCES = "restitution/kept.csv"
-TABLES = (VARIANTS, LADDER, BOUNCES)
+VARIANTS, OWN = "contact/variants.csv", "contact/own-steps.csv"
+LADDER, BOUNCES = "precision/work-precision.csv", "restitution/kept.csv"
+TABLES = (VARIANTS, OWN, LADDER, BOUNCES)
 """The tables that are read."""
 
 HELPS = 0.5
-"""A setting helps if it leaves no more than this part of what there is by default."""
+"""A setting helps if it leaves no more than this part of what there is by default, both at the
+p dt of all and at the library's own step."""
 
 
-def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+def lines_of(published: Path, engines: Sequence[str], dt_s: float | None = None) -> pd.DataFrame:
     """Return a line for each symptom and engine of the published tables.
 
     Parameters
@@ -39,6 +43,8 @@ def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     published : Path
         The folder of the published tables.
     engines : sequence of str
+    dt_s : float, optional
+        Step [s] for which settings are written out; by default the library's own.
 
     Returns
     -------
@@ -46,15 +52,20 @@ def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         The columns of symptoms.csv.
     """
     words = dict.fromkeys(("factor", "level", "trap", "message"), str)
-    table = pd.read_csv(published / VARIANTS, keep_default_na=False, na_values=["nan"], dtype=words)
+    table, own = (
+        pd.read_csv(published / name, keep_default_na=False, na_values=["nan"], dtype=words)
+        for name in (VARIANTS, OWN)
+    )
     ladder, bounces = (pd.read_csv(published / name) for name in (LADDER, BOUNCES))
     rows: list[Row] = []
     for engine in engines:
         mine = table[table["engine"] == engine]
         if len(mine):
-            rows += [_measured(mine, engine, symptom) for symptom in SYMPTOMS]
+            dt = dt_s or own_step_s(engine)
+            at_own = own[own["engine"] == engine]
+            rows += [_measured(mine, at_own, engine, symptom, dt) for symptom in SYMPTOMS]
             rows += [*_unmoved(mine, engine), *_hull(mine, engine), *_stepped(ladder, engine)]
-            rows += _bouncing(bounces, engine)
+            rows += _bouncing(bounces, engine, dt)
     order = [*(symptom.name for symptom in SYMPTOMS), *THREADS]
     ordered = [row for name in order for row in rows if row["symptom"] == name]
     return pd.DataFrame(ordered)
@@ -62,7 +73,7 @@ def lines_of(published: Path, engines: Sequence[str]) -> pd.DataFrame:
 
 def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
     threads = THREADS.get(symptom) or next(s.threads for s in SYMPTOMS if s.name == symptom)
-    nothing = {"setting": "", "literal": "", "after": math.nan}
+    nothing = {"setting": "", "formula": "", "dt_s": math.nan, "literal": "", "after": math.nan}
     return {
         "symptom": symptom,
         "engine": engine,
@@ -72,51 +83,60 @@ def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
         **nothing,
         "tuned": math.nan,
         "landing": math.nan,
+        "before_own": math.nan,
+        "after_own": math.nan,
         **values,
         "asked_in": ", ".join(threads),
         "command": f"rocking {STUDIES.get(symptom, 'contact')} --engines {engine} --out DIR",
     }
 
 
-def _measured(mine: pd.DataFrame, engine: str, symptom: Symptom) -> Row:
+def _measured(
+    mine: pd.DataFrame, own: pd.DataFrame, engine: str, symptom: Symptom, dt_s: float
+) -> Row:
     """Return what a symptom measures by default, and the one setting that helps most."""
-    base = {name: _preset(mine, name, symptom.column) for name in (DEFAULT, BEST, "landing")}
+    column = symptom.column
+    base = {name: _preset(mine, name, column) for name in (DEFAULT, BEST, "landing")}
     values = {"before": base[DEFAULT], "tuned": base[BEST], "landing": base["landing"]}
-    best = _best_single(mine, symptom)
-    most = HELPS * _size(base[DEFAULT])
-    if best is None or not most or not _size(best[symptom.column]) <= most:
-        return _row(symptom.name, engine, symptom.column, **values)
+    values["before_own"] = _preset(own, DEFAULT, column)
+    mends = _helping(mine, column).merge(
+        _helping(own, column), on=["factor", "level"], suffixes=("", "_own")
+    )
+    if mends.empty:
+        return _row(symptom.name, engine, column, **values)
+    best = mends.iloc[int(mends[column].abs().argmin())]
+    factor, level = str(best["factor"]), str(best["level"])
+    changes = partial(patch, engine, factor, level)
     return _row(
         symptom.name,
         engine,
-        symptom.column,
+        column,
         **values,
-        setting=_name(best),
-        literal=changed(engine, DEFAULT, str(best["factor"]), str(best["level"])),
-        after=float(best[symptom.column]),
+        setting=f"{factor}: {level}",
+        formula=by_step(changes),
+        dt_s=dt_s,
+        literal=changes(dt_s),
+        after=float(best[column]),
+        after_own=float(best[f"{column}_own"]),
     )
 
 
-def _best_single(mine: pd.DataFrame, symptom: Symptom) -> "pd.Series[Any] | None":
-    """Return the one setting changed from the defaults that leaves least, and breaks nothing."""
-    tried = mine[(mine["preset"] == DEFAULT) & (mine["factor"] != "") & (mine["factor"] != "step")]
-    tried = tried[(tried["failed"] == 0) & ~tried["worse"]]
-    if tried.empty:
-        return None
-    return tried.iloc[int(tried[symptom.column].abs().argmin())]
+def _helping(mine: pd.DataFrame, column: str) -> pd.DataFrame:
+    """Return the single settings that halve, from the defaults, what there is, and break nothing.
+
+    Whatever defaults that fail leave is halved by a setting that does not fail.
+    """
+    usual = mine[(mine["preset"] == DEFAULT) & (mine["factor"] == "")].iloc[0]
+    most = math.inf if usual["failed"] else HELPS * abs(float(usual[column]))
+    tried = mine[(mine["preset"] == DEFAULT) & (mine["factor"] != "")]
+    tried = tried[(tried["factor"] != OWN_STEPS) & (tried["failed"] == 0) & ~tried["worse"]]
+    return tried[(tried[column].abs() <= most) & (most > 0.0)][["factor", "level", column]]
 
 
 def _preset(mine: pd.DataFrame, name: str, column: str) -> float:
+    """Return a measure of a preset as it is; inf where cases fail, nan where there is none."""
     found = mine[(mine["preset"] == name) & (mine["factor"] == "")]
-    return math.nan if found.empty else float(found.iloc[0][column])
-
-
-def _size(value: float) -> float:
-    return abs(float(value))
-
-
-def _name(line: "pd.Series[Any]") -> str:
-    return f"{line['factor']}: {line['level']}"
+    return math.nan if found.empty else _value(found.iloc[0], column)
 
 
 def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
@@ -131,9 +151,9 @@ def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
             engine,
             "max_error",
             shown_by=f"{MOVING_BASE.name}: {names[1]}",
-            before=_error(wrong),
+            before=_value(wrong),
             setting=f"{MOVING_BASE.name}: {names[0]}",
-            after=_error(right),
+            after=_value(right),
             tuned=_preset(mine, BEST, "max_error"),
             landing=_preset(mine, "landing", "max_error"),
         )
@@ -155,7 +175,7 @@ def _hull(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
             engine,
             "max_error",
             shown_by=f"the library's defaults, {worst['level']}",
-            before=_error(worst),
+            before=_value(worst),
             setting="a box instead",
             after=_preset(mine, DEFAULT, "max_error"),
             tuned=_preset(mine, BEST, "max_error"),
@@ -163,9 +183,9 @@ def _hull(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
         )
 
 
-def _error(line: "pd.Series[Any]") -> float:
-    """Return the largest error of a variant, inf where cases fail."""
-    return math.inf if line["failed"] else float(line["max_error"])
+def _value(line: "pd.Series[Any]", column: str = "max_error") -> float:
+    """Return a measure of a variant, inf where cases fail."""
+    return math.inf if line["failed"] else float(line[column])
 
 
 def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
@@ -192,18 +212,22 @@ def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
         )
 
 
-def _bouncing(bounces: pd.DataFrame, engine: str) -> Iterator[Row]:
+def _bouncing(bounces: pd.DataFrame, engine: str, dt_s: float) -> Iterator[Row]:
     """Yield how far off a dropped sphere is, asked in the first way and in the best."""
     mine = bounces[bounces["engine"] == engine]
     if len(mine):
-        first, best = mine.iloc[0], mine.iloc[int(mine["off"].argmin())]
+        first, best = mine.iloc[0], mine.iloc[int(mine["off_over_all"].argmin())]
+        way = next(way for way in ENGINES[engine].bouncing if way.name == best["way"])
+        asked = Drop(restitution=SHOWN, dt_s=dt_s)
         yield _row(
             BOUNCE,
             engine,
-            "off",
+            "off_over_all",
             shown_by=f'"{first["way"]}"',
-            before=float(first["off"]),
+            before=float(first["off_over_all"]),
             setting=f'"{best["way"]}"',
-            literal=f"for 0.6: {best['literal']}",
-            after=float(best["off"]),
+            formula=f"for {SHOWN:g}: {best['literal']}",
+            dt_s=dt_s,
+            literal=f"for {SHOWN:g}: {way.setting(asked)}",
+            after=float(best["off_over_all"]),
         )

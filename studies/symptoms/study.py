@@ -7,7 +7,8 @@ import pandas as pd
 
 from engines import ENGINES
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, check_engines, several_or_none
+from studies.kit.arguments import BadInputError, Place, Positive, check_engines, several_or_none
+from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.measures.published import PUBLISHED
@@ -19,18 +20,23 @@ from studies.symptoms.words import first_claim, page, told
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SHORTEST_S, LONGEST_S = 1e-6, 1.0
+"""Steps [s] for which settings are written out."""
+
 
 def command(
     *,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
     published: Place | None = None,
+    dt: Positive | None = None,
     out: Place | None = None,
 ) -> int:
     """Say what users see, what it measures by default, and which setting leaves how much of it.
 
     Of the settings changed one at a time from a library's defaults the one that helps most, if it
-    halves what there is and gets no more outcomes wrong; and what is left where all are tuned, with
-    equal steps and with steps that land on impacts.
+    halves what there is and gets no more outcomes wrong, at the p dt of all and at the library's
+    own step; and what is left where all are tuned, with equal steps and with steps that land on
+    impacts.
 
     Parameters
     ----------
@@ -38,16 +44,22 @@ def command(
         Names of engines, without a preset; by default all in the published tables.
     published
         Folder of the published tables; by default those that come with this project.
+    dt
+        Your step [s], for which settings are written out; by default the library's own.
     out
         Folder for a table and a figure; none by default.
     """
+    if dt is not None and not SHORTEST_S <= dt <= LONGEST_S:
+        allowed = f"from {SHORTEST_S:g} to {LONGEST_S:g} s"
+        raise BadInputError(f"--dt is {dt:g}; it must be {allowed}")
     tables = published or PUBLISHED
     for name in TABLES:
         if not (tables / name).is_file():
             raise BadInputError(f"--published is {str(tables)!r}; it must hold {name}")
+    check(tables, TABLES, "--published")
     asked = tuple(ENGINES) if engines is None else engines
     check_engines(asked)
-    lines = lines_of(tables, asked)
+    lines = lines_of(tables, asked, dt)
     if lines.empty:
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
@@ -55,7 +67,7 @@ def command(
     if out is None:
         print(text)
         return 0
-    settings = {"engines": list(lines["engine"].unique())}
+    settings = {"engines": list(lines["engine"].unique()), "dt": dt}
     plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
     def report(folder: Path) -> str:
@@ -70,7 +82,8 @@ def command(
 
 def _read(folder: Path) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("shown_by", "setting", "literal", "asked_in", "command"), str)
+    texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
+    words = dict.fromkeys(texts, str)
     path = folder / "symptoms.csv"
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
 

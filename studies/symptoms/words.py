@@ -1,25 +1,15 @@
-"""What a setting changes, in the library's words; and the page as text."""
+"""The page as text, and what a reader of all studies is told of it."""
 
-import re
 from collections.abc import Mapping
-from textwrap import fill
+from textwrap import fill, indent
 from typing import Any
 
 import pandas as pd
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
-from engines import ENGINES, Scene
-from studies.cases.variants import variants
 from studies.measures.columns import COLUMNS
 from studies.measures.differences import scientific
 from studies.measures.words import listed, part
-
-SCENE_STEP = 1e-3
-"""p dt at which settings are written out, that of the study of contacts."""
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
-"""The block for which they are."""
+from studies.symptoms.patch import BLOCK, named
 
 LINES: dict[str, Any] = {
     **{"width": 99, "initial_indent": "  ", "subsequent_indent": "    "},
@@ -30,39 +20,24 @@ LINES: dict[str, Any] = {
 SHORT = 60
 """Letters up to which a sentence quotes what a setting is in the library's words."""
 
-GIVEN = re.compile(r"\w+=(?:\"[^\"]*\"|\[[^\]]*\]|\([^)]*\)|[^,()\s]+)")
-"""A named value in a call of Python, or in a model."""
+HOW = fill(
+    "A setting is what changes in the script that `rocking export` writes of the defaults: below "
+    "the name of a file, lines that go (-) and lines that come (+), after those that stay. They "
+    f"are those of a block of {BLOCK.width:g} by {BLOCK.height:g} m. DT is the step in seconds; "
+    "what follows it is given as a formula, then at a step. A setting helps if it halves what "
+    "there is, at the p dt of all and at the library's own step.",
+    width=99,
+)
+"""How the page is read."""
 
 
-def changed(engine: str, preset: str, factor: str, level: str) -> str:
-    """Return what a variant of a preset sets otherwise, in the library's words.
-
-    Empty for an engine that writes no scripts.
-    """
-    script = ENGINES[engine].script
-    if script is None:
-        return ""
-    found = [
-        v for v in variants(engine) if (v.preset, v.factor, v.level) == (preset, factor, level)
-    ]
-    given = []
-    for settings in ({}, dict(found[0].settings)):
-        scene = Scene(
-            block=BLOCK,
-            motion=SinePulse(amplitude=1.0, omega=1.0),
-            preset=preset,
-            step=SCENE_STEP,
-            settings=settings,
-        )
-        chosen = scene.choose(ENGINES[engine].preset(preset).settings)
-        lines = script(scene, chosen, SCENE_STEP / BLOCK.p).settings
-        given.append(dict.fromkeys(GIVEN.findall(" ".join(" ".join(lines).split()))))
-    return ", ".join(word for word in given[1] if word not in given[0])
+NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
+"""Columns that a line of the page says."""
 
 
 def page(lines: pd.DataFrame) -> str:
     """Return the page: a paragraph for each symptom, a line for each engine."""
-    parts = []
+    parts = [HOW]
     for symptom, group in lines.groupby("symptom", sort=False):
         head = f"{symptom} ({_measure(str(group.iloc[0]['measure']))})"
         asked = f"  asked in {group.iloc[0]['asked_in']}"
@@ -75,25 +50,30 @@ def _measure(column: str) -> str:
 
 
 def _line(row: Mapping[Any, Any]) -> str:
-    number = {name: float(str(row[name])) for name in ("before", "after", "tuned", "landing")}
+    number = {name: float(str(row[name])) for name in NUMBERS}
+    known = {name for name in NUMBERS if number[name] == number[name]}
     words = f"{row['engine']}: {_number(number['before'])} with {row['shown_by']}"
     if row["setting"]:
         words += f"; {_number(number['after'])} with {row['setting']}"
-        words += f" ({row['literal']})" if row["literal"] else ""
     elif number["before"]:
         words += "; no single setting halves it"
-    rest = [
-        f"{_number(number[name])} {how}"
-        for name, how in (("tuned", "tuned"), ("landing", "landing"))
-        if number[name] == number[name]
-    ]
-    lines = fill("; ".join([words, listed(rest)] if rest else [words]), **LINES)
-    return f"{lines}\n    {row['command']}"
+    rest = [f"{_number(number[name])} {name}" for name in ("tuned", "landing") if name in known]
+    parts = [words, listed(rest)] if rest else [words]
+    if "before_own" in known:
+        parts.append(f"at the library's own step {_number(number['before_own'])}")
+        if "after_own" in known:
+            parts[-1] += f" and {_number(number['after_own'])} with it"
+    lines = [fill("; ".join(parts), **LINES)]
+    for changes in dict.fromkeys((str(row["formula"]), str(row["literal"]))):
+        if changes:
+            at = "" if changes == row["formula"] else f"at DT = {float(str(row['dt_s'])):.6g} s\n"
+            lines.append(indent(at + changes, "      "))
+    return "\n".join([*lines, f"    {row['command']}"])
 
 
 def _number(value: float) -> str:
     if value == float("inf"):
-        return "no result"
+        return "cases that fail"
     return scientific(value)
 
 
@@ -110,8 +90,8 @@ def first_claim(lines: pd.DataFrame) -> str:
 
 def _helps(row: Mapping[Any, Any]) -> str:
     before, after = float(str(row["before"])), float(str(row["after"]))
-    literal = str(row["literal"])
-    setting = literal if 0 < len(literal) <= SHORT else row["setting"]
+    values = named(str(row["formula"]))
+    setting = values if 0 < len(values) <= SHORT else row["setting"]
     return (
         f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
         f"{part(after)}"

@@ -19,13 +19,14 @@ from analytic.response import Outcome
 from studies.cases.paper import PULSES
 from studies.cases.window import Window
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place
+from studies.kit.arguments import BadInputError, Count, Place
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.throughput import STUDY
 
 CASES, QUICK_CASES = 1_000_000, 40_000
 PEER_CASES, QUICK_PEER_CASES = 900, 100
+MOST_THREADS = 1024
 PEAKS = "exact, peaks too"
 RUNS = 3
 """The shortest of so many is reported of the models; peers take too long for more than one."""
@@ -48,6 +49,8 @@ def command(*, out: Place, quick: bool = False, threads: Count | None = None) ->
     threads
         By default the number of cores.
     """
+    if threads is not None and threads > MOST_THREADS:
+        raise BadInputError(f"--threads is {threads}; it must be at most {MOST_THREADS}")
     used = threads or provenance.usable_cores()
     made = Plan(settings={"quick": quick}, tabulate=lambda _: {STUDY.name: measured(quick, used)})
     return carry_out(STUDY, made, out, DEFAULT_RUNNING, report)

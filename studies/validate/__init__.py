@@ -7,14 +7,17 @@ STUDY = Study(
     module="studies.validate.study",
     help="""Random cases that nothing was tuned on, held against the exact solution.
 
-Outcomes, quantiles of the error, and the condition number κ of each case: how far a small error of
-the pulse moves its peak. And what landing steps lean on: the first cases with false hints; and
-with --estimate what each engine says of its own error. Writes validate.csv, errors.csv, hints.csv,
-leaning.csv, halves.csv and provenance.json; resumable.""",
+Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
+case: its condition number κ, and its sensitivity to errors of 1e-6 and 1e-4. And what landing steps
+lean on: the first cases with false hints; and with --estimate what each engine says of its own
+error. Writes validate.csv, errors.csv, drawn.csv, bands.csv, hints.csv, leaning.csv, halves.csv and
+provenance.json; resumable.""",
     table="validate.csv",
     products=(
         "validate.csv",
         "errors.csv",
+        "drawn.csv",
+        "bands.csv",
         "hints.csv",
         "leaning.csv",
         "halves.csv",
@@ -25,7 +28,7 @@ leaning.csv, halves.csv and provenance.json; resumable.""",
         Chapter(
             folder="validate",
             question="And cases that nothing was tuned on?",
-            tables=("leaning.csv",),
+            tables=("drawn.csv", "bands.csv", "leaning.csv"),
             quick=("--cases", "100"),
             minutes=(0.2, 0.3),
             weaker="Fewer random cases.",
@@ -33,8 +36,8 @@ leaning.csv, halves.csv and provenance.json; resumable.""",
     ),
     captions={
         "validate": (
-            "Error of each random case over its condition number κ, and the line through the "
-            "largest error over κ of each engine."
+            "Error of each random case over S, how far small errors of the pulse or of the impacts "
+            "move its peak, and the line through the largest error over S of each engine."
         ),
     },
 )

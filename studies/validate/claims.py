@@ -1,84 +1,117 @@
 """What random cases say, and what was left out of them."""
 
-from typing import NamedTuple
-
 import pandas as pd
 
+from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
-from studies.measures.differences import conditioning_of, scientific
-from studies.measures.words import NAMED, gathered, listed, out_of, part
+from studies.measures.differences import WELL_CONDITIONED, scientific, sensitivity_of
+from studies.measures.words import NAMED, gathered, listed, part, right_of
 
-WELL_CONDITIONED = 10.0
-"""Below this κ the error of a peak says more about its source than about the case."""
-
-
-class Census(NamedTuple):
-    """How many cases were drawn until enough were kept, and those left out by their force N."""
-
-    drawn: int
-    kept: int
-    near: int
-    lifted: int
+LEFT_OUT = {
+    "near": f"the normal force falls to {LEAST_NORMAL:g} of the weight or less",
+    "lifted": "the normal force is lost: the pivot would have to be held down",
+}
+"""Cases that nobody was asked about -> why not."""
 
 
-def census(seed: int, kept: int) -> Census:
+def census(seed: int, kept: int) -> pd.DataFrame:
     """Count what was drawn until `kept` cases had a least normal force above LEAST_NORMAL.
 
-    near have one between 0 and that, lifted a negative one: their pivot would have to be held down.
+    Returns
+    -------
+    DataFrame
+        Rows drawn, kept, near and lifted, the last two being those left out; the columns set,
+        cases, overturned and share, both of the exact solution, and why.
     """
-    forces: list[float] = []
-    found = 0
-    for _, normal in everything(seed):
-        if found == kept:
+    counts = {name: [0, 0] for name in ("drawn", "kept", *LEFT_OUT)}
+    for _, exact in everything(seed):
+        if counts["kept"][0] == kept:
             break
-        forces.append(normal)
-        found += normal > LEAST_NORMAL
-    near = sum(0.0 < normal <= LEAST_NORMAL for normal in forces)
-    return Census(len(forces), found, near, len(forces) - found - near)
+        for name in ("drawn", _set_of(exact.min_normal)):
+            counts[name][0] += 1
+            counts[name][1] += exact.outcome is Outcome.OVERTURNED
+    table = pd.DataFrame.from_dict(counts, orient="index", columns=["cases", "overturned"])
+    table = table.assign(share=table["overturned"] / table["cases"])
+    return table.rename_axis("set").reset_index().assign(why=[LEFT_OUT.get(n, "") for n in counts])
+
+
+def _set_of(normal: float) -> str:
+    if normal > LEAST_NORMAL:
+        return "kept"
+    return "near" if normal > 0.0 else "lifted"
 
 
 def first_claim(compared: pd.DataFrame) -> str:
-    """Say what each source gets right, and its largest error over κ."""
-    scaled = (compared["error"].abs() / conditioning_of(compared)).groupby(
-        compared["source"], sort=False
-    )
+    """Say what each source gets right, and its largest error, everywhere and in calm cases."""
     right = [
-        (str(source), out_of(int(rows["agrees"].sum()), len(rows)))
-        for source, rows in compared.groupby("source", sort=False)
+        (str(source), right_of(rows)) for source, rows in compared.groupby("source", sort=False)
+    ]
+    calm = compared[sensitivity_of(compared) < WELL_CONDITIONED]
+    return (
+        f"Outcomes right on random cases that nothing was tuned on ({width(compared)}): "
+        f"{gathered(right)}; largest errors of the peak {_sizes(compared)}, and {_sizes(calm)} "
+        f"where neither κ nor the sensitivity reaches {WELL_CONDITIONED:g}."
+    )
+
+
+def width(compared: pd.DataFrame) -> str:
+    """Say how wide random cases are: between which ends each of their numbers lies."""
+    ends = {
+        "H/B {}": compared["aspect"],
+        "B {} m": compared["width_m"],
+        "{} half cycles": compared["half_cycles"],
+        "ω/p {}": compared["omega_over_p"],
+        "{} onsets": compared["amplitude_g"] * compared["aspect"],
+    }
+    return ", ".join(
+        words.format(f"{values.min():.3g} to {values.max():.3g}") for words, values in ends.items()
+    )
+
+
+def _sizes(compared: pd.DataFrame) -> str:
+    """Return each source's largest error, or the least and the largest of many."""
+    largest = compared["error"].abs().groupby(compared["source"], sort=False).max().dropna()
+    if len(largest) > NAMED:
+        named = [f"{part(size)} ({name})" for name, size in largest.sort_values().items()]
+        return listed([named[0], named[-1]], "to")
+    return listed([part(size) for size in largest])
+
+
+def claims(compared: pd.DataFrame, counted: pd.DataFrame) -> str:
+    """Say what was asked, what each source got right of it, and what was not asked.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        The columns of errors.csv.
+    counted : DataFrame
+        From `census`.
+    """
+    words = [_of_source(str(name), rows) for name, rows in compared.groupby("source", sort=False)]
+    drawn, kept, *others = (line for _, line in counted.iterrows())
+    left = [
+        f"in {line['cases']} ({line['overturned']} overturn) {line['why']}"
+        for line in others
+        if line["cases"]
     ]
     return (
-        f"Outcomes right on random cases that nothing was tuned on: {gathered(right)}; "
-        f"largest errors of the peak {_sizes(scaled.max())}."
-    )
-
-
-def _sizes(largest: "pd.Series[float]") -> str:
-    """Return each source's number over κ, or the least and the largest of many."""
-    if len(largest) > NAMED:
-        by_size = largest.sort_values().items()
-        least, *_, most = [f"{scientific(size)} κ ({name})" for name, size in by_size]
-        return listed([least, most], "to")
-    return f"{listed([scientific(size) for size in largest])} κ"
-
-
-def claims(compared: pd.DataFrame, counted: Census) -> str:
-    """Say what was asked, what each source got right of it, and what was not asked."""
-    words = [_of_source(str(name), rows) for name, rows in compared.groupby("source", sort=False)]
-    return (
-        f"On {counted.kept} random cases: {'; '.join(words)}. They are what is left of "
-        f"{counted.drawn} drawn where the normal force stays above {LEAST_NORMAL:g} of the weight: "
-        f"in {counted.near} others it falls below that, and in {counted.lifted} below zero, so "
-        "that its pivot would have to be held down; nobody was asked about those."
+        f"On {kept['cases']} random cases ({width(compared)}): {'; '.join(words)}. "
+        f"Of {drawn['cases']} drawn "
+        f"{part(drawn['share'])} overturn, and {part(kept['share'])} of the {kept['cases']} kept: "
+        f"those where the normal force stays above {LEAST_NORMAL:g} of the weight, of a block that "
+        "overturns until it passes θcr for good. "
+        f"Left out: {'; '.join(left) or 'none'}."
     )
 
 
 def _of_source(source: str, rows: pd.DataFrame) -> str:
-    """Return outcomes, the largest error where κ is small, and the largest over κ."""
-    kappa, errors = conditioning_of(rows), rows["error"].abs()
-    calm = errors[kappa < WELL_CONDITIONED]
+    """Return outcomes, errors of all peaks and where these hardly move, and over how they move."""
+    judged, errors = sensitivity_of(rows), rows["error"].abs()
+    calm = errors[judged < WELL_CONDITIONED]
     return (
-        f"{source} gets {out_of(int(rows['agrees'].sum()), len(rows))} outcomes right, peaks "
-        f"to {part(float(errors.median()))} in the median and {part(float(calm.max()))} at most "
-        f"where κ < {WELL_CONDITIONED:g} ({len(calm.dropna())} peaks); over κ to "
-        f"{scientific(float((errors / kappa).max()))} at most"
+        f"{source} gets {right_of(rows)} outcomes right, peaks "
+        f"to {part(float(errors.median()))} in the median, {part(float(errors.max()))} at most, "
+        f"and {part(float(calm.max()))} at most where κ and sensitivity < {WELL_CONDITIONED:g} "
+        f"({len(calm.dropna())} peaks); over the larger of these to "
+        f"{scientific(float((errors / judged).max()))} at most"
     )

@@ -8,7 +8,7 @@ import pandas as pd
 
 from engines.hints import TRUE, Hints
 from studies.kit.jobs import Job
-from studies.measures.differences import conditioning_of, scientific
+from studies.measures.differences import scientific, sensitivity_of
 from studies.sources.registry import Effort, resolve
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Leaning:
 
     `right` and `still` count outcomes that agree, of as many cases that lift the block and of as
     many that do not. Errors of the peak are relative, over cases that survive both; `over_kappa` is
-    the largest error over the condition number.
+    the largest error over what errors are judged against.
     """
 
     source: str
@@ -99,7 +99,7 @@ def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> list[Leaning]:
         right=lifts & rows["agrees"],
         still=~lifts & rows["agrees"],
         size=size,
-        scaled=size / conditioning_of(rows),
+        scaled=size / sensitivity_of(rows),
     )
     return [
         Leaning(
@@ -125,7 +125,7 @@ def leanings_text(table: pd.DataFrame) -> str:
             "stay": table["still"].astype(str) + "/" + table["cases"].astype(str),
             "median": table["median_error"].map(scientific),
             "max": table["max_error"].map(scientific),
-            "max over κ": table["over_kappa"].map(scientific),
+            "max over S": table["over_kappa"].map(scientific),
         }
     )
     return shown.to_string(index=False)

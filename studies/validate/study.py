@@ -1,4 +1,4 @@
-"""Random cases that no setting was tuned on: sources beside the exact solution and κ."""
+"""Random cases that no setting was tuned on: sources beside the exact solution, κ among it."""
 
 import math
 from collections.abc import Sequence
@@ -20,16 +20,20 @@ from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Runn
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
 from studies.measures.differences import (
-    conditioning_of,
+    WELL_CONDITIONED,
     scientific,
+    sensitivity_of,
     with_reference,
 )
 from studies.measures.halving import ELSEWHERE
+from studies.measures.wrongness import WORDS, counted, wrong_in
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
+from studies.validate.bands import bands, bands_text
+from studies.validate.bands import told as told_by_band
 from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
-from studies.validate.claims import WELL_CONDITIONED, census, claims, first_claim
+from studies.validate.claims import census, claims, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
 
 if TYPE_CHECKING:
@@ -119,11 +123,13 @@ def without_hints(rows: Sequence[Row]) -> list[Row]:
 
 
 def report(folder: Path) -> str:
-    """Hold a folder's tables against the exact solution; write two more, return the text.
+    """Hold a folder's tables against the exact solution; write four more, return the text.
 
-    errors.csv has, for each row of validate.csv, the exact peak and outcome, the error and κ, and
-    where halves.csv is there the estimate of the error and its bound;
-    leaning.csv has a row for each source and hint, where hints.csv is there.
+    errors.csv has, for each row of validate.csv, the exact peak and outcome, the error, κ and the
+    sensitivity, and where halves.csv is there the estimate of the error and its bound;
+    bands.csv has the errors in bands of peak and κ; leaning.csv has a row for each source and
+    hint, where hints.csv is there; drawn.csv says how many cases were drawn, kept and left out,
+    and what share of each overturns.
     """
     from studies.drawing.figures import save_all
 
@@ -131,18 +137,24 @@ def report(folder: Path) -> str:
     if halves := (folder / f"{HALVES}.csv").exists():
         compared = with_bounds(compared, compare(folder, HALVES))
     write_table(folder / "errors.csv", compared)
+    seed = provenance.record_of(folder)["settings"]["seed"]
+    write_table(folder / "drawn.csv", census(seed, compared["case"].nunique()))
     save_all(pictures(folder), folder)
-    sensitivity = conditioning_of(compared)
-    calm = compared[sensitivity < WELL_CONDITIONED]
+    judged, by_band = sensitivity_of(compared), bands(compared)
+    write_table(folder / "bands.csv", by_band)
+    calm = compared[judged < WELL_CONDITIONED]
     text = "\n".join(
         [
             "Relative error of the peak over cases that survive both, outcomes right:",
             summary_text(compared),
-            "\nThe same where κ, the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|, is below "
-            f"{WELL_CONDITIONED:g}:",
+            "\nMedian and largest of them in bands of the exact peak over θcr, and of κ, which is",
+            "the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|:",
+            bands_text(by_band),
+            f"\nThe same where S is below {WELL_CONDITIONED:g}, the larger of κ and of the change",
+            "of the peak over that of a_p or η when one of these moves by ±1e-4 or ±1e-6:",
             summary_text(calm),
-            "\nError over κ, the relative error of the pulse or of the impact that does as much:",
-            summary_text(compared.assign(error=compared["error"] / sensitivity)),
+            "\nError over S, the relative error of the pulse or of the impact that does as much:",
+            summary_text(compared.assign(error=compared["error"] / judged)),
             "\nThe largest errors:",
             worst_text(compared),
             *leaning_lines(folder, compared),
@@ -183,22 +195,21 @@ def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
-    """Draw the errors of a folder against κ, from its errors.csv alone."""
+    """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
     from studies.drawing.diagrams import draw_conditioning
 
     return {"validate": draw_conditioning(pd.read_csv(folder / "errors.csv"))}
 
 
 def headline(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and its largest error over κ."""
+    """Say how many outcomes each source gets right, and its largest errors."""
     return first_claim(pd.read_csv(folder / "errors.csv"))
 
 
 def paragraph(folder: Path) -> str:
     """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
-    compared = pd.read_csv(folder / "errors.csv")
-    seed = provenance.record_of(folder)["settings"]["seed"]
-    return claims(compared, census(seed, compared["case"].nunique()))
+    compared, counted = (pd.read_csv(folder / name) for name in ("errors.csv", "drawn.csv"))
+    return f"{claims(compared, counted)} {told_by_band(bands(compared))}"
 
 
 def summary_text(compared: pd.DataFrame) -> str:
@@ -208,11 +219,11 @@ def summary_text(compared: pd.DataFrame) -> str:
         errors = group["error"].abs().dropna()
         quantiles = [float(errors.quantile(q)) for q in (0.5, 0.9, 0.99, 1.0)]
         right = f"{int(group['agrees'].sum())}/{len(group)}"
-        failed = int((group["outcome"] == "failed").sum())
-        lines.append([source, right, failed, *(scientific(value) for value in quantiles)])
+        wrong = counted(wrong_in(group)).values()
+        lines.append([source, right, *wrong, *(scientific(value) for value in quantiles)])
     if not lines:
         return "no such case"
-    columns = ["source", "outcomes", "failed", "median", "p90", "p99", "max"]
+    columns = ["source", "outcomes", *WORDS.values(), "median", "p90", "p99", "max"]
     return pd.DataFrame(lines, columns=columns).to_string(index=False)
 
 
@@ -229,6 +240,7 @@ def worst_text(compared: pd.DataFrame, count: int = 5) -> str:
         exact_peak=worst["exact_peak"].map("{:.3g}".format),
         kappa=worst["kappa"].map("{:.3g}".format),
         kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
+        sensitivity=worst["sensitivity"].map("{:.3g}".format),
     )
     names = {
         "source": "source",
@@ -244,5 +256,6 @@ def worst_text(compared: pd.DataFrame, count: int = 5) -> str:
         "error": "error",
         "kappa": "κ",
         "kappa_eta": "κη",
+        "sensitivity": "sensitivity",
     }
     return shown[list(names)].rename(columns=names).to_string(index=False)

@@ -7,7 +7,7 @@ from itertools import product
 import pandas as pd
 
 from analytic import simulate
-from analytic.block import STANDARD_GRAVITY, RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 
 ASPECTS = (1.0, 1.5, 2.0, 3.0)
@@ -36,7 +36,7 @@ class ValidityCase:
     def motion(self) -> SinePulse:
         """The pulse."""
         return SinePulse(
-            amplitude=self.onsets * STANDARD_GRAVITY / self.aspect,
+            amplitude=self.onsets * GRAVITY / self.aspect,
             omega=self.omega_over_p * self.block.p,
             half_cycles=HALF_CYCLES,
         )

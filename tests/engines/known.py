@@ -1,6 +1,7 @@
 """An engine that knows the answer: its poses are exact, so that all error is the onlooker's."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import pytest
@@ -91,6 +92,18 @@ class KnownWorld(ScriptedWorld):
         first, last = sorted((time, rate_s))
         thetas, rates = self._exact([first, last] if first < last else [first])
         return thetas[time > rate_s], rates[rate_s > time]
+
+
+class ElsewhereWorld(KnownWorld):
+    """The exact solution on a base that is not where it should be, by `raised_m` of the time."""
+
+    def __init__(self, scene: Scene, dt_s: float, raised_m: Callable[[float], float]) -> None:
+        super().__init__(scene, Moment.END, Stepping.FIXED)
+        self._dt_s, self._raised_m = dt_s, raised_m
+
+    def pose(self) -> Pose:
+        at = super().pose()
+        return at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))
 
 
 def watched(

@@ -109,3 +109,14 @@ def test_a_box_acts_from_its_skin_on() -> None:
     exact = simulate(BLOCK, MOTION).peak_ratio
     assert peaks[0] == pytest.approx(exact, rel=3e-2)
     assert peaks[1] < 0.8 * exact
+
+
+def test_a_world_that_does_not_sleep_still_puts_a_body_to_sleep() -> None:
+    """`doSleep` is taken and read back, and does nothing; `sleepingAllowed` of the body does."""
+    motion = pulse(1.3, 0.1, 2)
+    outcomes = [
+        run("box2d", scene(motion, preset="naive", settings={"sleeping": sleeping})).outcome
+        for sleeping in (True, False)
+    ]
+    assert simulate(BLOCK, motion).outcome is Outcome.OVERTURNED
+    assert outcomes == [Outcome.AT_REST, Outcome.OVERTURNED]

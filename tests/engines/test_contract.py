@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from uses import BLOCK, HERE, every_use, pulse, scene
 
 from analytic import simulate
+from analytic.record import Record
 from analytic.response import Outcome
 from engines import ENGINES, Scene, run
 from engines.adapters.bullet import BulletWorld
@@ -199,3 +200,17 @@ def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> 
     assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=1e-2)
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-2)
     assert response.steps > 40.0 * BLOCK.p * motion.duration
+
+
+@every_use
+def test_a_block_that_stood_still_for_two_seconds_feels_gravity_turn(
+    engine: str, preset: str
+) -> None:
+    """That a library reads a setting back is no proof: what sleeps through it stays where it is."""
+    quiet_s, shaken_s, dt_s = 2.0, 0.6, 0.01
+    times = np.arange(0.0, quiet_s + shaken_s + dt_s, dt_s)
+    onset = BLOCK.gravity * math.tan(BLOCK.alpha)
+    shaken = Record(samples=np.where(times > quiet_s, 3.0 * onset, 0.0), dt=dt_s)
+    # after 0.6 s of three onsets nothing is near the boundary, whatever the contact
+    assert simulate(BLOCK, shaken).outcome is Outcome.OVERTURNED
+    assert run(engine, scene(shaken, preset=preset)).outcome is Outcome.OVERTURNED

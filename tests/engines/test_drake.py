@@ -1,5 +1,6 @@
 """Drake: how near it comes, by steps of its own too, and the traps that it sets without a word."""
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -80,7 +81,8 @@ def test_a_contact_is_as_stiff_under_a_heavier_block() -> None:
     light, ordinary = (error("naive", density) for density in (10.0, 1000.0))
     assert light < 0.02 < 0.1 < ordinary
     heavy = rocked("naive", density=1e5)
-    assert heavy.reason is Reason.SANK
+    assert heavy.sink_m > 0.05 * BLOCK.width
+    assert "sank" in heavy.message
 
 
 def test_a_contact_that_goes_with_the_mass_errs_as_much_under_any() -> None:
@@ -88,11 +90,17 @@ def test_a_contact_that_goes_with_the_mass_errs_as_much_under_any() -> None:
     assert light == pytest.approx(heavy, rel=1e-6)
 
 
-def test_a_soft_contact_hides_the_onset() -> None:
-    """With the library's own a block stands that the base lifts, and that is no failure."""
-    above = run("drake", scene(pulse(1.05, 1.0), preset="naive"))
-    assert above.outcome is Outcome.AT_REST
-    assert simulate(BLOCK, pulse(1.05, 1.0)).outcome is Outcome.ROCKED
+@pytest.mark.parametrize(("block", "motion"), list(itertools.islice(sweep_cases(), 3, None, 97)))
+def test_a_block_in_a_soft_contact_rocks_as_deep_as_it_stands(
+    block: RigidBlock, motion: Motion
+) -> None:
+    """With the library's own it sinks by centimetres all the while, and its rocking is seen."""
+    exact = simulate(block, motion)
+    found = run("drake", Scene(block=block, motion=motion, preset="naive"))
+    assert exact.outcome is not Outcome.AT_REST
+    assert found.outcome is exact.outcome
+    if exact.outcome is Outcome.ROCKED:
+        assert 0.5 < found.peak_ratio / exact.peak_ratio < 2.5
 
 
 def test_friction_lags_behind_what_dissipates() -> None:

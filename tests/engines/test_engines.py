@@ -313,7 +313,7 @@ class Lost:
         (Pose(0.0, 0.75, math.nan, 0.0), "not finite", Reason.DIVERGED),
         (Pose(0.0, math.inf, 0.0, 0.0), "not finite", Reason.DIVERGED),
         (Pose(0.0, 0.75, math.inf, 0.0), "not finite", Reason.DIVERGED),
-        (Pose(0.0, 0.5, 0.0, 0.0), "sank 0.25 m", Reason.SANK),
+        (Pose(0.0, -0.25, 0.0, 0.0), "sank 1 m", Reason.SANK),
         (Pose(0.0, 2.75, 0.0, 0.0), "thrown 2 m", Reason.THROWN),
         (Pose(0.2, 0.75, 0.0, 0.0), "slid 0.2 m", Reason.SLID),
     ],

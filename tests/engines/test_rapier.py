@@ -38,8 +38,8 @@ def test_some_of_the_sweep() -> None:
 
 def test_other_blocks_than_the_papers() -> None:
     """Slender, small and large ones, of the random cases: rounding follows the height."""
-    cases = {case.case: case for case in islice(draw(1), 44)}
-    for number in (3, 10, 40, 43):
+    cases = {case.case: case for case in islice(draw(1), 78)}
+    for number in (7, 14, 72, 77):
         block, motion = cases[number].block, cases[number].motion
         exact, found = simulate(block, motion), run("rapier", Scene(block=block, motion=motion))
         assert found.outcome is exact.outcome
@@ -57,15 +57,15 @@ def test_the_size_of_a_block_hardly_matters(width: float) -> None:
         found = run("rapier", Scene(block=block, motion=motion, settings=settings))
         return abs(found.peak_ratio / simulate(block, motion).peak_ratio - 1.0)
 
-    cases = {case.case: case for case in islice(draw(1), 478)}
-    assert max(error(cases[number]) for number in (323, 472, 477)) < 1e-4
+    cases = {case.case: case for case in islice(draw(1), 832)}
+    assert max(error(cases[number]) for number in (577, 823, 831)) < 1e-4
     if width == 30.0:
-        assert error(cases[477], units=None, centred=False) > 0.1
+        assert error(cases[831], units=None, centred=False) > 0.1
 
 
 def test_a_ball_whose_centre_rounds_onto_a_deep_base_loses_its_contact() -> None:
     """It has no normal there: the block falls freely for a step, now and then."""
-    case = next(islice(draw(1), 43, None))
+    case = next(islice(draw(1), 77, None))
     exact = simulate(case.block, case.motion).peak_ratio
 
     def error(**settings: float) -> float:
@@ -92,11 +92,11 @@ def test_a_block_locked_into_the_plane_has_no_friction() -> None:
 def test_gravity_that_changes_wakes_nothing() -> None:
     """A block that was put to sleep at the turn of its motion is no result, and no endless run."""
     motion = pulse(1.3, 0.3)
-    asleep = run("rapier", scene(motion, preset="naive"))
+    asleep = run("rapier", scene(motion, preset="naive", settings={"sleeping": True}))
     assert asleep.outcome is Outcome.FAILED
     assert "asleep" in asleep.message or "to sleep" in asleep.message
     assert asleep.steps < 2000
-    awake = run("rapier", scene(motion, preset="naive", settings={"sleeping": False}))
+    awake = run("rapier", scene(motion, preset="naive"))
     assert awake.outcome is simulate(BLOCK, motion).outcome
 
 

@@ -7,12 +7,12 @@ import math
 
 import numpy as np
 import pytest
-from known import exactly
+from known import ElsewhereWorld, KnownWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from engines import Scene
 from engines.declaration import Stepping
 from engines.world import Moment
@@ -152,3 +152,86 @@ def test_a_block_that_came_to_rest_lifts_again(monkeypatch: pytest.MonkeyPatch) 
     late = (np.array(response.uplifts) - exact.uplifts) * block.p
     assert np.abs(late).max() < 3e-3
     assert response.rests[0] < response.uplifts[1]
+
+
+BASES = {
+    "creeping in": lambda time: -0.1 * BLOCK.width * (1.0 - math.exp(-2.0 * BLOCK.p * time)),
+    "sunk": lambda time: -0.1 * BLOCK.width,
+    "on a skin": lambda time: 0.03 * BLOCK.width,
+}
+"""Heights [m] of a contact over the base by the time, that no rotation depends on."""
+
+
+@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("onsets", "half_cycles"), [(1.1, 1), (1.3, 2), (0.95, 2), (6.0, 1)])
+def test_outcome_and_peak_do_not_depend_on_how_deep_a_contact_is(
+    base: str, onsets: float, half_cycles: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion = pulse(onsets, 3.0, half_cycles)
+    exact = simulate(BLOCK, motion)
+    asked = scene(motion, step=0.005)
+    dt_s = 0.005 / BLOCK.p
+    # the script knows as much as it is told, which is more than is looked at
+    world = ElsewhereWorld(scene(motion, step=0.005, duration=9.0 / BLOCK.p), dt_s, BASES[base])
+    seen = watched(monkeypatch, world, asked, Stepping.FIXED)
+    assert seen.outcome is exact.outcome
+    # a turning point is met by a parabola through both ends of its step, as on a rigid base
+    assert seen.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
+
+
+def test_a_block_that_sinks_is_a_note_and_no_missing_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = scene(MOTION, step=0.01)
+    told = scene(MOTION, step=0.01, duration=9.0 / BLOCK.p)
+    dt_s = 0.01 / BLOCK.p
+    sunk = watched(monkeypatch, ElsewhereWorld(told, dt_s, BASES["sunk"]), asked, Stepping.FIXED)
+    assert sunk.outcome is Outcome.ROCKED
+    assert sunk.sink_m == pytest.approx(0.1 * BLOCK.width, rel=1e-6)
+    assert f"sank {0.1 * BLOCK.width:.3g} m" in sunk.message
+    falling = ElsewhereWorld(told, dt_s, lambda time: -BLOCK.height * time)
+    through = watched(monkeypatch, falling, asked, Stepping.FIXED)
+    assert through.reason is Reason.SANK
+
+
+@pytest.mark.parametrize("leans", [0.3, 1.0])
+def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(
+    leans: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two springs under the corners: one is pressed deeper by as much as the other is relieved."""
+    deep, motion = 1e-3 * BLOCK.width, pulse(leans, 3.0, 2)
+
+    class Springs(ElsewhereWorld):
+        def script(self, time: float, rate_s: float) -> tuple[float, float]:
+            amount = 2.0 * deep / BLOCK.width * leans
+            phase = motion.omega * time
+            inside = phase < 2.0 * math.pi
+            return (
+                -amount * math.sin(phase) * inside,
+                -amount * motion.omega * math.cos(phase) * inside,
+            )
+
+    def level(time: float) -> float:
+        leant = abs(math.sin(motion.omega * time)) * (motion.omega * time < 2.0 * math.pi)
+        return -deep * (1.0 + leans * leant)
+
+    world = Springs(scene(motion), 0.01 / BLOCK.p, level)
+    assert watched(monkeypatch, world, scene(motion, step=0.01), Stepping.FIXED).outcome is (
+        Outcome.AT_REST
+    )
+
+
+def test_a_block_held_just_short_of_its_side_lies(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What lies on a soft contact never reaches pi/2."""
+
+    class Lying(KnownWorld):
+        def script(self, time: float, rate_s: float) -> tuple[float, float]:
+            theta, rate = super().script(time, rate_s)
+            return (theta, rate) if abs(theta) < 1.56 else (math.copysign(1.56, theta), 0.0)
+
+    motion = pulse(6.0, 0.1, 2)  # it falls long before the pulse ends
+    told = scene(motion, step=0.01, duration=motion.duration)
+    world = Lying(told, Moment.END, Stepping.FIXED)
+    seen = watched(monkeypatch, world, scene(motion, step=0.01, max_steps=20_000), Stepping.FIXED)
+    assert seen.outcome is Outcome.OVERTURNED
+    assert seen.steps < 0.5 * motion.duration * BLOCK.p / 0.01

@@ -3,11 +3,17 @@
 The samples are made up here; the headers are worded as those of the archives, with other facts.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.constants import g as standard_gravity
 
+import studies
+from analytic import GRAVITY, RigidBlock
+from studies.__main__ import run
 from studies.cases.accelerograms import UNITS, read_record
 
 SAMPLES = np.array([0.0, 0.1, -0.25, 0.4, 0.05, -0.1, 0.0])
@@ -206,3 +212,20 @@ def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_fac
     record = read_record(path)
     assert record.dt == pytest.approx(0.005, rel=1e-12)
     assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()
+
+
+def test_which_g_is_meant_is_said_wherever_it_is_asked(tmp_path, capsys):
+    """A record in g is of the blocks' g, and no name calls that the standard one."""
+    path = tmp_path / "record.csv"
+    path.write_text("time_s,acceleration_g\n0,0\n0.1,1\n0.2,0\n")
+    assert read_record(path, None).peak == GRAVITY == RigidBlock(width=1.0, height=2.0).gravity
+    guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
+    words = f"g is {GRAVITY} m/s²"
+    assert words in guide
+    over = 100.0 * (GRAVITY / standard_gravity - 1.0)
+    assert f"{standard_gravity}, so that" in guide
+    assert f"{over:.3f} % stronger" in guide
+    assert run(["compare", "--help"]) == 0
+    text = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert words in text
+    assert f"[g of {GRAVITY} m/s²]" in text

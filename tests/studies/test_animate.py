@@ -16,6 +16,7 @@ from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
 from studies.drawing.film import GifWriter, Stage, outline, verdict
 from studies.kit.arguments import BadInputError
+from studies.kit.digests import seal
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
 
@@ -80,6 +81,8 @@ def sweep(folder, peaks):
         for source, peak in zip(("exact", "housner"), pair, strict=True)
     ]
     pd.DataFrame(rows).to_csv(folder / "sweep.csv", index=False)
+    (folder / "provenance.json").write_text("{}")
+    seal(folder)
 
 
 def test_the_case_is_the_one_where_the_sources_differ_most(tmp_path):

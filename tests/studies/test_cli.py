@@ -21,7 +21,8 @@ BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
 FIELDS = [
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
-    *("error", "velocity_ratio", "impact_error", "min_normal", "friction_needed", "valid"),
+    *("error", "velocity_ratio", "impact_error", "kappa", "sensitivity"),
+    *("min_normal", "friction_needed", "valid"),
 ]
 
 
@@ -149,6 +150,23 @@ def test_json_is_one_object_a_line_and_nothing_else():
         assert by_source[name]["wall_s"] > 0.0
 
 
+def test_json_says_how_far_the_exact_peak_moves(capsys):
+    """Of the case, and so the same for all; no number where an outcome changes."""
+    near_onset = [
+        *("compare", "--width", "1.5256313519414122", "--height", "9.174363250019729"),
+        *("--pulse", "full-sine", "--omega", "2.10102467443576", "--sources", "exact", "housner"),
+    ]
+    assert run([*near_onset, "--amplitude", "0.17396032278997067", "--json"]) == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    for row in rows:
+        assert row["kappa"] == pytest.approx(45.237, abs=1e-3)
+        assert row["sensitivity"] == pytest.approx(6775, abs=1)
+    onset = 1.5256313519414122 / 9.174363250019729
+    assert run([*near_onset, "--amplitude", str(onset * (1.0 + 5e-5)), "--json"]) == 0
+    row, _ = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (row["outcome"], row["sensitivity"]) == ("rocked", None)
+
+
 def test_a_gentle_pulse_leaves_the_block_at_rest(capsys):
     assert run([*compare_with(amplitude="0.2"), "--sources", "exact", "housner", "--json"]) == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
@@ -217,7 +235,7 @@ def test_the_table_says_how_a_block_started(capsys):
 
 
 def test_where_the_reference_is_not_valid(capsys):
-    """A squat block would have to be held down; one that falls says nothing."""
+    """A squat block would have to be held down; of one that falls its fall does not count."""
     squat = ["compare", "--width", "1", "--height", "1", "--omega", "15", "--sources", "exact"]
     assert run([*squat, "--amplitude", "2.5", "--json"]) == 0
     row = json.loads(capsys.readouterr().out)
@@ -225,7 +243,9 @@ def test_where_the_reference_is_not_valid(capsys):
     assert run([*squat, "--amplitude", "2.5"]) == 0
     assert "the pivot would lift off" in capsys.readouterr().out
     slender = ["--amplitude", "1.0", "--omega", "3", "--sources", "exact"]
-    assert compared(capsys, *slender)[0]["valid"] is None
+    assert compared(capsys, *slender)[0]["valid"] is True
+    assert run(["compare", "--width", "0.5", "--height", "1.5", *slender]) == 0
+    assert "the normal force stays above" in capsys.readouterr().out
 
 
 def test_half_cycles_replace_the_pulse(capsys):

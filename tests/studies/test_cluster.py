@@ -5,6 +5,7 @@ import signal
 import time
 from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 
 import grimp
 import pandas as pd
@@ -15,6 +16,7 @@ from dask_station import (
     hangs,
     held,
     jobs_of,
+    lasts,
     refusal,
     scheduler,
     slow,
@@ -177,6 +179,25 @@ def test_a_killed_scheduler_loses_nothing_and_is_one_line(tmp_path, monkeypatch)
     assert lines[: len(kept)] == kept
     keys = [json.loads(line)["key"] for line in lines[1:]]
     assert len(keys) == len(set(keys)) == 240
+
+
+def test_a_worker_that_is_terminated_soon_ends_with_all_it_started(tmp_path, monkeypatch):
+    monkeypatch.setitem(SOURCES, "lasts", Source("engine", lasts))
+    note = tmp_path / "note"
+    (lasting,) = jobs_of("lasts")
+    lasting = replace(lasting, options={"note": str(note)})
+    with scheduler(tmp_path) as (address, _), working(address) as ending:
+        wait_for_workers(address, 1)
+        answers = Cluster(address, 900.0)([*jobs_of("exact"), lasting])
+        assert next(answers)[0] == 0
+        while not (note.exists() and note.read_text().endswith("\n")):
+            time.sleep(0.05)
+        ending.send_signal(signal.SIGTERM)
+        # a tenth of its time limit; what it takes is a second, and ten where nothing stops a case
+        ending.wait(90.0)
+        started = [int(word) for word in note.read_text().split()]
+        assert [process for process in started if Path(f"/proc/{process}").exists()] == []
+        answers.close()
 
 
 @pytest.mark.slow

@@ -22,7 +22,16 @@ from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.look import Look
 from studies.contact.claims import prices, rules
 from studies.contact.report import recommendation, report, variant_table
-from studies.contact.study import QUICK_ASPECTS, all_variants, cases, job_of, newton_e, reduce
+from studies.contact.study import (
+    QUICK_ASPECTS,
+    all_variants,
+    cases,
+    job_of,
+    newton_e,
+    plan,
+    reduce,
+    unchanged,
+)
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
 
@@ -182,6 +191,18 @@ def test_newton_e_of_housner_is_zero():
         assert newton_e(1.0 - 3.0 * math.sin(alpha) ** 2, alpha) == pytest.approx(1.0, abs=1e-12)
 
 
+def test_what_changes_the_defaults_is_asked_at_the_library_s_own_step_too():
+    jobs = plan(("mujoco",), True).jobs
+    own = [job for job in jobs if job.labels["own_step"]]
+    asked = {(job.labels["preset"], job.labels["factor"], job.labels["level"]) for job in own}
+    mine = [v for v in VARIANTS if (v.engine, v.preset) == ("mujoco", DEFAULT)]
+    assert asked == {(v.preset, v.factor, v.level) for v in mine if v.factor != OWN_STEPS}
+    assert not any("step" in job.options for job in own)
+    assert len({job.key for job in jobs}) == len(jobs)
+    rows = [{"factor": "", "own_step": False}, {"factor": "", "own_step": True}]
+    assert unchanged(rows) == rows[:1]
+
+
 CHOSEN = [v for v in VARIANTS if not v.factor or v.factor in ("damping", "reference")]
 
 
@@ -192,8 +213,12 @@ def small_table():
 
 def test_report_of_a_small_table(small_table, tmp_path: Path):
     chosen, rows = CHOSEN, small_table
-    pd.DataFrame(rows).to_csv(tmp_path / "contact.csv", index=False, na_rep="nan")
+    equal = pd.DataFrame(rows)
+    own = equal[equal["preset"] == DEFAULT].assign(own_step=True)
+    pd.concat([equal, own]).to_csv(tmp_path / "contact.csv", index=False, na_rep="nan")
     text = report(tmp_path)
+    kept = pd.read_csv(tmp_path / "own-steps.csv", keep_default_na=False, na_values=["nan"])
+    assert len(kept) == sum(v.preset == DEFAULT for v in chosen)
     assert (tmp_path / "contact.png").stat().st_size > 10_000
     assert (tmp_path / "findings.txt").read_text() == text + "\n"
     table = pd.read_csv(tmp_path / "variants.csv", keep_default_na=False, na_values=["nan"])
@@ -243,8 +268,8 @@ def test_what_helps_has_a_price_and_a_rule_its_worth():
             made_up("landing", LEFT_OUT, "reflection", 2e-2, wrong=1),
             made_up(BEST, error=3e-2),
             made_up(BEST, "locks", "y locked", math.nan, failed=12),
-            made_up(DEFAULT, error=0.4),
-            made_up(DEFAULT, "sleeping", "off", 0.05),
+            made_up(DEFAULT, error=0.05),
+            made_up(DEFAULT, "sleeping", "on", 0.4),
         ]
     )
     assert prices(lines, "rapier") == {

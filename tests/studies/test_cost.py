@@ -1,21 +1,28 @@
 """What a scene costs: every part is timed, every omission can be put back."""
 
 import contextlib
+import itertools
 import math
+import time
+from dataclasses import replace
 
 import pytest
 from declared import equal_to
 
 from analytic.response import Outcome, Response
 from engines import Scene, core_engines, installed_engines, run
-from studies.precision import shares
+from studies.measures.costs import LEAST_RUNS
+from studies.precision import cost, shares
 from studies.precision.cost import (
+    Omission,
     in_a_new_process,
     omissions,
     put_back,
     reference_table,
     scene_memory,
+    scene_table,
 )
+from studies.precision.repeats import LEAST_S
 from studies.precision.shares import clocks, pose_case, share_table
 
 BLOCK, MOTION = pose_case()
@@ -84,6 +91,24 @@ def test_an_engine_that_is_not_here_has_no_shares(monkeypatch):
     row = share_table(["pybullet"], 0.0).iloc[0]
     assert row["engine"] == "pybullet"
     assert row[list(shares.SHARES)].isna().all()
+
+
+def test_a_burst_of_other_work_slows_no_scene(monkeypatch):
+    """Whatever slows the first runs, all at the same speed, is over before the last of each."""
+    count = itertools.count()
+
+    def slow_at_first(engine, omission, block, motion):
+        time.sleep(2.0 * LEAST_S / LEAST_RUNS)  # what is timed is warm after so few runs
+        slow = 1.2 if next(count) < 2 * LEAST_RUNS else 1.0
+        response = put_back(engine, Omission(name=""), block, motion)
+        return replace(response, wall_s=slow)
+
+    monkeypatch.setattr(cost, "put_back", slow_at_first)
+    monkeypatch.setattr(cost, "in_a_new_process", lambda *_: 0.0)
+    table = scene_table(["mujoco"], 10.0)
+    assert table["wall_s"].tolist() == [1.0] * len(table)
+    assert (table["runs"] >= LEAST_RUNS).all()
+    assert set(table["driver"]) == {"compiled"}
 
 
 def test_reference_is_timed_with_what_it_leaves_out():

@@ -11,7 +11,6 @@ from analytic import simulate
 from studies.__main__ import run
 from studies.defaults import study
 from studies.defaults.claims import (
-    FAILED,
     FALSE,
     INVALID,
     MISSED,
@@ -23,7 +22,8 @@ from studies.defaults.claims import (
     similarity,
     with_verdicts,
 )
-from studies.defaults.figure import draw_maps
+from studies.defaults.figure import COLOURS, LABELS, draw_maps
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST
 
 
 def exact_rows(width_m):
@@ -79,10 +79,23 @@ def test_each_kind_of_wrong_answer_is_told(exact):
     assert rows["verdict"][last] == OFF
     assert rows["error"][last] == pytest.approx(0.2)
     failed = verdicts(exact, made_up(exact, outcome="failed", peak_ratio=math.nan))
-    assert set(failed["verdict"]) == {FAILED, INVALID}
+    assert set(failed["verdict"]) == {NO_ANSWER, INVALID}
     line = shares(pd.concat([rows, failed]).assign(wall_s=0.0)).iloc[0]
-    counted = ["close", "far", "false_overturnings", "missed_overturnings", "failed"]
-    assert line[counted].sum() == line["cases"]
+    assert line[["close", "far", *KINDS]].sum() == line["cases"]
+    assert line["false_overturnings"] + line["missed_overturnings"] == line[FALL] == 2
+
+
+def test_a_block_that_stays_where_it_should_rock_is_a_kind_of_its_own(exact):
+    """Its peak is 0: an error of -100 %, but of the outcome."""
+    rows = verdicts(exact, made_up(exact, outcome="at rest", peak_ratio=0.0))
+    judged = rows["verdict"] != INVALID
+    rocks = judged & (exact["outcome"] == "rocked").to_numpy()
+    assert set(rows["verdict"][rocks]) == {REST} and rocks.any()
+    assert set(rows["verdict"][judged & ~rocks]) == {MISSED}
+    assert rows["error"].isna().all()
+    line = shares(rows.assign(wall_s=0.0)).iloc[0]
+    assert line[REST] + line[FALL] == line["cases"] and line["far"] == 0
+    assert set(COLOURS) == set(LABELS) and len(set(COLOURS.values())) == len(COLOURS)
 
 
 def test_a_block_that_slides_or_lifts_off_is_not_judged(exact):

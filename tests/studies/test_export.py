@@ -1,6 +1,7 @@
 """Exported scenes: they run without this project, and find the peak that it finds."""
 
 import math
+import resource
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,6 +14,7 @@ from engines import ENGINES, Scene, installed_engines, run
 from engines.declaration import Stepping
 from studies.__main__ import run as rocking
 from studies.export.writing import Exported, files, script_of
+from studies.kit.provenance import project_version, version_of
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
@@ -28,7 +30,7 @@ USES = [
 ]
 ALONE = (
     "import runpy, sys; sys.modules.update(analytic=None, engines=None, studies=None);"
-    "runpy.run_path('block.py')"
+    "runpy.run_path(sys.argv[1])"
 )
 """A script is run where this project cannot be imported."""
 
@@ -50,9 +52,9 @@ def written(folder, engine, what, expected):
         (folder / name).write_text(text)
 
 
-def run_alone(folder):
-    command = [sys.executable, "-c", ALONE]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
+def run_alone(folder, from_folder="/"):
+    command = [sys.executable, "-c", ALONE, str(folder / "block.py")]
+    return subprocess.run(command, cwd=from_folder, capture_output=True, text=True, timeout=60)
 
 
 COSINE = SinePulse(amplitude=4.5, omega=6.0, half_cycles=2, phase=1.5)
@@ -78,6 +80,26 @@ def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_p
     done = run_alone(tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"largest rotation {row.peak_ratio:.12g}; " in done.stdout
+
+
+@pytest.mark.parametrize(("engine", "preset"), USES)
+def test_a_script_runs_from_any_folder_and_says_the_versions(engine, preset, tmp_path):
+    asked = scene(PULSE, preset, **({} if preset == "naive" else {"step": 5e-3}))
+    written(tmp_path, engine, asked, run(engine, asked).peak_ratio)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "ground.py").write_text("raise ImportError('the ground of another folder')")
+    (elsewhere / "block.xml").write_text("no model")
+    # as a reader starts it, and in Python's isolated mode, which knows no folder of the script's
+    for options in ([], ["-I"]):
+        command = [sys.executable, *options, str(tmp_path / "block.py")]
+        done = subprocess.run(command, cwd=elsewhere, capture_output=True, text=True, timeout=60)
+        assert done.returncode == 0, done.stdout + done.stderr
+        for package in ENGINES[engine].packages:
+            now = version_of(package)
+            assert f"{package} {now}, written with {now}" in done.stdout
+    text = (tmp_path / "block.py").read_text()
+    assert f"Written by `rocking export` of rocking {project_version()}" in text
 
 
 @pytest.mark.parametrize(("engine", "preset"), USES[:1])
@@ -117,6 +139,35 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
     assert "it must be a new or an empty folder" in capsys.readouterr().err
 
 
+def test_an_engine_takes_its_preset_after_a_colon(tmp_path, capsys):
+    said = []
+    for name, out in (("mujoco:naive", "colon"), ("mujoco", "option")):
+        preset = [] if ":" in name else ["--preset", "naive"]
+        engine = ["--engine", name, *preset, "--out", str(tmp_path / out)]
+        assert rocking([*CALL, *SHAKEN, *engine]) == 0
+        said.append(capsys.readouterr().out.replace(out, ""))
+    assert said[0] == said[1]
+    assert (tmp_path / "colon/block.xml").read_text() == (tmp_path / "option/block.xml").read_text()
+
+
+def test_no_room_for_a_file_leaves_no_part_of_a_script(tmp_path, capsys):
+    """A ground motion that is too long for the disk; the folder may then be asked for again."""
+    rows = (f"{0.005 * i:.3f},{0.4 * math.sin(0.03 * i)}" for i in range(1200))
+    record = tmp_path / "record.csv"
+    record.write_text("\n".join(["time_s,acceleration_g", *rows, "6,0"]))
+    asked = [*CALL, "--record", str(record), "--engine", "mujoco", "--out"]
+    assert rocking([*asked, str(tmp_path / "before")]) == 0  # whatever compiles is kept by now
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (32_000, hard))
+    try:
+        assert rocking([*asked, str(tmp_path / "scene")]) == 2
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "File too large" in capsys.readouterr().err
+    assert list((tmp_path / "scene").iterdir()) == []
+    assert rocking([*asked, str(tmp_path / "scene")]) == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -124,6 +175,14 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
         (
             ["--engine", "mujoco", "--preset", "landing", *SHAKEN],
             "--preset is 'landing'; it must have equal steps: naive, fixed",
+        ),
+        (
+            ["--engine", "mujoco:landing", *SHAKEN],
+            "--engine is 'mujoco:landing'; its preset must have equal steps: naive, fixed",
+        ),
+        (
+            ["--engine", "mujoco:naive", "--preset", "fixed", *SHAKEN],
+            "--preset is 'fixed'; it may be given only where --engine has none after a colon",
         ),
         (["--engine", "mujoco", *SHAKEN, "--pga", "1"], "--pga is 1.0; it may be given only with"),
         (["--engine", "mujoco"], "--amplitude and --omega missing"),

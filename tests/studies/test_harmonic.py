@@ -1,54 +1,131 @@
-"""Sustained harmonic shaking: branches up and down, and engines on them."""
+"""Sustained harmonic shaking: every attractor that is found, what is counted, and engines."""
 
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
+from independent import angular_acceleration
+from scipy.integrate import solve_ivp
 
 from analytic import RigidBlock
 from studies.__main__ import run
-from studies.harmonic.report import coexisting
-from studies.harmonic.sweeps import Shaking, settle, sweep
+from studies.harmonic.attractors import Shaking, attractors, settle
+from studies.harmonic.report import counts, runs
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 START = (0.3 * BLOCK.alpha, 0.0)
 
 
+def shaken(omega_over_p, onsets=1.5, block=BLOCK):
+    return Shaking(block=block, onsets=onsets, omega_over_p=omega_over_p)
+
+
+def test_orbits_beside_the_one_that_is_followed_are_found(tmp_path, capsys):
+    """A motion of period 3 lives beside that of period 1, and beside overturning."""
+    arguments = ["harmonic", "--quick", "--points", "2", "--low", "4.5", "--high", "5"]
+    assert run([*arguments, "--out", str(tmp_path), "--jobs", "1"]) == 0
+    table = pd.read_csv(tmp_path / "harmonic.csv")
+    for _, rows in table.groupby("x"):
+        assert set(rows.loc[rows["outcome"] == "rocked", "period"]) == {1, 3}
+        assert rows["starts"].sum() == 25
+        assert rows["start_share"].sum() == pytest.approx(1.0, rel=1e-12)
+    assert "all 2 have more than one" in capsys.readouterr().out
+
+
+def carried(shaking, state, periods):
+    """Return the state [rad, rad/s] after some periods, and the impacts, by SciPy's DOP853."""
+    block, motion = shaking.block, shaking.motion(periods)
+    t, s, impacts = 0.0, int(math.copysign(1, state[0] or state[1])), 0
+    while t < motion.duration:
+
+        def equation(time, x, s=s):
+            a_g = motion.amplitude * math.sin(motion.omega * time + motion.phase)
+            return [x[1], angular_acceleration("exact", block, s, x[0], a_g)]
+
+        def contact(time, x, s=s):
+            return s * x[0]
+
+        contact.terminal, contact.direction = True, -1
+        path = solve_ivp(
+            equation, (t, motion.duration), state, "DOP853", rtol=1e-12, atol=1e-15,
+            events=contact, max_step=0.05 / block.p,
+        )  # fmt: skip
+        t, state = path.t[-1], path.y[:, -1]
+        if path.t_events[0].size:
+            s, state, impacts = -s, np.array([0.0, block.restitution * state[1]]), impacts + 1
+    return state, impacts
+
+
+def test_the_orbit_of_period_3_is_one_by_another_route():
+    shaking = shaken(5.0)
+    (found,) = attractors([shaking], 5, 100)
+    (orbit,) = (one.state for one in found if one.state.period == 3)
+    scale = np.array([BLOCK.alpha, BLOCK.alpha * BLOCK.p])
+    begin = np.array(orbit.end) / scale
+    after, impacts = carried(shaking, orbit.end, 3)
+    assert after / scale == pytest.approx(begin, abs=1e-6)
+    assert impacts == orbit.impacts == 2
+    # it attracts: a start beside it comes nearer
+    near, _ = carried(shaking, (orbit.end[0] + 1e-3 * BLOCK.alpha, orbit.end[1]), 60)
+    assert np.abs(near / scale - begin).max() < 1e-4
+
+
+@pytest.mark.parametrize(("tilt", "omega_over_p"), [(0.45, 5.0), (0.35, 5.8), (0.7, 5.8)])
+def test_a_block_released_at_rest_reaches_it_by_another_route(tilt, omega_over_p):
+    shaking = shaken(omega_over_p)
+    late, _ = carried(shaking, (tilt * BLOCK.alpha, 0.0), 90)
+    after, _ = carried(shaking, late, 3)
+    sooner, _ = carried(shaking, late, 1)
+    assert after / BLOCK.alpha == pytest.approx(late / BLOCK.alpha, abs=1e-4)
+    assert np.abs(sooner - late).max() > 0.1 * BLOCK.alpha
+
+
+def test_an_orbit_that_no_start_finds_is_found_from_the_point_beside_it():
+    alone, beside = attractors([shaken(4.8), shaken(4.7)], 3, 100)
+    assert [(one.state.period, one.starts) for one in alone][-1] == (3, 0)
+    assert {one.state.period for one in beside if one.starts} == {0, 1, 3}
+    assert 3 not in {one.state.period for one in attractors([shaken(4.8)], 3, 100)[0]}
+
+
 def test_a_settled_state_goes_on_as_it_is():
-    shaking = Shaking(block=BLOCK, onsets=1.5, omega_over_p=4.0)
+    shaking = shaken(4.0)
     first = settle(shaking, START, 200)
-    again = settle(shaking, first.start, 100)
+    again = settle(shaking, first.end, 100)
     assert first.period == again.period == 1
     assert again.right == pytest.approx(first.right, rel=1e-9)
 
 
-def test_a_block_that_overturns_starts_again():
-    violent = Shaking(block=BLOCK, onsets=8.0, omega_over_p=1.0)
-    calm = Shaking(block=BLOCK, onsets=1.5, omega_over_p=4.0)
-    fallen, after = (state for _, state in sweep([violent, calm], START, 100))
-    assert fallen.outcome == "overturned"
-    assert math.isinf(fallen.right)
-    assert after.right == pytest.approx(settle(calm, START, 100).right, rel=1e-12)
+def test_a_block_that_overturns_is_followed_to_no_other_point():
+    fallen, calm = attractors([shaken(1.0, onsets=8.0), shaken(4.0, onsets=0.5)], 3, 100)
+    assert [(one.state.outcome, one.starts) for one in fallen] == [("overturned", 9)]
+    assert math.isinf(fallen[0].state.right)
+    assert {one.state.outcome for one in calm} == {"at rest", "rocked", "overturned"}
 
 
 def test_similarity_holds_for_steady_states():
     large = RigidBlock(width=2.0, height=6.0)
     small, other = (
-        settle(Shaking(block=block, onsets=1.5, omega_over_p=5.0), (0.3 * block.alpha, 0.0), 150)
-        for block in (BLOCK, large)
+        settle(shaken(5.0, block=block), (0.3 * block.alpha, 0.0), 150) for block in (BLOCK, large)
     )
     assert other.right == pytest.approx(small.right, rel=1e-9)
 
 
-def test_branches_that_differ_are_told():
-    table = pd.DataFrame(
-        {
-            "direction": ["up", "up", "down", "down"],
-            "x": [1.0, 2.0, 1.0, 2.0],
-            "larger_ratio": [0.3, 0.4, 0.3, 0.5],
-        }
-    )
-    assert coexisting(table).tolist() == [False, True]
+def test_what_is_counted():
+    """Three abscissae: two orbits and overturning; one orbit and overturning; overturning alone."""
+    rows = [
+        (1.0, "overturned", 0),
+        (2.0, "rocked", 1),
+        (2.0, "overturned", 0),
+        (3.0, "rocked", 1),
+        (3.0, "rocked", 3),
+        (3.0, "overturned", 0),
+    ]
+    table = pd.DataFrame(rows, columns=["x", "outcome", "period"]).assign(impacts=2)
+    assert counts(table) == {"all": 3, "several": 1, "longer": 1, "both": 2, "fallen": 1}
+    found = [(kind, run["x"].tolist()) for kind, run in runs(table)]
+    assert ("overturned", [1.0, 2.0, 3.0]) in found
+    assert ("period 3, 2 impacts", [3.0]) in found
 
 
 def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
@@ -66,7 +143,8 @@ def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (("--tilt", "1"), "--tilt"),
+        (("--starts", "0"), "--starts"),
+        (("--starts", "100000000"), "--starts"),
         (("--onsets", "2", "--over", "amplitude"), "--onsets"),
         (("--omega-over-p", "2"), "--omega-over-p"),
         (("--low", "5", "--high", "4"), "--low"),

@@ -84,3 +84,13 @@ def test_samples_fall_on_whole_periods_at_the_end():
     times = sample_times(MOTION)
     assert times[-1] == MOTION.duration
     assert times[-1] - times[0] == pytest.approx(LAST_PERIODS * FORCING, rel=1e-12)
+
+
+def test_an_orbit_that_still_settles_has_no_period_yet():
+    """Every other period it is 1.6e-6 away, a little more than what counts as the same."""
+    omega = MOTION.omega
+    settling = response(
+        lambda t: BLOCK.alpha * (0.3 * np.sin(omega * t) + 8e-7 * np.cos(0.5 * omega * t)),
+        lambda t: BLOCK.alpha * 0.3 * omega * np.cos(omega * t),
+    )
+    assert orbit_of(BLOCK, MOTION, settling).period == 0

@@ -2,7 +2,12 @@
 
 import json
 import math
+import os
+import subprocess
+import sys
+import time
 from dataclasses import replace
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -11,6 +16,7 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Response
 from studies.histories import STUDY as HISTORIES
 from studies.histories import study as histories
+from studies.kit import provenance
 from studies.kit.jobs import Job
 from studies.kit.journal import FolderError
 from studies.kit.options import DEFAULT_RUNNING
@@ -125,3 +131,37 @@ def test_provenance_says_what_took_the_engines_steps(tmp_path):
     # of what the run itself asked: the last one found all rows in the folder
     drivers = [run.get("drivers") for run in runs]
     assert drivers == [{"mujoco": "compiled"}, {"mujoco": "python"}, None]
+
+
+def test_provenance_tells_a_run_that_computes_all_from_one_that_goes_on(tmp_path):
+    for jobs in ([job("a")], [job("a"), job("b")]):
+        carry_out(STUDY, Plan(jobs=jobs, ask=answered), tmp_path, DEFAULT_RUNNING, str)
+    record = provenance.record_of(tmp_path)
+    assert [(run["rows"], run["computed"]) for run in record["runs"]] == [(1, 1), (2, 1)]
+    assert provenance.whole_runs(record) == record["runs"][:1]
+
+
+def test_the_time_of_a_run_is_that_of_the_command(tmp_path):
+    """What is reduced and drawn after the tables is waited for, too."""
+    assert carry_out(STUDY, Plan(), tmp_path, DEFAULT_RUNNING, lambda _: str(time.sleep(0.2))) == 0
+    assert provenance.record_of(tmp_path)["runs"][0]["duration_s"] > 0.2
+
+
+def test_the_first_run_after_an_installation_is_told_from_later_ones(tmp_path):
+    code = """
+from pathlib import Path
+from analytic.kernels.closed_form import sine_minus_sinh
+from studies.kit.provenance import begin
+print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
+sine_minus_sinh(0.1, 0.1)
+print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
+"""
+    paths = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])
+    kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": paths}
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code], env=kept, cwd=tmp_path, capture_output=True, text=True
+        ).stdout.split()
+        for _ in range(2)
+    ]
+    assert said == [["True", "False"], ["False", "False"]]

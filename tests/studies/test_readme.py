@@ -38,14 +38,22 @@ def test_the_readme_follows_its_tables(tmp_path):
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
         lines = pd.read_csv(path)
         mine = (lines["source"] == "mujoco") & (lines["figure"] == "all")
-        lines.loc[mine, ["agree", "max_error"]] = [957, 0.0123]
+        wrong = ["agree", "fall_wrong", "rest_wrong", "no_answer"]
+        lines.loc[mine, [*wrong, "max_error"]] = [957, 1, 2, 0, 0.0123]
         lines.to_csv(path, index=False)
     after = said(tmp_path)
-    for old, new, words in zip(before, after, ("**3 wrong**<br>", "957 of 960 |"), strict=True):
+    for old, new, words in zip(
+        before,
+        after,
+        ("**fall wrong in 1<br>at rest for rocked in 2**<br>", "957 of 960 | 1 | 2 | 0 |"),
+        strict=True,
+    ):
         assert words in new.replace("\N{NO-BREAK SPACE}", " ") and words not in old
     assert "max\N{NO-BREAK SPACE}1.2\N{NO-BREAK SPACE}%" in after[0]
     assert "1.2 % |" in after[1]
-    assert "3 of 5760 cases" in after[0]
+    assert "at rest for rocked in up to 2 (mujoco) of 960 cases each" in after[0]
+    assert "960 cases are 480 problems, each in 2 sizes, at 1.1 to 1.5 times" in after[0]
+    assert "5760" not in after[0]
 
 
 def said(root):
@@ -65,14 +73,39 @@ def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
             ("error-controlled", "drake", 10),
         ],
         columns=["preset", "engine", "right"],
-    ).assign(cases=10, median=0.01, p90=0.02, max=0.5, ms=2.0)
+    ).assign(cases=10, median=0.01, p90=0.02, max=0.5, ms=2.0, rest_wrong=0, no_answer=0)
+    lines["fall_wrong"] = lines["cases"] - lines["right"]
     heads, _, *rows = facts.presets_short(lines).replace("\N{NO-BREAK SPACE}", " ").splitlines()
     assert heads.count("|") == 4 and "`:error-controlled`" not in heads
     assert rows[0].startswith(
-        "| **PyBullet** | **1 wrong**<br>1 %, max 50 %<br>2 ms | none wrong<br>"
+        "| **PyBullet** | **fall wrong in 1**<br>1 %, max 50 %<br>2 ms | none wrong<br>"
     )
     assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
     assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+
+
+def runs_of(*runs, commit="a", **record):
+    named = ("first", "rows", "computed", "duration_s")
+    return {
+        **{"study": "sweep", "code": "c", "engines": {}, "machine": {}, "settings": {}},
+        "git": {"commit": commit},
+        **record,
+        "runs": [dict(zip(named, run, strict=True)) for run in runs],
+    }
+
+
+def test_the_first_run_and_a_later_one_are_timed_apart():
+    """One that goes on where another stopped is neither."""
+    later = runs_of((False, 9, 9, 21.4), (False, 9, 2, 3.0))
+    first = runs_of((True, 9, 9, 80.9))
+    both = "81 s the first time, when its functions are compiled, and for 21 s later"
+    assert facts.lasts(later, first) == both == facts.lasts(first, later)
+    unknown = "a time that was not measured"
+    assert facts.lasts(later) == both.replace("81 s", unknown)
+    assert facts.lasts(first) == both.replace("21 s", unknown)
+    assert facts.lasts({**later, "runs": [{"duration_s": 5.0}]}).count(unknown) == 2
+    with pytest.raises(ValueError, match="the provenances of two runs differ"):
+        facts.lasts(later, runs_of((True, 9, 9, 80.9), machine={"cpu": "another"}))
 
 
 def test_the_readme_is_short():

@@ -8,6 +8,7 @@ import pytest
 from matplotlib import units
 
 from studies.__main__ import run
+from studies.kit.digests import seal
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
@@ -43,6 +44,7 @@ def test_an_edited_table_is_one_line(study, table, edit, named, tmp_path, capsys
     pictures = sorted(folder.glob("*.png"))
     before = {path: path.read_bytes() for path in pictures}
     edit(pd.read_csv(folder / table)).to_csv(folder / table, index=False)
+    seal(folder)  # as a study that wrote it so would
     assert run(["redraw", str(folder)]) == 2
     output = capsys.readouterr()
     assert output.out == ""
@@ -68,6 +70,7 @@ def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
         for pattern in ("*.csv", "*.csv.gz", "provenance.json"):
             for path in (PUBLISHED / study).glob(pattern):
                 shutil.copy(path, folder)
+        seal(folder)
         assert run(["redraw", str(folder), "--suffix", "svg"]) == 0
         drawn = [Path(line) for line in capsys.readouterr().out.splitlines()]
         assert [path.suffix for path in drawn] == [".svg"] * len(drawn) != []
@@ -79,6 +82,7 @@ def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
 
 def test_a_picture_that_cannot_be_written_is_named(tmp_path, capsys, monkeypatch):
     folder = Path(shutil.copytree(PUBLISHED / "free", tmp_path / "free"))
+    seal(folder)
     (folder / ".part.free.png").mkdir()
     assert run(["redraw", str(folder)]) == 2
     error = capsys.readouterr().err

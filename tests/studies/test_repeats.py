@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from analytic.response import Response
+from studies.measures.costs import cost_text, loop_of
 from studies.precision import repeats
 from studies.precision.repeats import LEAST_S, enough
 
@@ -14,11 +15,11 @@ MOST_S = 4.0 * LEAST_S
 @pytest.mark.parametrize(
     ("times", "spent_s", "known"),
     [
-        ([1.0, 1.0, 1.0], LEAST_S, True),
-        ([1.0, 1.0], LEAST_S, False),  # too few
-        ([1.0, 1.0, 1.0], 0.9 * LEAST_S, False),  # too cold
-        ([1.3, 1.0, 1.03], LEAST_S, False),  # the shortest came once
-        ([1.3, 1.0, 1.03, 1.01], LEAST_S, True),
+        ([1.0] * 5, LEAST_S, True),
+        ([1.0] * 4, LEAST_S, False),  # too few
+        ([1.0] * 5, 0.9 * LEAST_S, False),  # too cold
+        ([1.3, 1.0, 1.03, 1.3, 1.3], LEAST_S, False),  # the shortest came once
+        ([1.3, 1.0, 1.03, 1.3, 1.01], LEAST_S, True),
         ([1.3], MOST_S, True),  # nothing more may be spent
     ],
 )
@@ -34,11 +35,23 @@ def test_the_best_run_is_kept_with_the_least_set_up(monkeypatch):
         wall_s, setup_s = next(runs)
         return replace(Response.failure("timed", wall_s=wall_s), setup_s=setup_s)
 
-    response, setup_s = repeats.best_of(action, MOST_S)
-    assert (response.wall_s, setup_s) == (1.0, 0.1)
+    response = repeats.best_of(action, MOST_S)
+    assert (response.wall_s, response.setup_s, response.runs) == (1.0, 0.1, 3)
 
 
 def test_what_takes_longer_than_may_be_spent_runs_once():
     responses = iter([Response.failure("timed")])
-    repeats.best_of(lambda: next(responses), 0.0)
+    assert repeats.best_of(lambda: next(responses), 0.0).runs == 1
     assert not list(responses)
+
+
+def test_a_time_of_few_runs_is_marked():
+    assert cost_text(0.0124, 5) == "12.4 ms"
+    assert cost_text(0.0124, 4) == "12.4 ms (4 runs)"
+    assert cost_text(0.0124, 1) == "12.4 ms (1 run)"
+
+
+def test_the_loop_of_several_runs_is_python_if_it_was_so_in_any():
+    assert loop_of(["compiled", "compiled"]) == "compiled"
+    assert loop_of(["compiled", "python: its memory is not where it was", ""]) == "python"
+    assert loop_of(["", ""]) == ""

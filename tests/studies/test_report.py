@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from analytic.block import STANDARD_GRAVITY
+from analytic.block import GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
 from studies.page.engine_cases import AXES, engine_cases
@@ -146,7 +146,7 @@ def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
 
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
-AMPLITUDE = 0.43333333 * STANDARD_GRAVITY
+AMPLITUDE = 0.43333333 * GRAVITY
 """What the page shows first."""
 WIDTHS = (390, 820, 1400)
 PROBE = """<script>

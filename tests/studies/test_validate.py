@@ -12,12 +12,14 @@ from studies.cases.drawn import LEAST_NORMAL, draw
 from studies.kit.journal import FolderError
 from studies.kit.options import EffortOptions, Running
 from studies.kit.plan import fill
-from studies.measures.differences import with_conditioning
+from studies.measures.differences import sensitivity_of, with_conditioning, with_reference
 from studies.measures.halving import ELSEWHERE, published_trust
 from studies.measures.words import out_of
 from studies.validate import STUDY
+from studies.validate.bands import bands, bands_text, told
+from studies.validate.claims import first_claim
 from studies.validate.hints import FALSE, KNOWN, leanings
-from studies.validate.study import plan, report
+from studies.validate.study import paragraph, plan, report
 
 ALONE = Running(jobs=1)
 
@@ -35,6 +37,19 @@ def test_cases_keep_their_ranges_and_their_reference_valid():
         assert 1.02 <= case.amplitude_g * case.aspect <= 4
         assert 0.3 <= case.omega_over_p <= 12
         assert simulate(case.block, case.motion).min_normal > LEAST_NORMAL
+
+
+def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
+    fill(STUDY, plan(60, 5, ["exact"]), tmp_path, ALONE)
+    text = report(tmp_path)
+    table = pd.read_csv(tmp_path / "drawn.csv", keep_default_na=False).set_index("set")
+    errors = pd.read_csv(tmp_path / "errors.csv")
+    assert table.loc["kept", "cases"] == len(errors) == 60
+    assert table.loc["kept", "overturned"] == (errors["exact_outcome"] == "overturned").sum()
+    assert table.loc["drawn", "cases"] == table.loc["kept":, "cases"].sum()
+    assert f"Of {table.loc['drawn', 'cases']} drawn" in text
+    table.assign(cases=0, share=0.125).to_csv(tmp_path / "drawn.csv")
+    assert "Of 0 drawn 12 % overturn" in paragraph(tmp_path)
 
 
 def test_condition_number_is_the_derivative():
@@ -58,6 +73,65 @@ def test_condition_number_of_a_block_that_overturns_is_no_number():
     assert with_conditioning(case)[["kappa", "kappa_eta"]].isna().all(axis=None)
 
 
+NEAR_ONSET = {
+    "aspect": 9.174363250019729 / 1.5256313519414122,
+    "amplitude_g": 0.17396032278997067,
+    "omega_over_p": 1.6703236997469597,
+    "half_cycles": 2,
+}
+"""An uplift that comes with a ten thousandth less of the pulse: the peak is 68 % larger."""
+
+
+def test_errors_are_judged_against_what_finite_errors_do():
+    table = pd.DataFrame([NEAR_ONSET]).assign(source="box2d", outcome="rocked", peak_ratio=0.016)
+    case = with_reference(table)
+    assert abs(case["kappa"][0]) < 100 and abs(case["kappa_eta"][0]) < 100
+    assert sensitivity_of(case)[0] == case["sensitivity"][0] == pytest.approx(6775, abs=1)
+    assert with_reference(case).equals(case)  # a table has the columns added that it lacks
+    kappas = case.assign(kappa=1e5, kappa_eta=-2e5)
+    assert sensitivity_of(kappas)[0] == 2e5
+
+
+def test_the_headline_says_the_largest_errors_as_they_are():
+    rows = pd.DataFrame(
+        {
+            "source": ["mujoco", "mujoco", "box2d", "box2d"],
+            "error": [1e-6, 0.47, -0.02, 0.95],
+            **dict.fromkeys(["kappa", "kappa_eta"], 2.0),
+            "sensitivity": [2.0, 1e4, 2.0, 1e4],
+            "agrees": True,
+            **dict.fromkeys(["outcome", "exact_outcome"], "rocked"),
+            **dict.fromkeys(["aspect", "width_m", "half_cycles", "omega_over_p"], 2.0),
+            "amplitude_g": 0.6,
+        }
+    )
+    claim = first_claim(rows)
+    assert "largest errors of the peak 47 % and 95 %, and 1.0e-06 and 2 % where" in claim
+
+
+def test_errors_are_shown_as_they_are_in_bands_of_peak_and_kappa():
+    rows = pd.DataFrame(
+        {
+            "source": ["mujoco"] * 5,
+            "exact_peak": [0.005, 0.05, 0.1, 0.7, math.inf],
+            "exact_outcome": ["rocked"] * 4 + ["overturned"],
+            "agrees": [True, True, True, False, True],
+            "error": [3.66, -0.2, 1e-3, math.nan, math.nan],
+            "kappa": [76.0, 2.0, 10.0, -300.0, math.nan],
+            "kappa_eta": [1.0, 3.0, 1.0, 1.0, math.nan],
+        }
+    )
+    table = bands(rows)
+    found = table.set_index(["by", "band"])
+    assert list(found["cases"]) == [1, 1, 1, 1, 1, 2, 1]
+    assert found.loc[("peak", "from 0.1 to 0.5"), "max_error"] == 1e-3
+    assert found.loc[("peak", "above 0.5"), "right"] == 0
+    assert found.loc[("κ", "from 10 to 100"), "max_error"] == 3.66
+    assert math.isnan(found.loc[("κ", "above 100"), "max_error"])
+    assert "366 %, 366 %" in bands_text(table)
+    assert "below 0.01 up to 366 % (mujoco); from 0.01 to 0.1 up to 20 % (mujoco)" in told(table)
+
+
 def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
     fill(STUDY, plan(4, 5, ["exact"]), tmp_path, ALONE)
     kept = (tmp_path / "journal.jsonl").read_text().splitlines()
@@ -69,6 +143,8 @@ def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
     assert errors.loc["exact", "agrees"].all()
     assert (errors.loc["exact", "error"].dropna().abs() < 1e-9).all()
     assert "9/9" in text
+    assert set(pd.read_csv(tmp_path / "bands.csv")["source"]) == {"exact", "housner"}
+    assert (errors["sensitivity"] >= 0.0).all()
     assert errors.loc["housner", "error"].abs().max() > 1e-3
 
 
@@ -93,7 +169,7 @@ def test_landing_engines_are_asked_with_false_hints_too(tmp_path):
 def test_a_wrong_outcome_with_a_false_hint_is_counted():
     known = pd.DataFrame(
         {"case": [0, 1], "source": "mujoco", "error": [1e-6, -3e-6], "agrees": True}
-    ).assign(kappa=2.0, kappa_eta=-3.0, exact_outcome="rocked")
+    ).assign(kappa=2.0, kappa_eta=-3.0, sensitivity=2.5, exact_outcome="rocked")
     wrong = known[known["case"] == 1].assign(hint="onset 2 % low", error=np.nan, agrees=False)
     stays = wrong.assign(exact_outcome="at rest", agrees=True)
     true, false = leanings(known, pd.concat([wrong, stays, stays.assign(agrees=False)]))

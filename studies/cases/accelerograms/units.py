@@ -6,21 +6,21 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from analytic.block import STANDARD_GRAVITY
+from analytic.block import GRAVITY
 from analytic.motion import FloatArray
 from studies.cases.accelerograms.text import shown
 
 Units = Literal["g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"]
 
 UNITS: Mapping[str, float] = {
-    "g": STANDARD_GRAVITY,
-    "mg": 1e-3 * STANDARD_GRAVITY,
+    "g": GRAVITY,
+    "mg": 1e-3 * GRAVITY,
     "m/s2": 1.0,
     "cm/s2": 0.01,
     "mm/s2": 1e-3,
     "gal": 0.01,
 }
-"""Unit of acceleration -> m/s2."""
+"""Unit of acceleration -> m/s2; g is that of the blocks, so that what lifts one is g tan alpha."""
 
 WORD = (
     r"(?:%g|m?g|gals?|(?:[mc]?m|ft|in)\s*/\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|(?:\^|\*\*)?[2²])?"

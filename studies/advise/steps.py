@@ -1,0 +1,193 @@
+"""Random cases at the published steps: which of these keep an error on them, too."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from itertools import islice
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING, Annotated
+
+import pandas as pd
+
+from engines import ENGINES, core_engines, installed_engines
+from studies.advise import STEPS
+from studies.advise.choice import TARGETS
+from studies.advise.evidence import in_words, options_at, settings
+from studies.advise.tried import SETTING, counted, judged
+from studies.cases.drawn import RandomCase, draw
+from studies.kit import provenance
+from studies.kit.arguments import BadInputError, Count, Place, Positive, check_engines, several
+from studies.kit.jobs import Job
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, carry_out
+from studies.measures.differences import WELL_CONDITIONED
+from studies.measures.finer import with_every_finer
+from studies.measures.published import PUBLISHED
+from studies.measures.words import gathered, listed, per_cent
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LEAST = 50
+"""Random cases at every setting, however long they take, where so many are asked for."""
+
+
+def command(
+    *,
+    out: Place,
+    engines: Annotated[tuple[str, ...], several] = core_engines(),
+    cases: Count = 500,
+    share: Positive = 20.0,
+    seed: Count = 1,
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Run random cases at the published steps that keep an error on the published cases.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    engines
+        Names of engines, without a preset.
+    cases
+        Number of random cases at a setting, at most.
+    share
+        Time [s] for a setting, by the published time of a case: where all cases would take longer
+        there are fewer, but 50.
+    seed
+        Seed of the random numbers, a positive whole number; another one draws other cases.
+    """
+    check_engines(engines)
+    if absent := [name for name in engines if name not in installed_engines()]:
+        raise BadInputError(f"--engines is {absent[0]!r}; it must be installed here")
+    return carry_out(STEPS, plan(engines, cases, share, seed), out, running, report)
+
+
+def plan(engines: Sequence[str], cases: int, share_s: float, seed: int) -> Plan:
+    """Return the plan that puts the first random cases to each setting worth it."""
+    drawn = list(islice(draw(seed), cases))
+    tried = worth_trying(settings(PUBLISHED, engines))
+    return Plan(
+        jobs=[
+            job(str(line["engine"]), str(line["preset"]), float(line["value"]), case)
+            for _, line in tried.iterrows()
+            for case in drawn[: max(LEAST, int(share_s / line["wall_s"]))]
+        ],
+        settings={"seed": seed},
+        growing={"engine": engines, "case": range(cases)},
+        tabulate=lambda rows: {"random": judged(rows)},
+    )
+
+
+def worth_trying(known: pd.DataFrame) -> pd.DataFrame:
+    """Return the settings that keep the largest of the errors with every finer one."""
+    keeps = known["max_error"] <= max(TARGETS)
+    uses = [known["engine"], known["preset"]]
+    return known[keeps.groupby(uses, sort=False).transform(with_every_finer)]
+
+
+def job(engine: str, preset: str, value: float, case: RandomCase) -> Job:
+    """Return the question of a random case to a preset at a setting."""
+    labels = {"engine": engine, "preset": preset, "value": value}
+    return Job(
+        labels={**labels, **asdict(case)},
+        block=case.block,
+        motion=case.motion,
+        source=f"{engine}:{preset}",
+        options=options_at(ENGINES[engine].preset(preset), value),
+    )
+
+
+def report(folder: Path) -> str:
+    """Write and return how many random cases are off at each setting, and the findings."""
+    table = _read(folder)
+    text = "\n".join(
+        [
+            "Random cases at each setting, and how many are off by more than an error, in brackets",
+            f"those with κ < {WELL_CONDITIONED:g}:",
+            counts_text(table),
+            "",
+            fill(told(table), 99),
+        ]
+    )
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+def _read(folder: Path) -> pd.DataFrame:
+    return pd.read_csv(folder / "random.csv")
+
+
+def counts(table: pd.DataFrame, target: float) -> pd.DataFrame:
+    """Return the settings of a table of random cases, with how many are off an error."""
+    return counted(table[SETTING].drop_duplicates(), table, target)
+
+
+def counts_text(table: pd.DataFrame) -> str:
+    """Return a line for each setting: its cases, and how many are off each error."""
+    columns = {
+        f"off {per_cent(target)}": [
+            f"{off} ({calm})"
+            for off, calm in counts(table, target)[["random_off", "random_calm_off"]].to_numpy()
+        ]
+        for target in TARGETS
+    }
+    known = counts(table, max(TARGETS))
+    shown = known[["engine", "preset"]].assign(
+        setting=[
+            in_words(ENGINES[engine].preset(preset), value)
+            for engine, preset, value in known[SETTING].itertuples(index=False, name=None)
+        ],
+        cases=known["random_cases"],
+        **columns,
+    )
+    return shown.to_string(index=False)
+
+
+def headline(folder: Path) -> str:
+    """Say how many of the settings keep the largest of the errors on random cases."""
+    return first_claim(_read(folder))
+
+
+def first_claim(table: pd.DataFrame) -> str:
+    """Say of how many settings that keep an error on the published cases it is kept on these."""
+    known = counts(table, max(TARGETS))
+    fewest, most = known["random_cases"].min(), known["random_cases"].max()
+    each = f"{most}" if fewest == most else f"{fewest} to {most}"
+    calm, every = ((known[name] == 0).sum() for name in ("random_calm_off", "random_off"))
+    return (
+        f"Of {len(known)} settings of engines that keep {per_cent(max(TARGETS))} on the published "
+        f"cases, with every finer one, {calm} keep it on all random ones with "
+        f"κ < {WELL_CONDITIONED:g}, and {every} on all ({each} random cases at a setting)."
+    )
+
+
+def paragraph(folder: Path) -> str:
+    """Say the same, and which presets miss which error on cases with a small κ."""
+    return told(_read(folder))
+
+
+def told(table: pd.DataFrame) -> str:
+    """Say the first claim, and how many cases each preset is off at its settings that miss."""
+    known = counts(table, max(TARGETS))
+    missed = known[known["random_calm_off"] > 0]
+    said = [
+        (
+            f"{engine} {preset}",
+            listed(
+                [
+                    f"{line['random_calm_off']} of {line['random_cases']} at "
+                    f"{in_words(ENGINES[str(engine)].preset(str(preset)), float(line['value']))}"
+                    for _, line in lines.iterrows()
+                ]
+            ),
+        )
+        for (engine, preset), lines in missed.groupby(["engine", "preset"], sort=False)
+    ]
+    words = f" Off by more, with κ < {WELL_CONDITIONED:g}: {gathered(said)}." if said else ""
+    return f"{first_claim(table)}{words}"
+
+
+def pictures(folder: Path) -> "dict[str, Figure]":
+    """Draw nothing: `rocking advise` draws what follows."""
+    return {}

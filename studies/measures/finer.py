@@ -1,0 +1,16 @@
+"""Errors along a method's settings: a lucky setting is told by those that are finer."""
+
+from typing import Any
+
+import pandas as pd
+
+
+def with_every_finer(keeps: "pd.Series[Any]") -> "pd.Series[bool]":
+    """Return which settings keep an error together with every finer one.
+
+    Parameters
+    ----------
+    keeps : Series of bool
+        Whether each setting keeps it by itself, from coarse to fine.
+    """
+    return keeps.astype(bool)[::-1].cummin()[::-1]

@@ -1,0 +1,278 @@
+"""Tables that are no longer what a study wrote: every command that reads them says so."""
+
+import gzip
+import json
+import os
+import shutil
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import run
+from studies.advise.evidence import TABLES
+from studies.advise.tried import RANDOM
+from studies.catalogue import CHAPTERS
+from studies.kit.sealed import seal as sealed_line
+from studies.kit.sealed import unseal
+from studies.measures import halving
+from studies.page import readme
+from studies.score import report as score
+from studies.symptoms.lines import TABLES as SYMPTOMS
+
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+
+
+def sweep(folder, figure="6"):
+    few = ["--figure", figure, "--sources", "exact", "housner"]
+    assert run(["sweep", *few, "--out", str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    return sweep(tmp_path_factory.mktemp("swept") / "six")
+
+
+@pytest.fixture(scope="module")
+def another(tmp_path_factory):
+    return sweep(tmp_path_factory.mktemp("another") / "seven", "7")
+
+
+@pytest.fixture
+def folder(swept, tmp_path, capsys):
+    capsys.readouterr()
+    return Path(shutil.copytree(swept, tmp_path / "results"))
+
+
+@pytest.fixture
+def published(tmp_path):
+    """The published tables, sealed as their studies do it now."""
+    from studies.kit.digests import seal
+
+    root = tmp_path / "root"
+    copy = Path(shutil.copytree(PUBLISHED, root / readme.PUBLISHED))
+    for record in copy.glob("*/provenance.json"):
+        seal(record.parent)
+    return copy
+
+
+def refused(capsys, arguments, *named):
+    """Assert that a command ends with 2, one line that names things, and no other word."""
+    assert run([str(argument) for argument in arguments]) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert len(output.err.splitlines()) == 1, output.err
+    for name in named:
+        assert name in output.err
+
+
+def one_digit(folder):
+    path = folder / "sweep.csv"
+    text = path.read_text()
+    place = text.index("\n", len(text) // 2) - 12
+    digit = next(place + n for n in range(200) if text[place + n].isdigit())
+    path.write_text(text[:digit] + str(9 - int(text[digit])) + text[digit + 1 :])
+
+
+def cut_at_a_line(folder):
+    path = folder / "sweep.csv"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-50]))
+
+
+def cut_anywhere(folder):
+    path = folder / "sweep.csv"
+    path.write_bytes(path.read_bytes()[:-777])
+
+
+def saved_by_a_spreadsheet(folder):
+    path = folder / "sweep.csv"
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+
+
+def no_provenance(folder):
+    (folder / "provenance.json").unlink()
+
+
+def a_folder(folder):
+    (folder / "sweep.csv").unlink()
+    (folder / "sweep.csv").mkdir()
+
+
+def packed_and_cut(folder):
+    path = folder / "sweep.csv"
+    (folder / "sweep.csv.gz").write_bytes(gzip.compress(path.read_bytes())[:-100])
+
+
+def provenance_of(text):
+    return lambda folder: (folder / "provenance.json").write_text(text)
+
+
+def a_pipe_for_provenance(folder):
+    (folder / "provenance.json").unlink()
+    os.mkfifo(folder / "provenance.json")
+
+
+HARM = {
+    "a pipe for provenance": a_pipe_for_provenance,
+    "one digit": one_digit,
+    "cut at a line": cut_at_a_line,
+    "cut anywhere": cut_anywhere,
+    "saved by a spreadsheet": saved_by_a_spreadsheet,
+    "no provenance": no_provenance,
+    "a folder": a_folder,
+    "packed and cut": packed_and_cut,
+    "an empty provenance": provenance_of(""),
+    "a provenance without digests": provenance_of('{"study": "sweep"}'),
+    "a list of digests": provenance_of('{"study": "sweep", "tables": [1]}'),
+    "a number for digests": provenance_of('{"study": "sweep", "tables": 3}'),
+    "a provenance too deep": provenance_of("[" * 200_000),
+}
+
+
+@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+def test_a_table_that_is_not_as_it_was_written_is_not_drawn(harm, folder, capsys):
+    before = {path: path.read_bytes() for path in folder.glob("*.png")}
+    harm(folder)
+    refused(capsys, ["redraw", folder], "FOLDER", "sweep.csv")
+    assert {path: path.read_bytes() for path in folder.glob("*.png")} == before != {}
+
+
+@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+def test_a_table_that_is_not_as_it_was_written_is_not_shown(harm, folder, tmp_path, capsys):
+    harm(folder)
+    film = tmp_path / "film.gif"
+    few = ["--sources", "exact", "housner"]
+    refused(capsys, ["animate", "--results", folder, *few, "--out", film], "--results", "sweep.csv")
+    assert not film.exists()
+
+
+def test_a_table_beside_another_run_s_provenance_is_refused(folder, another, capsys):
+    shutil.copy(another / "provenance.json", folder)
+    refused(capsys, ["redraw", folder], "sweep.csv")
+    shutil.copy(another / "sweep.csv", folder)
+    shutil.copy(another / "findings.csv", folder)
+    refused(capsys, ["redraw", folder], "summary.csv")
+    shutil.copy(another / "summary.csv", folder)
+    assert run(["redraw", str(folder)]) == 0
+
+
+def test_every_table_of_a_folder_has_its_digest_and_may_be_packed(folder):
+    tables = json.loads((folder / "provenance.json").read_text())["tables"]
+    assert set(tables) == {path.name for path in folder.glob("*.csv")}
+    assert {"sweep.csv", "summary.csv"} <= set(tables)
+    assert all(len(bytes.fromhex(digest)) == 32 for digest in tables.values())
+    path = folder / "summary.csv"
+    (folder / "summary.csv.gz").write_bytes(gzip.compress(path.read_bytes()))
+    path.unlink()
+    assert run(["redraw", str(folder)]) == 0
+
+
+def test_the_command_run_again_makes_the_tables_anew(folder, swept, capsys):
+    one_digit(folder)
+    refused(capsys, ["redraw", folder], "sweep.csv")
+    sweep(folder)
+    assert (folder / "sweep.csv").read_bytes() == (swept / "sweep.csv").read_bytes()
+    assert run(["redraw", str(folder)]) == 0
+
+
+def test_no_run_is_begun_where_its_table_could_not_be_written(tmp_path, capsys):
+    (tmp_path / "out" / "sweep.csv").mkdir(parents=True)
+    refused(capsys, ["sweep", "--figure", "6", "--out", tmp_path / "out"], "--out", "sweep.csv")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["sweep.csv"]
+
+
+OTHER = {"exact": "housner", "housner": "exact"}
+ROW = {
+    "no column but the outcome": lambda row: {"outcome": "rocked"},
+    "another source": lambda row: {**row, "source": OTHER[row["source"]]},
+    "another case": lambda row: {**row, "omega_over_p": 99.0},
+    "a word for a number": lambda row: {**row, "peak_ratio": "high"},
+    "a list for a source": lambda row: {**row, "source": ["exact"]},
+}
+
+
+@pytest.mark.parametrize("forge", ROW.values(), ids=ROW)
+@pytest.mark.parametrize("lines", [slice(1, 2), slice(1, None)], ids=["one line", "all lines"])
+def test_a_forged_row_is_one_line(forge, lines, folder, capsys):
+    path = folder / "journal.jsonl"
+    kept = path.read_bytes().splitlines()
+    kept[lines] = [forged(line, forge) for line in kept[lines]]
+    path.write_bytes(b"\n".join(kept) + b"\n")
+    few = ["--figure", "6", "--sources", "exact", "housner"]
+    refused(capsys, ["sweep", *few, "--out", folder], "--out", "journal.jsonl")
+
+
+def forged(line, forge):
+    entry = unseal(line)
+    return sealed_line({**entry, "row": forge(entry["row"])})[:-1]
+
+
+def edit(path):
+    text = path.read_text()
+    place = max(place for place in range(len(text)) if text[place].isdigit())
+    path.write_text(text[:place] + str(9 - int(text[place])) + text[place + 1 :])
+
+
+@pytest.mark.parametrize(
+    ("command", "tables"), [("advise", TABLES), ("symptoms", SYMPTOMS)], ids=["advise", "symptoms"]
+)
+def test_no_advice_from_edited_tables(command, tables, published, capsys):
+    asked = [command, "--published", published, "--engines", "mujoco"]
+    assert run([str(word) for word in asked]) == 0
+    capsys.readouterr()
+    for name in tables:
+        text = (published / name).read_text()
+        edit(published / name)
+        refused(capsys, asked, "--published", name)
+        (published / name).write_text(text[: len(text) // 2])
+        refused(capsys, asked, "--published", name)
+        (published / name).write_text(text)
+
+
+def test_no_bound_from_an_edited_factor(published, monkeypatch, capsys):
+    monkeypatch.setattr(halving, "FACTORS", published / "estimate" / "factors.csv")
+    monkeypatch.setattr(
+        halving.published_trust, "__defaults__", (published / "estimate" / "factors.csv",)
+    )
+    edit(published / "estimate" / "factors.csv")
+    case = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
+    few = ["--sources", "mujoco", "--jobs", "1", "--step", "0.02"]
+    refused(capsys, ["compare", *case, *few, "--estimate"], "factors.csv")
+
+
+def test_no_score_beside_an_edited_table(published, monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(score, "PUBLISHED", published)
+    edit(published / "precision" / "work-precision.csv")
+    out = tmp_path / "out"
+    refused(capsys, ["score", "mujoco", "--quick", "--out", out], "work-precision.csv")
+    assert not out.exists()
+
+
+def test_no_page_from_an_edited_table(published, capsys):
+    root = published.parents[1]
+    for name in ("sweep/summary.csv", "overturning/engines.csv.gz"):
+        content = (published / name).read_bytes()
+        (published / name).write_bytes(content[:-9])
+        refused(capsys, ["readme", "--root", root], "published", name.partition("/")[2])
+        (published / name).write_bytes(content)
+    assert not (root / "README.md").exists()
+
+
+def test_whatever_is_checked_comes_with_an_installation():
+    project = tomllib.loads((PUBLISHED.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
+    packed = set(project["tool"]["setuptools"]["package-data"]["studies"])
+    read = {*TABLES, RANDOM, *SYMPTOMS, score.LADDER, str(halving.FACTORS.relative_to(PUBLISHED))}
+    beside = {f"{name.partition('/')[0]}/provenance.json" for name in read}
+    assert {f"published/{name}" for name in read | beside} == packed
+
+
+@pytest.mark.parametrize("chapter", [chapter for _, chapter in CHAPTERS], ids=lambda c: c.folder)
+def test_every_published_table_has_its_digest(chapter):
+    from studies.kit.digests import digest
+
+    folder = PUBLISHED / chapter.folder
+    if (folder / "provenance.json").is_file():
+        tables = json.loads((folder / "provenance.json").read_text())["tables"]
+        for path in [*folder.glob("*.csv"), *folder.glob("*.csv.gz")]:
+            assert tables[path.name.removesuffix(".gz")] == digest(path)
