@@ -58,6 +58,10 @@ REST_RATE = 0.01
 SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
+PROPPED_PART = 0.5
+"""Part of alpha below which a block that nothing holds turns faster, within the time and by the
+rate of a rest, than a block at rest may."""
+
 THROWN_WIDTHS = 1.0
 """A pivot higher above the base than this part of the width has been thrown off."""
 
@@ -256,7 +260,7 @@ def see(
     if abs(row.rate) > watch.rest_rate:
         watch.turned_at = time
     if watch.loose:
-        watch.lifted = 2.0 * reach > watch.lift
+        watch.lifted = 2.0 * reach > watch.lift and not propped(watch, row)
     else:
         higher = level + reach > watch.lift + watch.give + 2.0 * watch.hop
         watch.lifted = higher and not watch.hovers
@@ -277,6 +281,13 @@ def see(
     put(watch.two, 1, row)
     turning(watch)
     decide(watch, row)
+
+
+@shared
+def propped(watch: Watch, row: Row) -> bool:
+    """Whether a block that has rocked leans on its contact and stays: alone it would fall back."""
+    still = row.time - watch.turned_at >= watch.rest_time
+    return watch.rocked and still and abs(row.theta) < PROPPED_PART * watch.alpha
 
 
 @shared

@@ -179,7 +179,7 @@ class _Worker:
                 raise EndedError(self.process.exitcode or 0)
         try:
             return self._channel.recv()
-        except EOFError:
+        except (EOFError, ConnectionResetError):
             self.process.join(ENDING_S)
             raise EndedError(self.process.exitcode or 0) from None
 
@@ -223,4 +223,7 @@ def _be_silent() -> None:
 def _bound_memory() -> None:
     if sys.platform == "linux":
         held = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
-        resource.setrlimit(resource.RLIMIT_DATA, (int(held + MEMORY_BYTES),) * 2)
+        bound = int(held + MEMORY_BYTES)
+        for known in resource.getrlimit(resource.RLIMIT_DATA):  # the user's own bound holds too
+            bound = bound if known == resource.RLIM_INFINITY else min(bound, known)
+        resource.setrlimit(resource.RLIMIT_DATA, (bound, bound))
