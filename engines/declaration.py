@@ -84,6 +84,8 @@ class Preset:
         What helps -> the settings that leave it out; None where it is the preset itself.
     misses : tuple of Miss
         What the library's defaults get wrong; no tuned preset may miss anything.
+    own : mapping
+        Of "naive", settings that are not the library's own -> what the library has by itself.
     """
 
     name: str
@@ -97,6 +99,7 @@ class Preset:
     dial: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
     misses: tuple[Miss, ...] = ()
+    own: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "title", self.title or TITLES.get(self.name, self.name))

@@ -167,7 +167,8 @@ ENGINE = Engine(
             settings=Box2DSettings(sleeping=False),
             step_s=LIBRARY_STEP_S,
             step_source=MANUAL,
-            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+            misses=(Miss.MIRROR, Miss.PEAK),
+            own={"friction": 0.2, "sleeping": True},
         ),
         Preset(
             name="fixed",

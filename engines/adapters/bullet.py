@@ -265,6 +265,7 @@ ENGINE = Engine(
             settings=BulletSettings(),
             step_s=LIBRARY_STEP_S,
             step_source="the library's own time step, 1/240 s",
+            own={"friction": 0.5},
         ),
         Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(

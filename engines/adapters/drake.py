@@ -23,7 +23,7 @@ from engines.adapters.drake_settings import (
     TUNED,
     DrakeSettings,
 )
-from engines.declaration import Engine, Preset, Stepping
+from engines.declaration import Engine, Miss, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.settings import given
@@ -268,6 +268,8 @@ ENGINE = Engine(
             settings=DrakeSettings(),
             step_s=1e-3,
             step_source="MultibodyPlantConfig's own time_step, 0.001 s",
+            misses=(Miss.PEAK,),
+            own={"friction": 0.5},
         ),
         Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(

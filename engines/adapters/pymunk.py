@@ -167,6 +167,7 @@ ENGINE = Engine(
             step_s=LIBRARY_STEP_S,
             step_source=README,
             misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+            own={"friction": 0.0},
         ),
         Preset(
             name="fixed",

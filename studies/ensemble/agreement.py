@@ -6,27 +6,65 @@ import numpy as np
 import pandas as pd
 from scipy.stats import binomtest, ks_2samp
 
-from studies.ensemble.fragility import BLOCK, Fragilities, Fragility, bounds, by_block
-from studies.measures.wrongness import NO_ANSWER, REST, wrong_in
+from studies.ensemble.fragility import (
+    BLOCK,
+    Fragilities,
+    Fragility,
+    bounds,
+    by_block,
+    fragilities,
+)
+from studies.measures.wrongness import ANSWERS, NO_ANSWER, REST, wrong_in
 
 CASE = [*BLOCK, "motion", "intensity"]
 
 CLOSE = 0.1
 """A peak is predicted when it is right within this part."""
 
+BOUNDS = ["capacity_low", "capacity_high", "ratio_low", "ratio_high"]
+DIGITS = 2
+"""Digits after the point of a capacity, or a ratio of two, as they are printed."""
+LEAST_RESAMPLES, MOST_RESAMPLES = 1000, 256_000
+"""How often motions are drawn again, before it is seen whether the bounds hold."""
+
 
 def beside_exact(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of all other sources beside the exact outcome and peak of their case."""
+    """Return the rows of all other sources beside the exact outcome and peak of their case.
+
+    A case without an exact outcome has no answer.
+    """
     exact = rows.loc[rows["source"] == "exact", [*CASE, "outcome", "peak_ratio"]]
     exact = exact.rename(columns={"outcome": "exact_outcome", "peak_ratio": "exact_peak"})
     joined = rows[rows["source"] != "exact"].merge(exact, on=CASE, validate="many_to_one")
     both = (joined["outcome"] == "rocked") & (joined["exact_outcome"] == "rocked")
-    wrong = wrong_in(joined)
+    known = joined["exact_outcome"].isin(ANSWERS)
+    wrong = wrong_in(joined[known]).reindex(joined.index, fill_value=NO_ANSWER)
     return joined.assign(
         wrong=wrong,
         agrees=wrong == "",
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both),
     )
+
+
+def settled(rows: pd.DataFrame) -> tuple[Fragilities, pd.DataFrame]:
+    """Resample until twice as many samples move no bound by half of its last printed digit.
+
+    Returns
+    -------
+    Fragilities, DataFrame
+        With so many samples, which a column of the agreement counts.
+    """
+    before, resamples = None, LEAST_RESAMPLES
+    while True:
+        fitted = fragilities(rows, resamples)
+        agreed = agreement(rows, fitted).assign(resamples=resamples)
+        bounded = agreed[BOUNDS].to_numpy(float)
+        near = before is not None and np.allclose(
+            before, bounded, rtol=0.0, atol=0.5 * 10.0**-DIGITS, equal_nan=True
+        )
+        if near or resamples >= MOST_RESAMPLES:
+            return fitted, agreed
+        before, resamples = bounded, 2 * resamples
 
 
 def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
@@ -41,7 +79,8 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
         ks, the largest distance between the distributions of the peaks over the intensities, ks_p
         its p-value and ks_rejected the intensities with one below 0.05; mcnemar_p, of as many
         overturnings too many as too few; the fitted capacity and its ratio to the exact
-        one of the same cases.
+        one of the same cases, with their bounds, and whether one of the capacity's, or of the two
+        that the ratio is of, lies at the least or the largest intensity or beyond.
     """
     lines = []
     for size, block in by_block(beside_exact(rows)):
@@ -100,21 +139,30 @@ def _in_distribution(usable: pd.DataFrame) -> dict[str, object]:
     }
 
 
-def _capacity(here: Fragility, exact: Fragility) -> dict[str, float]:
+def _capacity(here: Fragility, exact: Fragility) -> dict[str, object]:
     beside = exact.where(here.usable)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = float(np.divide(here.fit.median, beside.fit.median))
-        low, high = bounds(here.medians() / beside.medians())
-        own_low, own_high = bounds(here.medians())
+        low, high = bounds(here.resampled.median / beside.resampled.median)
+    own_low, own_high = bounds(here.resampled.median)
+    at_edge = _at_edge(here)
     return {
-        "capacity": here.fit.median,
+        "capacity": float(here.fit.median),
         "capacity_low": float(own_low),
         "capacity_high": float(own_high),
-        "beta": here.fit.beta,
+        "capacity_at_edge": at_edge,
+        "beta": float(here.fit.beta),
         "capacity_ratio": ratio,
         "ratio_low": float(low),
         "ratio_high": float(high),
+        "ratio_at_edge": at_edge or _at_edge(beside),
     }
+
+
+def _at_edge(known: Fragility) -> bool:
+    """Say whether a bound of a capacity is none of the intensities' making."""
+    low, high = bounds(known.resampled.median)
+    return bool(low <= known.intensity.min() or high >= known.intensity.max())
 
 
 def confusion(rows: pd.DataFrame) -> pd.DataFrame:

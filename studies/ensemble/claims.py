@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.agreement import CLOSE
+from studies.ensemble.agreement import CLOSE, DIGITS
 from studies.measures.words import listed, out_of, part
 
 LEVEL = 0.05
@@ -77,7 +77,7 @@ def rejections(rows: pd.DataFrame) -> list[str]:
     for _, row in rows.iterrows():
         block = f"at {row['width_m']:g} m x {row['height_m']:g} m"
         if is_off(row["ratio_low"], row["ratio_high"]):
-            words.append(f"capacity ratio {_interval(row)} {block}")
+            words.append(f"capacity ratio {interval(row)} {block}")
         if row["mcnemar_p"] < LEVEL:
             words.append(f"McNemar p = {row['mcnemar_p']:.2g} {block}")
     if rows["ks_rejected"].sum():
@@ -90,14 +90,16 @@ def is_off(low: float, high: float) -> bool:
     return low > 1.0 or high < 1.0
 
 
-def interval(value: float, low: float, high: float) -> str:
+AT_EDGE = "*"
+"""What follows bounds of which one is none of the intensities' making."""
+
+
+def interval(row: "pd.Series[Any]", name: str = "capacity_ratio", prefix: str = "ratio") -> str:
     """Return a fitted number with its bounds; it may be one that the outcomes do not tell."""
-    middle = "undetermined" if math.isnan(value) else f"{value:.3f}"
-    return f"{middle} [{low:.3f}, {high:.3f}]"
-
-
-def _interval(row: "pd.Series[Any]") -> str:
-    return interval(row["capacity_ratio"], row["ratio_low"], row["ratio_high"])
+    value, *bounds = (row[it] for it in (name, f"{prefix}_low", f"{prefix}_high"))
+    middle = "undetermined" if math.isnan(value) else f"{value:.{DIGITS}f}"
+    low, high = (f"{bound:.{DIGITS}f}" for bound in bounds)
+    return f"{middle} [{low}, {high}]{AT_EDGE if row[f'{prefix}_at_edge'] else ''}"
 
 
 def _distributions(rows: pd.DataFrame) -> str:
@@ -109,7 +111,7 @@ def _distributions(rows: pd.DataFrame) -> str:
 
 
 def _line(source: str, rows: pd.DataFrame) -> str:
-    ratios = listed([_interval(row) for _, row in rows.iterrows()])
+    ratios = listed([interval(row) for _, row in rows.iterrows()])
     off = sum(is_off(row["ratio_low"], row["ratio_high"]) for _, row in rows.iterrows())
     few = int((rows["mcnemar_p"] < LEVEL).sum())
     return (

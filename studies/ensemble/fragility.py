@@ -2,9 +2,9 @@
 
 A block overturns at the intensity x with the probability Phi(ln(x/median)/beta): capacities are
 lognormal. Fitted by maximum likelihood to the counts at each intensity (Baker 2015, "Efficient
-analytical fragility function fitting using dynamic structural analysis"), with scipy's optimizer
-and its normal distribution; the bounds are quantiles over resampled motions, whole, since what one
-motion does at two intensities is not independent.
+analytical fragility function fitting using dynamic structural analysis"), all samples at once; the
+bounds are quantiles over resampled motions, whole, since what one motion does at two intensities is
+not independent.
 """
 
 import math
@@ -13,8 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
-from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr, ndtri
 from scipy.stats import binomtest
 
@@ -24,96 +22,126 @@ BLOCK = ["width_m", "height_m"]
 """Columns that tell blocks apart."""
 
 CONFIDENCE = 0.95
-RESAMPLES = 200
-
+NEWTON_STEPS, HALVINGS, CONVERGED, ROUNDING = 100, 30, 1e-9, 1e-13
+"""Of a fit: steps and halvings of a step at most, the last step, and what a sum's rounding is."""
 
 FAR = 10.0
 """A median further than this many times beyond the intensities is not determined by them."""
 
 
 class Fit(NamedTuple):
-    """A lognormal capacity: its median, and the standard deviation of its logarithm.
+    """Lognormal capacities: their medians, and the standard deviations of their logarithms.
 
-    beta is 0 where every intensity with an overturning lies above every one with a survival; the
-    median is then between the two, or 0 or inf if there is only one of them. The median is nan
-    where the counts do not determine one: overturning does not rise with the intensity (beta is
-    then inf), rises so little that even odds lie FAR beyond the intensities, or there are no
-    counts. `level` is then the normal quantile of the probability at intensity 1.
+    Each attribute is an array of the shape of what was fitted. beta is 0 where every intensity with
+    an overturning lies above every one with a survival; the median is then between the two, or 0 or
+    inf if there is only one of them. The median is nan where the counts do not determine one:
+    overturning does not rise with the intensity (beta is then inf), rises so little that even odds
+    lie FAR beyond the intensities, or there are no counts. `level` is then the normal quantile of
+    the probability at intensity 1.
     """
 
-    median: float
-    beta: float
-    level: float = math.nan
+    median: FloatArray
+    beta: FloatArray
+    level: FloatArray
 
     def probability(self, intensity: FloatArray) -> FloatArray:
-        """Return the probability of overturning at each intensity."""
-        if math.isnan(self.median):
-            return np.asarray(ndtr(self.level + np.log(intensity) / self.beta))
-        if self.beta == 0.0 or not 0.0 < self.median < math.inf:
-            return np.where(intensity > self.median, 1.0, 0.0)
-        return np.asarray(ndtr(np.log(intensity / self.median) / self.beta))
+        """Return the probabilities of overturning: for each fit, at each intensity."""
+        median, beta, level = (np.asarray(value)[..., np.newaxis] for value in self)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rising = ndtr(np.log(intensity / median) / beta)
+            unknown = ndtr(level + np.log(intensity) / beta)
+        step = (beta == 0.0) | (median == 0.0) | (median == math.inf)
+        known = np.where(step, (intensity > median).astype(float), rising)
+        return np.where(np.isnan(median), unknown, known)
 
 
 def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArray) -> Fit:
-    """Fit the capacity to the number overturned of so many cases at each intensity."""
-    survived = cases - overturned
-    if not cases.any():
-        return Fit(math.nan, math.nan)
-    if not overturned.any() or not survived.any():
-        return Fit(0.0 if overturned.any() else math.inf, 0.0)
-    strongest, weakest = intensity[survived > 0].max(), intensity[overturned > 0].min()
-    if strongest <= weakest:
-        return Fit(math.sqrt(strongest * weakest), 0.0)
-    logs = np.log(intensity)
-    middle = float(np.average(logs, weights=cases))
-    if np.average(logs, weights=overturned) <= middle:
-        # the likelihood is concave, and falls with the slope from zero on
-        return Fit(math.nan, math.inf, float(ndtri(overturned.sum() / cases.sum())))
-    level, slope = _likeliest(logs - middle, overturned, survived)
-    beyond = -level / slope + middle
-    if logs.min() - math.log(FAR) <= beyond <= logs.max() + math.log(FAR):
-        return Fit(math.exp(beyond), 1.0 / slope)
-    return Fit(math.nan, 1.0 / slope, level - slope * middle)
-
-
-def _likeliest(logs: FloatArray, overturned: FloatArray, survived: FloatArray) -> FloatArray:
-    """Return level and slope of the normal quantile in the logarithm of the intensity."""
-
-    def unlikelihood(line: FloatArray) -> tuple[float, FloatArray]:
-        """Return the negative logarithm of the likelihood, which is convex, and its gradient."""
-        z = line[0] + line[1] * logs
-        below, above = log_ndtr(z), log_ndtr(-z)
-        bell = -0.5 * z * z - 0.5 * math.log(2.0 * math.pi)
-        growth = overturned * np.exp(bell - below) - survived * np.exp(bell - above)
-        gradient = -np.array([growth.sum(), growth @ logs])
-        return -float(overturned @ below + survived @ above), gradient
-
-    best: FloatArray = minimize(unlikelihood, [0.0, 2.0], jac=True, method="BFGS").x
-    return best
-
-
-def resampled_fits(
-    intensity: FloatArray, overturned: FloatArray, usable: FloatArray, chosen: NDArray[np.intp]
-) -> list[Fit]:
-    """Fit again to motions drawn with replacement.
+    """Fit capacities to the numbers overturned of so many cases.
 
     Parameters
     ----------
     intensity : ndarray, shape (k,)
-    overturned, usable : ndarray, shape (n, k)
-        Whether each motion overturned the block, and whether there is a result, 0 or 1.
-    chosen : ndarray, shape (r, n)
-        The motions of each sample; the same for two sources makes their difference a paired one.
+    overturned, cases : ndarray, shape (..., k)
+        Counts at each intensity.
     """
-    return [
-        fit_lognormal(intensity, overturned[rows].sum(axis=0), usable[rows].sum(axis=0))
-        for rows in chosen
-    ]
+    overturned, cases = np.broadcast_arrays(overturned, cases)
+    *shape, number = cases.shape
+    overturned, cases = overturned.reshape(-1, number), cases.reshape(-1, number)
+    survived, logs = cases - overturned, np.log(intensity)
+    all_cases, all_overturned = cases.sum(axis=-1), overturned.sum(axis=-1)
+    strongest = np.where(survived > 0, intensity, 0.0).max(axis=-1)
+    weakest = np.where(overturned > 0, intensity, math.inf).min(axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        middle = cases @ logs / all_cases
+        falls = overturned @ logs / all_overturned <= middle
+        share = ndtri(all_overturned / all_cases)
+    apart, fitted = strongest <= weakest, all_cases > 0
+    a, b = np.full((2, *fitted.shape), math.nan)
+    rises = fitted & ~apart & ~falls
+    a[rises], b[rises] = _likeliest(
+        logs - middle[rises][:, np.newaxis], overturned[rises], survived[rises]
+    )
+    with np.errstate(over="ignore", invalid="ignore"):
+        beyond = middle - a / b
+        near = np.abs(beyond - beyond.clip(logs.min(), logs.max())) <= math.log(FAR)
+        # only one of the two: 0 times inf
+        between = np.where(weakest == math.inf, math.inf, np.sqrt(strongest * weakest))
+        median = np.select([fitted & apart, rises & near], [between, np.exp(beyond)], math.nan)
+        beta = np.select([~fitted, apart, rises], [math.nan, 0.0, 1.0 / b], math.inf)
+        level = np.select([rises & ~near, fitted & ~apart & ~rises], [a - b * middle, share])
+        level = np.where(fitted & np.isnan(median), level, math.nan)
+    return Fit(*(value.reshape(shape) for value in (median, beta, level)))
 
 
-def choose(motions: int, seed: int = 0, resamples: int = RESAMPLES) -> NDArray[np.intp]:
-    """Draw the motions of each sample, the same ones for the same seed."""
-    return np.random.default_rng(seed).integers(motions, size=(resamples, motions))
+def _likeliest(
+    logs: FloatArray, overturned: FloatArray, survived: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return levels and slopes of the normal quantile in the logarithm of the intensity.
+
+    By Newton's method, all at once, each step halved until the likelihood grows: its logarithm is
+    concave.
+    """
+    line = np.zeros((len(logs), 2))
+    powers = np.stack([np.ones_like(logs), logs], axis=-1)
+    known = _likelihood(line, powers, overturned, survived)
+    for _ in range(NEWTON_STEPS):
+        z = (powers @ line[..., np.newaxis])[..., 0]
+        bell = -0.5 * z * z - 0.5 * math.log(2.0 * math.pi)
+        up, down = np.exp(bell - log_ndtr(z)), np.exp(bell - log_ndtr(-z))
+        slope = ((overturned * up - survived * down)[..., np.newaxis] * powers).sum(axis=-2)
+        bend = overturned * up * (z + up) + survived * down * (down - z)
+        curvature = np.einsum("nk,nki,nkj->nij", bend, powers, powers)
+        step = np.linalg.solve(curvature, slope[..., np.newaxis])[..., 0]
+        for _ in range(HALVINGS):
+            found = _likelihood(line + step, powers, overturned, survived)
+            less = found < known - ROUNDING * np.abs(known)
+            if not less.any():
+                break
+            step[less] *= 0.5
+        line, known = line + step, found
+        if (np.abs(step) <= CONVERGED * (1.0 + np.abs(line))).all():
+            break
+    return line[:, 0], line[:, 1]
+
+
+def _likelihood(
+    line: FloatArray, powers: FloatArray, overturned: FloatArray, survived: FloatArray
+) -> FloatArray:
+    """Return the logarithm of the likelihood of each line."""
+    z = (powers @ line[..., np.newaxis])[..., 0]
+    return np.asarray((overturned * log_ndtr(z) + survived * log_ndtr(-z)).sum(axis=-1))
+
+
+def draws_of(motions: int, resamples: int, seed: int = 0) -> FloatArray:
+    """Draw motions with replacement, the same ones for the same seed.
+
+    Returns
+    -------
+    ndarray, shape (resamples, motions)
+        How often each sample has each motion; the first samples are the same for any number.
+    """
+    evenly = np.full(motions, 1.0 / motions)
+    return np.random.default_rng(seed).multinomial(motions, evenly, size=resamples).astype(float)
 
 
 def bounds(values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -151,42 +179,43 @@ class Fragility:
     intensity : ndarray, shape (k,)
     overturned, usable : ndarray, shape (n, k)
         Whether each motion overturned the block, and whether there is a result, 0 or 1.
+    resamples : int
+        How often the motions are drawn again, whole.
     """
 
-    def __init__(self, intensity: FloatArray, overturned: FloatArray, usable: FloatArray) -> None:
+    def __init__(
+        self, intensity: FloatArray, overturned: FloatArray, usable: FloatArray, resamples: int
+    ) -> None:
         self.intensity, self.overturned, self.usable = intensity, overturned, usable
         self.fit = fit_lognormal(intensity, overturned.sum(axis=0), usable.sum(axis=0))
         # the same draw for every source, so that their ratios are of the same motions
-        chosen = choose(len(overturned))
-        self.resampled = resampled_fits(intensity, overturned, usable, chosen)
+        draws = draws_of(len(overturned), resamples)
+        self.resampled = fit_lognormal(intensity, draws @ overturned, draws @ usable)
 
     @classmethod
-    def of(cls, group: pd.DataFrame) -> "Fragility":
+    def of(cls, group: pd.DataFrame, resamples: int) -> "Fragility":
         """Return that of the rows of one block and source."""
         table = group.pivot(index="motion", columns="intensity", values="outcome")
         overturned = (table == "overturned").to_numpy(float)
         usable = (table != "failed").to_numpy(float)
-        return cls(table.columns.to_numpy(float), overturned, usable)
+        return cls(table.columns.to_numpy(float), overturned, usable, resamples)
 
     def where(self, usable: FloatArray) -> "Fragility":
         """Return that of the cases in which another source has a result too."""
         if usable.all():
             return self
-        return Fragility(self.intensity, self.overturned * usable, self.usable * usable)
-
-    def medians(self) -> FloatArray:
-        """Return the medians of the resampled fits."""
-        return np.array([fit.median for fit in self.resampled])
+        both = (self.overturned * usable, self.usable * usable)
+        return Fragility(self.intensity, *both, len(self.resampled.median))
 
 
 Fragilities = Mapping[tuple[float, float, str], Fragility]
 """Width and height of a block [m] and a source -> what is known of its overturning."""
 
 
-def fragilities(rows: pd.DataFrame) -> Fragilities:
+def fragilities(rows: pd.DataFrame, resamples: int) -> Fragilities:
     """Fit every block and source."""
     return {
-        (size["width_m"], size["height_m"], str(source)): Fragility.of(group)
+        (size["width_m"], size["height_m"], str(source)): Fragility.of(group, resamples)
         for size, block in by_block(rows)
         for source, group in block.groupby("source", sort=False)
     }

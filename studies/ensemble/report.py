@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.claims import claims, interval
+from studies.ensemble.claims import AT_EDGE, claims, interval
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
 from studies.measures.differences import scientific
 
@@ -45,7 +45,7 @@ def curves(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
     grid = np.geomspace(0.7 * least, 1.2 * most, POINTS)
     parts = []
     for (width_m, height_m, source), known in fitted.items():
-        low, high = bounds(np.array([fit.probability(grid) for fit in known.resampled]))
+        low, high = bounds(known.resampled.probability(grid))
         columns = {
             "width_m": width_m,
             "height_m": height_m,
@@ -70,7 +70,9 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
     for size, block in by_block(agreed):
         exact = block.iloc[0]
         title = f"\nBlock {size['width_m']:g} m x {size['height_m']:g} m; exact capacity "
-        parts.append(f"{title}{_interval(exact, 'capacity')} onsets, β = {exact['beta']:.3f}:")
+        parts.append(
+            f"{title}{interval(exact, 'capacity', 'capacity')} onsets, β = {exact['beta']:.3f}:"
+        )
         parts.append(_block_table(block.iloc[1:]))
         if exact["beta"] > DISORDER:
             parts.append("A stronger motion often spares the block: the fit says little here.")
@@ -84,12 +86,11 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
         "the motion does to the response itself.",
         "The two distributions are of the same motions, so that the test of Kolmogorov and Smirnov "
         "errs on the side of calling them equal; McNemar's and the capacity's ratio are paired.",
+        f"Bounds are of {agreed['resamples'].max()} samples of the motions, of which twice as many "
+        f"as before moved none by half of its last digit; {AT_EDGE}: one lies at the least or the "
+        "largest intensity, or beyond, and says no more than that.",
     ]
     return "\n".join(parts)
-
-
-def _interval(row: "pd.Series[float]", name: str, prefix: str = "capacity") -> str:
-    return interval(row[name], row[f"{prefix}_low"], row[f"{prefix}_high"])
 
 
 def _number(form: str) -> Callable[[float], str]:
@@ -110,9 +111,7 @@ def _block_table(block: pd.DataFrame) -> str:
             "KS": block["ks"].map(_number(".3f")),
             "p": block["ks_p"].map(_number(".2g")),
             "McNemar p": block["mcnemar_p"].map(_number(".2g")),
-            "capacity/exact": [
-                _interval(row, "capacity_ratio", "ratio") for _, row in block.iterrows()
-            ],
+            "capacity/exact": [interval(row) for _, row in block.iterrows()],
             "β": block["beta"].map(_number(".3f")),
         }
     )

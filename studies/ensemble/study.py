@@ -13,9 +13,8 @@ from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
 from studies.ensemble import STUDY
-from studies.ensemble.agreement import agreement, confusion
+from studies.ensemble.agreement import confusion, settled
 from studies.ensemble.claims import first_claim, verdict
-from studies.ensemble.fragility import fragilities
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -231,8 +230,8 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     rows = read_rows(folder)
-    fitted = fragilities(rows)
-    tables = (stripes(rows), curves(rows, fitted), agreement(rows, fitted), confusion(rows))
+    fitted, agreed = settled(rows)
+    tables = (stripes(rows), curves(rows, fitted), agreed, confusion(rows))
     for name, table in zip(TABLES, tables, strict=True):
         write_table(folder / name, table)
     text = findings(rows, tables[2], tables[3])

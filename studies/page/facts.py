@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Help, Stepping
+from engines.declaration import Help, Preset, Stepping
 from engines.registry import OWN
 from studies.advise.choice import random_text
 from studies.advise.study import read as read_advice
@@ -362,6 +362,23 @@ def frames_of_engines(published: Path) -> str:
 
 def _variants(published: Path) -> pd.DataFrame:
     return read_variants(published / "contact" / "variants.csv")
+
+
+def beside_own() -> str:
+    """Return which settings of "naive" are not the libraries' own, and what those would be."""
+    naive = {ENGINES[name].title: ENGINES[name].preset("naive") for name in OWN}
+    names = dict.fromkeys(name for preset in naive.values() for name in preset.own)
+    return "; ".join(_beside(name, naive) for name in names)
+
+
+def _beside(name: str, naive: Mapping[str, Preset]) -> str:
+    own = {title: preset for title, preset in naive.items() if name in preset.own}
+    (value,) = {getattr(preset.settings, name) for preset in own.values()}
+    titles: dict[Any, list[str]] = {}
+    for title, preset in own.items():
+        titles.setdefault(preset.own[name], []).append(title)
+    theirs = [f"{theirs} in {listed(group)}" for theirs, group in titles.items()]
+    return f"`{name}` is {value}, by itself {listed(theirs)}"
 
 
 def ninth(root: Path) -> str:

@@ -80,6 +80,7 @@ def pages(root: Path) -> dict[Path, str]:
         "hero": facts.hero_lines(published),
         "made": facts.made(published),
         "helps": facts.helps(published),
+        "beside_own": facts.beside_own(),
         "frames": facts.frames_of_engines(published),
         "rules": facts.rules_of_engines(published),
         "ninth": facts.ninth(root),

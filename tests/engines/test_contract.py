@@ -61,7 +61,11 @@ def test_a_declaration_is_whole(name: str) -> None:
     assert engine.presets[0].name == "naive"
     assert engine.presets[0].step_source
     assert not engine.presets[0].helped_by
-    assert type(engine.presets[0].settings)() == engine.presets[0].settings  # the library's own
+    naive, bare = engine.presets[0], type(engine.presets[0].settings)()
+    assert all(getattr(naive.settings, name) != value for name, value in naive.own.items())
+    assert replace(bare, **{name: getattr(naive.settings, name) for name in naive.own}) == (
+        naive.settings
+    )
     assert not any(preset.misses for preset in engine.presets[1:])
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)

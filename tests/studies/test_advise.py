@@ -14,12 +14,13 @@ from engines import ENGINES
 from studies.__main__ import run
 from studies.advise import study
 from studies.advise.choice import TARGETS, advice, cheapest
-from studies.advise.evidence import TABLES, declared_step, settings
+from studies.advise.evidence import TABLES, aspects, declared_step, settings
 from studies.advise.steps import worth_trying
 from studies.advise.tried import RANDOM, counted, judged, random_runs
 from studies.advise.words import literal
 from studies.cases.drawn import draw
 from studies.kit.digests import seal
+from studies.kit.journal import PROVENANCE
 from studies.measures.costs import LOOPS
 from studies.measures.published import PUBLISHED
 
@@ -98,9 +99,10 @@ def test_random_cases_with_a_small_kappa_count_at_the_very_step():
 @pytest.fixture
 def tried(tmp_path):
     """The published tables, and random cases of MuJoCo that are off at some steps."""
-    for name in TABLES:
+    for name in (*TABLES, RANDOM):
         (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_bytes((PUBLISHED / name).read_bytes())
+        for path in (Path(name), Path(name).with_name(PROVENANCE)):
+            (tmp_path / path).write_bytes((PUBLISHED / path).read_bytes())
     offs = {0.05: (2.0, 0.03), 0.02: (50.0, 0.03), 0.01: (1.0, 1e-3)}
     rows = [
         {"engine": "mujoco", "preset": "landing", "value": step, "case": case}
@@ -108,8 +110,8 @@ def tried(tmp_path):
         for step, (condition, error) in offs.items()
         for case in range(40)
     ]
-    (tmp_path / RANDOM).parent.mkdir()
     pd.DataFrame(rows).to_csv(tmp_path / RANDOM, index=False)
+    seal((tmp_path / RANDOM).parent)
     return tmp_path
 
 
@@ -297,4 +299,5 @@ def test_a_block_of_no_published_shape_is_told_so(capsys):
     assert run(asked) == 0
     assert "Its H/B" not in capsys.readouterr().out
     assert run([*asked, "--width", "2", "--height", "1"]) == 0
-    assert "Its H/B is 0.5, and that of the published cases from 1.23" in capsys.readouterr().out
+    words = f"Its H/B is 0.5, and that of the published cases from {aspects(PUBLISHED)[0]:.3g} to"
+    assert words in capsys.readouterr().out

@@ -32,7 +32,7 @@ ARGUMENTS = {
     "score": ("moreau", "--quick"),
 }
 OF_NO_ENGINE = {"linearizations"}
-OF_ENGINES_THAT_WERE_ASKED = {"symptoms", "restitution"}
+OF_ENGINES_THAT_WERE_ASKED = {"symptoms", "restitution", "steps"}
 
 
 def test_every_study_with_results_is_here():

@@ -12,15 +12,20 @@ from analytic import Outcome, Record, RigidBlock, simulate
 from studies import respond
 from studies.__main__ import run
 from studies.cases.motions import FAMILIES
-from studies.ensemble.agreement import agreement, confusion
-from studies.ensemble.claims import first_claim
+from studies.ensemble.agreement import (
+    BOUNDS,
+    DIGITS,
+    LEAST_RESAMPLES,
+    agreement,
+    confusion,
+    settled,
+)
+from studies.ensemble.claims import first_claim, interval
 from studies.ensemble.fragility import (
-    Fit,
     bounds,
-    choose,
+    draws_of,
     fit_lognormal,
     fragilities,
-    resampled_fits,
     share_bounds,
 )
 from studies.ensemble.report import curves, stripes
@@ -88,7 +93,7 @@ def test_a_fit_recovers_what_was_put_in():
 )
 def test_counts_that_hold_no_spread(overturned, median):
     fit = fit_lognormal(LEVELS, np.array(overturned, float), np.full(6, 8.0))
-    assert fit == Fit(pytest.approx(median), 0.0)
+    assert (fit.median, fit.beta) == (pytest.approx(median), 0.0)
     steps = fit.probability(np.array([1e-3, 1e3]))
     assert steps.tolist() == [float(median == 0.0), float(median < math.inf)]
 
@@ -145,7 +150,7 @@ def test_overturning_that_falls_with_the_intensity_has_no_capacity(tmp_path, cap
     arguments = ["ensemble", "--quick", "--family", "near-fault", "--sources", "housner"]
     assert run([*arguments, "--out", str(tmp_path)]) == 0
     text = capsys.readouterr().out
-    assert "exact capacity undetermined [0.000, inf] onsets" in text
+    assert "exact capacity undetermined [0.00, inf]* onsets" in text
     assert "fitted capacity over the exact one undetermined" in text
 
 
@@ -154,8 +159,8 @@ def test_bounds_hold_the_truth_as_often_as_they_say():
     hits = 0
     for seed in range(24):
         overturned = capacities(seed).astype(float)
-        fits = resampled_fits(LEVELS, overturned, np.ones((40, 6)), choose(40, resamples=40))
-        low, high = bounds(np.array([fit.median for fit in fits]))
+        draws = draws_of(40, 40)
+        low, high = bounds(fit_lognormal(LEVELS, draws @ overturned, draws.sum(1)[:, None]).median)
         hits += low <= 2.6 <= high
     assert hits >= 19
 
@@ -193,7 +198,7 @@ def made_up(change):
 
 def test_a_source_that_is_exact_agrees_in_all():
     rows = made_up(lambda peak, _: peak)
-    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    row = agreement(rows, fragilities(rows, 200)).set_index("source").loc["other"]
     assert (row["right"], row["false"], row["missed"], row["predicted"]) == (180, 0, 0, 1.0)
     assert (row["ks"], row["ks_p"], row["mcnemar_p"]) == (0.0, 1.0, 1.0)
     assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
@@ -209,7 +214,7 @@ def test_a_source_that_scatters_is_wrong_one_by_one_and_right_in_distribution():
         here = other & (rows["intensity"] == level)
         columns = ["outcome", "peak_ratio"]
         rows.loc[here, columns] = np.roll(rows.loc[here, columns].to_numpy(), 7, axis=0)
-    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    row = agreement(rows, fragilities(rows, 200)).set_index("source").loc["other"]
     assert row["predicted"] < 0.6
     assert row["median_error"] > 0.1
     assert row["ks"] == 0.0
@@ -220,7 +225,7 @@ def test_a_source_that_scatters_is_wrong_one_by_one_and_right_in_distribution():
 
 def test_a_source_that_is_biased_is_found_out():
     rows = made_up(lambda peak, _: 1.5 * peak)
-    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    row = agreement(rows, fragilities(rows, 200)).set_index("source").loc["other"]
     assert row["capacity_ratio"] == pytest.approx(1 / 1.5, abs=0.06)
     assert row["ratio_high"] < 0.9
     assert row["mcnemar_p"] < 1e-6
@@ -232,7 +237,7 @@ def test_failed_rows_count_as_failed_and_not_as_survivors():
     rows = made_up(lambda peak, _: peak)
     lost = rows.index[(rows["source"] == "other") & (rows["intensity"] == 4.0)][:5]
     rows.loc[lost, "outcome"], rows.loc[lost, "peak_ratio"] = "failed", math.nan
-    row = agreement(rows, fragilities(rows)).set_index("source").loc["other"]
+    row = agreement(rows, fragilities(rows, 200)).set_index("source").loc["other"]
     assert (row["failed"], row["right"]) == (5, 175)
     # its capacity is held against the exact one of the same 175 cases
     assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
@@ -243,9 +248,28 @@ def test_failed_rows_count_as_failed_and_not_as_survivors():
     assert table["share_high"].ge(table["share"]).all()
 
 
+def test_twice_as_many_samples_move_no_printed_bound():
+    rows = made_up(lambda peak, motion: peak * (1.1 if motion % 3 else 0.9))
+    _, agreed = settled(rows)
+    samples = agreed["resamples"].iloc[0]
+    assert samples > LEAST_RESAMPLES
+    twice = agreement(rows, fragilities(rows, 2 * samples))
+    assert np.allclose(agreed[BOUNDS], twice[BOUNDS], rtol=0.0, atol=10.0**-DIGITS)
+    assert not agreed["ratio_at_edge"].any()
+
+
+def test_a_bound_beyond_the_intensities_is_marked():
+    rows = made_up(lambda peak, _: peak)
+    few = rows[rows["intensity"] < 2.6]
+    _, agreed = settled(few)
+    assert agreed["ratio_at_edge"].all()
+    assert (agreed["capacity_high"] > 2.5).all()
+    assert interval(agreed.iloc[1]).endswith("]*")
+
+
 def test_curves_rise_between_their_bounds():
     rows = made_up(lambda peak, _: peak)
-    table = curves(rows, fragilities(rows))
+    table = curves(rows, fragilities(rows, 200))
     for _, curve in table.groupby("source"):
         assert (np.diff(curve["probability"]) >= 0).all()
         assert (curve["low"] <= curve["probability"] + 1e-9).all()
@@ -354,6 +378,7 @@ def test_whose_statistics_are_told_from_the_exact_ones(ratios, words):
         {
             **{"source": ["housner", "modified"], "width_m": 0.5, "height_m": 1.5},
             **{"capacity_ratio": ratios, "mcnemar_p": 1.0, "ks_rejected": 0},
+            "ratio_at_edge": False,
             **{"ratio_low": [r - 0.1 for r in ratios], "ratio_high": [r + 0.1 for r in ratios]},
         }
     )

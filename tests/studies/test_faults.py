@@ -43,6 +43,10 @@ def full(*_, **__):
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
+DRAWN_FROM_ANSWERS = {"histories"}
+"""Studies that draw nothing where nothing answers."""
+
+
 @pytest.mark.parametrize("name", ASKING)
 def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(Local, "__call__", never)
@@ -58,8 +62,9 @@ def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, c
     assert output.out
     if name == "histories":
         assert output.out.count("not tested: ") == 3
-    if not drawn:
-        return
+    assert bool(drawn) == (name not in DRAWN_FROM_ANSWERS)
+    if name in DRAWN_FROM_ANSWERS:
+        pytest.skip("without an answer it draws nothing")
     monkeypatch.setattr(Figure, "savefig", full)
     assert run(command_line(name, tmp_path)) == 2
     (line,) = capsys.readouterr().err.splitlines()

@@ -10,6 +10,7 @@ from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit.drafts import draft
 from studies.kit.journal import FolderError, open_journal
 from studies.kit.sealed import seal, unseal
+from studies.page.facts import FIRST
 
 IDENTITY = {"study": "test", "settings": {"seed": 1}}
 ROWS = {f"key {n}": {"outcome": "rocked", "peak_ratio": 0.1 * n, "message": "θ"} for n in range(3)}
@@ -131,7 +132,7 @@ def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study,
 
 @pytest.mark.parametrize("folder", [name for name in OF_FOLDER if (PUBLISHED / name).is_dir()])
 def test_whatever_a_study_writes_is_among_its_products(folder):
-    products = {*OF_FOLDER[folder].products, "provenance.json"}
+    products = {*OF_FOLDER[folder].products, "provenance.json", FIRST}
     # what is large is published packed
     found = {path.name.removesuffix(".gz") for path in (PUBLISHED / folder).iterdir()}
     assert found <= products

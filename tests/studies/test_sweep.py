@@ -122,7 +122,8 @@ def run_sweep_row(omega_over_p):
 
 def test_figures_are_drawn_from_the_csv_alone(swept, tmp_path):
     folder = swept[0]
-    (tmp_path / "sweep.csv").write_bytes((folder / "sweep.csv").read_bytes())
+    for name in ("sweep.csv", "provenance.json"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
     assert redraw.command(tmp_path) == 0
     drawn = sorted(tmp_path.glob("*.png"))
     assert [path.name for path in drawn] == [f"figure-{n}.png" for n in (6, 7, 8, 9)]
