@@ -59,8 +59,8 @@ SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
 PROPPED_PART = 0.5
-"""Part of alpha below which a block that nothing holds turns faster, within the time and by the
-rate of a rest, than a block at rest may."""
+"""Part of alpha below which a block that nothing holds, or shakes, turns within the time of a rest
+faster than one at rest may."""
 
 THROWN_WIDTHS = 1.0
 """A pivot higher above the base than this part of the width has been thrown off."""
@@ -125,9 +125,9 @@ class Watch(State):
         When it last came to rest, and when it last turned faster than a block at rest may [s].
     lean_side, lean_peak, lean_since : float
         Of the block at rest: to which side it leans, how far it did [rad], and since when [s].
-    hovers, loose : bool
-        Whether a skin of the contact holds it above its base, and whether it was seen to rock where
-        no corner's height shows it.
+    hovers, loose, props : bool
+        Whether a skin of the contact holds it above its base, whether it was seen to rock where no
+        corner's height shows it, and whether its contact holds it leaning.
     uplift : int
         Which event is the last uplift.
     landed : bool
@@ -178,6 +178,7 @@ class Watch(State):
     lean_since: float
     hovers: bool
     loose: bool
+    props: bool
     uplift: int
     landed: bool
     landed_s: float
@@ -260,10 +261,14 @@ def see(
     if abs(row.rate) > watch.rest_rate:
         watch.turned_at = time
     if watch.loose:
-        watch.lifted = 2.0 * reach > watch.lift and not propped(watch, row)
+        watch.lifted = 2.0 * reach > watch.lift
     else:
         higher = level + reach > watch.lift + watch.give + 2.0 * watch.hop
         watch.lifted = higher and not watch.hovers
+    watch.props = watch.lifted and props(watch, row)
+    if watch.props:
+        watch.lifted = False
+        begin_swing(watch.swing, 0.0, False)
     if watch.lifted:
         watch.hop = max(watch.hop, level - reach)
     if abs(theta) <= watch.alpha:
@@ -284,10 +289,14 @@ def see(
 
 
 @shared
-def propped(watch: Watch, row: Row) -> bool:
-    """Whether a block that has rocked leans on its contact and stays: alone it would fall back."""
-    still = row.time - watch.turned_at >= watch.rest_time
-    return watch.rocked and still and abs(row.theta) < PROPPED_PART * watch.alpha
+def props(watch: Watch, row: Row) -> bool:
+    """Say whether the contact holds a block that leans, and no longer rocks, where it is."""
+    swing, since = watch.swing, max(watch.turned_at, watch.motion_end)
+    if swing.side != 0.0 and not watch.props:
+        since = max(since, swing.first[0, TIME]) if swing.side * row.theta > 0.0 else math.inf
+    elif not watch.props:
+        return False
+    return row.time - since >= watch.rest_time and abs(row.theta) < PROPPED_PART * watch.alpha
 
 
 @shared
