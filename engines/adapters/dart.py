@@ -16,6 +16,7 @@ from engines.adapters.dart_settings import (
     IN_SPACE,
     LANDING,
     RULES,
+    SOLVERS,
     TUNED,
     DartSettings,
 )
@@ -114,6 +115,8 @@ class DartWorld:
             options = world.getDeactivationOptions()
             options.mEnabled = s.sleeping
             world.setDeactivationOptions(options)
+        if s.solver is not None:
+            solver.setBoxedLcpSolver(getattr(dart.constraint, SOLVERS[s.solver])())
         if s.split_impulse is not None and hasattr(solver, "setSplitImpulseEnabled"):
             solver.setSplitImpulseEnabled(s.split_impulse)
 
@@ -195,6 +198,7 @@ class DartWorld:
                     s.restitution,
                     top.getRestitutionCoeff() * own.getRestitutionCoeff(),
                 ),
+                "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),
                 "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
                 "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
             }

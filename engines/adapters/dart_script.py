@@ -1,6 +1,6 @@
 """A scene in DART's own words, for a script that needs the library alone."""
 
-from engines.adapters.dart_settings import IN_PLANE, IN_SPACE, DartSettings
+from engines.adapters.dart_settings import IN_PLANE, IN_SPACE, SOLVERS, DartSettings
 from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size
 from engines.scene import Scene
 from engines.script import Script
@@ -70,6 +70,9 @@ def _world(s: DartSettings) -> tuple[str, ...]:
             f"options.mEnabled = {s.sleeping}",
             "world.setDeactivationOptions(options)",
         ]
+    if s.solver is not None:
+        kind = f"dart.constraint.{SOLVERS[s.solver]}()"
+        lines += [f"world.getConstraintSolver().setBoxedLcpSolver({kind})"]
     if s.split_impulse is not None:
         lines += [f"world.getConstraintSolver().setSplitImpulseEnabled({s.split_impulse})"]
     return tuple(lines)

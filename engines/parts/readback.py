@@ -19,6 +19,8 @@ def disagreement(pairs: Mapping[str, tuple[Any, Any]], rounding: float = 2.0**-5
     """
     near = max(1e-9, ROUNDINGS * rounding)
     for name, (wanted, found) in pairs.items():
-        if wanted is not None and not math.isclose(wanted, found, rel_tol=near):
+        if wanted is None or wanted == found:
+            continue
+        if isinstance(wanted, str) or not math.isclose(wanted, found, rel_tol=near):
             return f"{name} was set to {wanted!r} but reads {found!r}"
     return ""

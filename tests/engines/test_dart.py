@@ -8,9 +8,9 @@ import pytest
 from test_landing import errors_of_sweep
 from uses import BLOCK, HERE, pulse, scene
 
-from analytic import simulate
-from analytic.response import Outcome
-from engines import run
+from analytic import RigidBlock, simulate
+from analytic.response import Outcome, Reason
+from engines import Scene, run
 from engines.drive import build
 
 pytestmark = pytest.mark.skipif("dart" not in HERE, reason="dartpy is not installed")
@@ -92,3 +92,15 @@ def test_a_release_without_an_option_has_it_off(monkeypatch: pytest.MonkeyPatch)
     asked = run("dart", scene(MOTION, preset="fixed", settings={"split_impulse": True}))
     assert asked.outcome is Outcome.FAILED
     assert "split impulse was set to True but reads False" in asked.message
+
+
+def test_friction_is_bounded_by_normal_forces_without_friction() -> None:
+    """The pulse needs a friction of 0.66, and its pivot slides away with 1: on one corner the
+    library's solver allows the friction of a normal force that it finds without friction."""
+    block = RigidBlock(width=0.5, height=1.0)
+    hard = Scene(block=block, motion=pulse(3.1, 2.0, 1, block), preset="naive")
+    assert 0.65 < simulate(block, hard.motion).friction_needed < 0.66
+    assert run("dart", hard).reason is Reason.SLID
+    for solver in ("NSGS", "FBF"):
+        held = run("dart", replace(hard, settings={"solver": solver}))
+        assert held.outcome is Outcome.OVERTURNED, held.message
