@@ -9,7 +9,7 @@ from analytic.response import Reason
 from studies.measures.differences import scientific
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
-from studies.measures.words import NAMED, each_out_of, in_kinds, listed, meant, out_of
+from studies.measures.words import NAMED, capital, each_out_of, in_kinds, listed, meant, out_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import resolve
 from studies.stability.largest_step import OWN_CONTACT
@@ -35,11 +35,9 @@ def findings(matrix: pd.DataFrame, steps: pd.DataFrame, moved: pd.DataFrame) -> 
 def first_claim(matrix: pd.DataFrame) -> str:
     """Say how many of the extreme cases each preset gets right, of how many engines and cases.
 
-    Cases beyond what the reference is valid for are in no count. Engines that have a preset with
-    which they were not asked are named, and so is who gave no answer.
+    Cases beyond what the reference is valid for are in no count.
     """
-    valid = matrix["verdict"] != Verdict.INVALID.value
-    asked = matrix[matrix["source"].map(is_engine) & valid]
+    asked = _asked(matrix)
     right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
     counts: dict[str, list[tuple[int, int]]] = {}
     for source, good in right:
@@ -50,8 +48,21 @@ def first_claim(matrix: pd.DataFrame) -> str:
     parts = [
         f"{in_words(name)} {_counted(counts[name], len(engines))}" for name in in_order(counts)
     ]
-    left = [*_not_asked(asked["source"].unique(), counts), *_no_answers(asked)]
-    return f"Of extreme cases {named} {verb} right: {'; '.join([', '.join(parts), *left])}."
+    return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
+
+
+def left_out(matrix: pd.DataFrame) -> str:
+    """Name the engines that have a preset with which they were not asked, and who had no answer."""
+    asked = _asked(matrix)
+    presets = dict.fromkeys(map(preset_of, asked["source"]))
+    words = "; ".join([*_not_asked(asked["source"].unique(), presets), *_no_answers(asked)])
+    return f"{capital(words)}. " if words else ""
+
+
+def _asked(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of engines on cases for which the reference is valid."""
+    valid = matrix["verdict"] != Verdict.INVALID.value
+    return matrix[matrix["source"].map(is_engine) & valid]
 
 
 def _counted(pairs: list[tuple[int, int]], engines: int) -> str:
@@ -98,7 +109,8 @@ def verdicts_sentence(matrix: pd.DataFrame) -> str:
     )
     return (
         "Extreme cases, outcome right and peak within 1 % or 1e-6 of θcr, counted strictly: "
-        f"{scores}. The kinds are {meant()}. {reference_sentence(matrix)}".rstrip()
+        f"{scores}. The kinds are {meant()}. "
+        f"{left_out(matrix)}{reference_sentence(matrix)}".rstrip()
     )
 
 
