@@ -136,7 +136,7 @@ class BulletWorld:
         """Say which setting was not taken, or that the step is not the one that was set."""
         engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
         return self._fault or disagreement(
-            {"fixedTimeStep": (self._held.dt, engine["fixedTimeStep"])}
+            {"fixedTimeStep": (self._held.dt or None, engine["fixedTimeStep"])}
         )
 
     def close(self) -> None:

@@ -74,7 +74,7 @@ class DartWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
-        return self._fault or disagreement({"step": (self._dt, self._world.getTimeStep())})
+        return self._fault or disagreement({"step": (self._dt or None, self._world.getTimeStep())})
 
     def close(self) -> None:
         """Release the engine's memory."""

@@ -9,6 +9,7 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic import simulate
 from analytic.block import RigidBlock
+from analytic.motion import SinePulse
 from analytic.response import Outcome
 from engines import Scene, run
 
@@ -120,3 +121,15 @@ def test_a_world_that_does_not_sleep_still_puts_a_body_to_sleep() -> None:
     ]
     assert simulate(BLOCK, motion).outcome is Outcome.OVERTURNED
     assert outcomes == [Outcome.AT_REST, Outcome.OVERTURNED]
+
+
+def test_a_block_that_its_skins_hold_leaning_is_at_rest() -> None:
+    """After a pulse of 1.01 onsets it stays 6e-6 of alpha off upright, 1e-5 of p alpha slow, for
+    ever: taken for a swing, it took all the steps there are."""
+    block = RigidBlock(width=0.5, height=1.0424795067181944)
+    motion = SinePulse(amplitude=4.752179748449666, omega=6.671202601062823, half_cycles=1)
+    posed = Scene(block=block, motion=motion, preset="fixed", max_steps=10_000)
+    response = run("box2d", posed)
+    assert response.outcome is Outcome.ROCKED, response.message
+    exact = simulate(block, motion).peak_ratio
+    assert response.peak_ratio == pytest.approx(exact, rel=1e-3)

@@ -1,6 +1,8 @@
 """What the contract promises: what is missing, what is coarse, and who chooses the steps."""
 
+import importlib
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +13,7 @@ from uses import BLOCK, HERE, every_use, pulse, scene
 
 from analytic import simulate
 from analytic.record import Record
-from analytic.response import Outcome
+from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, run
 from engines.adapters.bullet import BulletWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
@@ -81,7 +83,83 @@ def test_a_declaration_is_whole(name: str) -> None:
 def test_what_helps_can_be_left_out(engine: str, preset: str) -> None:
     """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
     for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
-        build(HERE[engine], scene(pulse(1.3, 1.0), preset=preset, settings=left_out)).close()
+        takes(engine, preset, left_out)
+
+
+def takes(engine: str, preset: str, settings: Mapping[str, Any], **options: Any) -> None:
+    """Build a scene, and go some steps: the library has refused no setting, then or before."""
+    posed = scene(pulse(1.3, 1.0), preset=preset, settings=settings, **options)
+    world = build(HERE[engine], posed)
+    assert world.fault() == "", settings
+    world.close()
+    assert run(engine, replace(posed, max_steps=20)).reason is not Reason.FAULT
+
+
+@every_use
+def test_what_a_preset_sets_is_taken(engine: str, preset: str) -> None:
+    for frame in HERE[engine].frames:
+        takes(engine, preset, {}, frame=frame)
+
+
+@pytest.mark.parametrize("engine", HERE)
+def test_what_a_variant_sets_is_taken(engine: str) -> None:
+    tried = list(variants(engine))
+    assert {variant.factor for variant in tried} >= {it.name for it in HERE[engine].factors}
+    for variant in tried:
+        takes(engine, variant.preset, variant.settings, **variant.scene)
+
+
+def _bullet(library: Any) -> dict[str, Any]:
+    client = library.connect(library.DIRECT)
+    box = library.createCollisionShape(
+        library.GEOM_BOX, halfExtents=(1, 1, 1), physicsClientId=client
+    )
+    body = library.createMultiBody(1.0, box, physicsClientId=client)
+    friction = library.getDynamicsInfo(body, -1, physicsClientId=client)[1]
+    library.disconnect(client)
+    return {"friction": friction}
+
+
+def _box2d(library: Any) -> dict[str, Any]:
+    shape = library.b2PolygonShape(box=(1, 1))
+    world = library.b2World()
+    body = world.CreateDynamicBody(fixtures=library.b2FixtureDef(shape=shape))
+    return {"friction": body.fixtures[0].friction, "sleeping": body.sleepingAllowed}
+
+
+def _rapier(library: Any) -> dict[str, Any]:
+    box = library.Collider.cuboid(1.0, 1.0, 1.0)
+    world = library.PhysicsWorld()
+    body = world.rigid_bodies[world.add_body(library.RigidBody.dynamic(), [box])]
+    collider = world.colliders[body.colliders[0]]
+    for _ in range(120):  # it lies nowhere, and nothing pulls
+        world.step()
+    return {"friction": collider.friction, "sleeping": body.is_sleeping}
+
+
+def _drake(library: Any) -> dict[str, Any]:
+    config = importlib.import_module("pydrake.geometry").SceneGraphConfig()
+    return {"friction": config.default_proximity_properties.dynamic_friction}
+
+
+def _pymunk(library: Any) -> dict[str, Any]:
+    return {"friction": library.Poly.create_box(library.Body(1.0, 1.0)).friction}
+
+
+BARE = {
+    "pybullet": _bullet,
+    "box2d": _box2d,
+    "rapier": _rapier,
+    "drake": _drake,
+    "pymunk": _pymunk,
+}
+"""What each library makes of a box of which nothing is said."""
+
+
+@pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
+def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) -> None:
+    found = BARE[engine](importlib.import_module(HERE[engine].library))
+    assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
 
 
 def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
