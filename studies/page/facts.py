@@ -11,7 +11,6 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Help, Preset, Stepping
 from engines.registry import OWN
-from studies.advise.choice import random_text
 from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
@@ -30,6 +29,7 @@ from studies.measures.words import (
     duration,
     in_kinds,
     listed,
+    out_of,
     part,
     per_cent,
     right_of,
@@ -200,7 +200,8 @@ def _advice(line: "pd.Series[Any] | None") -> tuple[str, str]:
     if line is None:
         return "nothing does", "–"
     at = setting_text(line)
-    off = random_text(line)
+    # what is advised has none off whose κ is small: the line above the table says so
+    off = f"{out_of(line['random_off'], line['random_cases'])} off" if line["random_cases"] else ""
     return (f"{at}; {off}" if off else at), cost_text(line["wall_s"], line["runs"])
 
 

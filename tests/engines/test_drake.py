@@ -152,3 +152,14 @@ def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(DrakeWorld, "_properties", forgetful)
     assert rocked("fixed").message == "friction was set to 1.3 but reads 0.5"
+
+
+def test_a_box_turns_out_of_the_plane_about_its_one_contact() -> None:
+    """Its deepest corner alone holds it: what is seen in the plane is a pivot that slides away,
+    whatever the friction. Spheres at four corners hold it, and so does a joint in the plane."""
+    hard = Scene(block=BLOCK, motion=pulse(7.0, 6.0, 2), preset="naive")
+    assert simulate(BLOCK, hard.motion).friction_needed < 0.7
+    for friction in (1.0, 10.0):
+        assert run("drake", replace(hard, settings={"friction": friction})).reason is Reason.SLID
+    for settings in ({"planar": True}, {"geometry": "corners"}):
+        assert run("drake", replace(hard, settings=settings)).slip_m < 2e-3
