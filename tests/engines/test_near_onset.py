@@ -15,7 +15,7 @@ from engines import Scene, run
 from engines.declaration import Stepping
 
 MISSED = {
-    "naive": (0.1, 0.5),
+    "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
     Stepping.FIXED: (5e-3, 0.1),
     Stepping.OWN: (5e-4, 2e-2),
     Stepping.LANDING: (5e-4, 1e-3),
@@ -26,6 +26,7 @@ MOST = 40_000
 FEW = settings(
     max_examples=6,
     deadline=None,
+    derandomize=True,
     phases=[Phase.generate],  # to shrink a failure would take as long as all the rest
     suppress_health_check=[HealthCheck.differing_executors],
 )
