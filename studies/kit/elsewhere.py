@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from engines import ENGINES
+from studies.kit.identity import Makers, changed, why
 from studies.kit.jobs import Job
 from studies.kit.journal import (
     FORMAT,
@@ -12,12 +13,14 @@ from studies.kit.journal import (
     PROVENANCE,
     FolderError,
     Journal,
+    Kept,
     Row,
     belongs_to,
     differences,
     rows_in,
 )
-from studies.kit.provenance import NOT_INSTALLED, record_of
+from studies.kit.provenance import record_of
+from studies.kit.streams import say
 from studies.sources.registry import resolve
 
 OPTION = "--also"
@@ -30,22 +33,19 @@ class Elsewhere(NamedTuple):
     Attributes
     ----------
     folder : Path
-    rows : mapping
-        By the keys of their jobs, failures among them.
-    engines : mapping
-        Package of an engine -> its version there.
+    kept : Kept
+        Its rows, failures among them, and what made them.
     made : mapping
         What its provenance says of commit and machine.
     """
 
     folder: Path
-    rows: Mapping[str, Row]
-    engines: Mapping[str, str]
+    kept: Kept
     made: Row
 
 
-def read(folder: Path, identity: Mapping[str, Any]) -> Elsewhere:
-    """Read results of what an identity names; versions of engines may differ.
+def read(folder: Path, subject: Mapping[str, Any]) -> Elsewhere:
+    """Read results of a study with certain settings.
 
     Raises
     ------
@@ -58,34 +58,32 @@ def read(folder: Path, identity: Mapping[str, Any]) -> Elsewhere:
         raise FolderError(folder, problem, OPTION)  # on a pipe a run would hang
     try:
         found = belongs_to(path)
-        engines = dict(found["engines"])
-        expected = {"journal": FORMAT, **identity, "engines": engines}
+        expected = {"journal": FORMAT, **subject}
         if found != expected:
-            words = "it must hold results of the same version and settings"
+            words = "it must hold results of the same study and settings"
             raise FolderError(folder, f"{words} ({differences(found, expected)})")
         record = record_of(folder)
         made = {name: record[name] for name in ("git", "machine")}
-        return Elsewhere(folder, rows_in(folder, path.read_bytes()), engines, made)
+        return Elsewhere(folder, rows_in(folder, path.read_bytes()), made)
     except FolderError as error:
         raise FolderError(folder, error.problem, OPTION) from error
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise FolderError(folder, problem, OPTION) from error
 
 
-def take(
-    other: Elsewhere, jobs: Sequence[Job], journal: Journal, here: Mapping[str, str]
-) -> dict[str, Any]:
-    """Copy into a journal the rows of its jobs that it has not yet.
+def take(other: Elsewhere, jobs: Sequence[Job], journal: Journal, makers: Makers) -> dict[str, Any]:
+    """Copy into a journal the rows of its jobs that it has not yet and that would be made so here.
 
-    A failure is taken only where its engine is not installed; else it is tried again.
+    A failure is taken only where its engine is not installed; else it is tried again. How many
+    rows are left, since they would be made otherwise here, is said on stderr.
 
     Parameters
     ----------
     other : Elsewhere
     jobs : sequence of Job
     journal : Journal
-    here : mapping
-        Package of an engine -> its version here.
+    makers : Makers
+        What makes the rows of the jobs here.
 
     Returns
     -------
@@ -96,29 +94,32 @@ def take(
     Raises
     ------
     FolderError
-        If there is no row of the jobs, or one of an engine that is installed in another version.
+        If there is no row of the jobs, or none that would be made so here.
     """
-    by_key = {job.key: job for job in jobs}
-    asked = [key for key in by_key if key in other.rows]
+    entries, made_by = other.kept
+    asked = {key: job for job in jobs if (key := job.key) in entries}
     if not asked:
         raise FolderError(other.folder, "it holds no row of what is asked for", OPTION)
-    if not all(by_key[key].has_made(other.rows[key]) for key in asked):
+    if not all(job.has_made(entries[key].row) for key, job in asked.items()):
         raise FolderError(other.folder, f"its {JOURNAL} has a row of something else", OPTION)
-    lacking = {key: other.rows[key] for key in asked if key not in journal.rows}
-    found = {key: row for key, row in lacking.items() if _is_wanted(row)}
-    engines = {resolve(row["source"]).engine for row in found.values()} - {""}
-    packages = [name for engine in sorted(engines) for name in ENGINES[engine].packages]
-    versions = {name: other.engines[name] for name in packages}
-    others = [
-        f"{name} {version}, and {here[name]} is installed"
-        for name, version in versions.items()
-        if here[name] not in (version, NOT_INSTALLED)
-    ]
-    if others:
-        raise FolderError(other.folder, f"it holds results of {'; '.join(others)}", OPTION)
-    for key, row in found.items():
-        journal.append(key, row)
-    return {**other.made, "engines": versions, "rows": len(found)}
+    versions: dict[str, str] = {}
+    stale, taken = [], 0
+    for key, job in asked.items():
+        row, then, now = entries[key].row, made_by[entries[key].made], makers.of(job)
+        known = key in journal.entries and not changed(journal.maker_of(key), now)
+        if changed(then, now):
+            stale.append((job.source, then, now))
+        elif not known and _is_wanted(row):
+            journal.append(key, row, then)
+            taken += 1
+            engine = resolve(job.source).engine
+            packages = ENGINES[engine].packages if engine else ()
+            versions |= {name: then[name] for name in packages}
+    if len(stale) == len(asked):
+        raise FolderError(other.folder, f"all its rows are stale ({why(stale)})", OPTION)
+    if stale:
+        say(f"not taken from {str(other.folder)!r}: {why(stale)}")
+    return {**other.made, "engines": versions, "rows": taken}
 
 
 def _is_wanted(row: Row) -> bool:

@@ -1,175 +1,350 @@
-"""Which code makes a study's rows: found by its imports, and hashed without comments.
+"""Which code makes something: found by following names, and hashed without comments.
 
-A row depends on every module that its study's own module imports, directly or by way of others, at
-the top or inside functions. Two kinds are left out: modules that draw, which are known by importing
-matplotlib, and what is imported only to read finished tables (`READERS`). All else counts, whether
-or not a row comes of it: a row too many is computed again rather than one kept too long.
+A function depends on its own definition and on every one that it mentions, directly or by way of
+others, in whichever module it stands and by whatever way it is imported. Statements that bind no
+name run when their module is imported, and count with all that is taken from it. Annotations are
+not followed, nor is text; what a name means only at run time is declared (`studies.kit.identity`).
 """
 
 import ast
 import hashlib
-import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from functools import cache
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[__name__.count(".")]
 """The folder of the packages, wherever in them this module stands."""
 
 PACKAGES = ("analytic", "engines", "studies")
-EVERY_STUDY = PACKAGES[-1] + "."
-"""What `fingerprint` takes for all studies at once."""
 
-READERS = frozenset({"headline", "paragraph", "pictures", "report"})
-"""Functions of a study that read the tables of a finished folder."""
-
-_NAME = re.compile(rf"(?:{'|'.join(PACKAGES)})(?:\.\w+)*")
-"""Text that may be the name of a module, by which something else imports it."""
+Name = tuple[str, str]
+"""A module and what is defined at its top level; all of it where that is empty."""
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
-    """What a module consists of.
+@dataclass(slots=True)
+class Piece:
+    """A statement at the top level of a module.
 
     Attributes
     ----------
     digest : str
-        Of its statements, without comments, docstrings, layout and what is for type checkers.
-    imports : frozenset of str
-        The modules that it imports or names; one that ends in a dot stands for all inside.
-    draws : bool
-        Whether importing it imports matplotlib.
+        Of the statement, without comments, docstrings, layout and annotations of functions.
+    uses : set of str
+        Names that it mentions, with their attributes, as in "np.pi".
+    links : dict
+        What it imports itself, as in `Module`.
     """
 
-    digest: str
-    imports: frozenset[str]
-    draws: bool
+    digest: str = ""
+    uses: set[str] = field(default_factory=set)
+    links: dict[str, Name] = field(default_factory=dict)
 
 
-def fingerprint(module: str, root: Path = ROOT) -> str:
-    """Return a hash of the code that makes the rows of a study.
+@dataclass(slots=True)
+class Module:
+    """What a module consists of.
+
+    Attributes
+    ----------
+    pieces : dict
+        Name -> the statements that define it; "" -> those that bind no name.
+    links : dict
+        Name -> the module that it was imported from and its name there, "" for a whole module.
+    """
+
+    pieces: dict[str, list[Piece]] = field(default_factory=dict)
+    links: dict[str, Name] = field(default_factory=dict)
+
+
+def name_of(something: Callable[..., Any]) -> Name:
+    """Return the definition that a function, a class or a part of either stands in."""
+    while isinstance(something, partial):
+        something = something.func
+    whole = getattr(something, "py_func", something)
+    return whole.__module__, whole.__qualname__.partition(".")[0]
+
+
+def reached(names: Iterable[Name], root: Path = ROOT, *, cut: Collection[Name] = ()) -> "Reached":
+    """Return the code that some definitions depend on, their own among it.
 
     Parameters
     ----------
-    module : str
-        The study's own.
+    names : iterable of (str, str)
+        As `name_of` returns them. A package of another project that one of them stands in is
+        followed, too, from where it was imported.
     root : Path, optional
         The folder of the packages.
+    cut : collection of (str, str), optional
+        Definitions that are not followed, nor counted.
     """
-    digest = hashlib.sha256()
-    for name, code in sorted(reached(module, root).items()):
-        digest.update(f"{name} {code.digest}\n".encode())
-    return digest.hexdigest()[:12]
-
-
-def reached(module: str, root: Path = ROOT) -> dict[str, Code]:
-    """Return the modules that the rows of a study depend on, by name, its own among them."""
-    found: dict[str, Code] = {}
-    looked_for: set[str] = set()
-    pending = [module]
-    while pending:
-        for name in _with_parents(pending.pop(), root):
-            if name in looked_for:
-                continue
-            looked_for.add(name)
-            if (path := _file(name, root)) is None:
-                continue
-            code = read(name, path)
-            if name == module or not code.draws:
-                found[name] = code
-                pending += code.imports
+    names = list(names)
+    found = Reached(root, {module.partition(".")[0] for module, _ in names}, cut)
+    for name in names:
+        found.take(*name)
     return found
 
 
-def _with_parents(name: str, root: Path) -> Iterator[str]:
-    """Yield a module and the packages around it, whose code runs before; or all inside of one."""
-    if name.endswith("."):
-        inside = root.joinpath(*name[:-1].split("."))
-        for path in inside.rglob("*.py"):
-            yield ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
-    parts = name.strip(".").split(".")
-    yield from (".".join(parts[:count]) for count in range(len(parts), 0, -1))
+def everything(root: Path = ROOT) -> str:
+    """Return a hash of all code of the packages."""
+    digest = hashlib.sha256()
+    for package in PACKAGES:
+        for path in sorted((root / package).rglob("*.py")):
+            pieces = read(_dotted(path, root), path).pieces
+            whole = [piece.digest for name in sorted(pieces) for piece in pieces[name]]
+            digest.update(f"{path.relative_to(root)} {whole}\n".encode())
+    return digest.hexdigest()[:12]
 
 
-def _file(name: str, root: Path) -> Path | None:
+class Reached:
+    """Definitions that were reached so far, and those that they mention.
+
+    Parameters
+    ----------
+    root : Path
+        The folder of the packages.
+    further : collection of str
+        Packages that are followed besides.
+    cut : collection of (str, str)
+        Definitions that are left out.
+
+    Attributes
+    ----------
+    names : set of (str, str)
+    """
+
+    def __init__(self, root: Path, further: Collection[str], cut: Collection[Name]) -> None:
+        self.names: set[Name] = set()
+        self._root = root
+        self._further = frozenset(further)
+        self._cut = frozenset(cut)
+        self._pending: list[Name] = []
+
+    def take(self, module: str, name: str) -> None:
+        """Take in a definition and all that it depends on."""
+        self._reach(module, [name] if name else [])
+        while self._pending:
+            module, name = self._pending.pop()
+            known = self._module(module)
+            for piece in known.pieces.get(name, ()) if known else ():
+                for use in piece.uses:
+                    first, *rest = use.split(".")
+                    link = piece.links.get(first)
+                    if link:
+                        self._follow(link, rest)
+                    else:
+                        self._reach(module, [first])
+                        self._through(module, first, rest)
+                for link in piece.links.values():
+                    self._follow(link, [])
+
+    def digests(self) -> dict[str, str]:
+        """Return the file of each module that was reached -> a hash of what of it was."""
+        parts: dict[str, list[str]] = {}
+        for module, name in sorted(self.names):
+            known = self._module(module)
+            if known and name in known.pieces:
+                lines = [f"{name} {piece.digest}" for piece in known.pieces[name]]
+                parts.setdefault(module, []).extend(lines)
+        return {
+            self._shown(module): hashlib.sha256("\n".join(lines).encode()).hexdigest()[:12]
+            for module, lines in parts.items()
+        }
+
+    def _through(self, module: str, name: str, rest: list[str]) -> None:
+        """Follow the attributes of a name that a module imported."""
+        known = self._module(module)
+        if rest and known and name in known.links:
+            self._follow(known.links[name], rest)
+
+    def _follow(self, link: Name, rest: list[str]) -> None:
+        """Follow what was imported, and its attributes as far as they lead to modules."""
+        module, name = link
+        path = [name, *rest] if name else rest
+        while path and not self._binds(module, path[0]) and self._file(f"{module}.{path[0]}"):
+            module, path = f"{module}.{path[0]}", path[1:]
+        if path:
+            self._reach(module, path[:1])
+            self._through(module, path[0], path[1:])
+
+    def _binds(self, module: str, name: str) -> bool:
+        """Return whether a module itself has a name, which then is not one inside its package."""
+        known = self._module(module)
+        return known is not None and (name in known.pieces or name in known.links)
+
+    def _reach(self, module: str, names: list[str]) -> None:
+        """Reach a definition by a name in a module, or, without one, all of the module's."""
+        known = self._module(module)
+        if known is None:
+            return
+        for name in names or known.pieces:
+            if (module, name) in self._cut or (module, name) in self.names:
+                continue
+            if name in known.pieces:
+                self.names.add((module, name))
+                self._pending.append((module, name))
+                self._import(module)
+            elif name in known.links:
+                self.names.add((module, name))
+                self._import(module)
+                self._follow(known.links[name], [])
+
+    def _import(self, module: str) -> None:
+        """Count what runs when a module is imported, and the packages around it."""
+        parts = module.split(".")
+        for count in range(len(parts), 0, -1):
+            around = (".".join(parts[:count]), "")
+            if around not in self.names:
+                self.names.add(around)
+                self._pending.append(around)
+
+    def _module(self, name: str) -> Module | None:
+        path = self._file(name)
+        return None if path is None else read(name, path)
+
+    def _file(self, name: str) -> Path | None:
+        """Return the source of a module that is followed."""
+        package = name.partition(".")[0]
+        if package in PACKAGES:
+            return _inside(name, self._root)
+        loaded = getattr(sys.modules.get(name), "__file__", None)
+        path = Path(loaded) if loaded and package in self._further else None
+        return path if path and path.suffix == ".py" else None
+
+    def _shown(self, module: str) -> str:
+        path = self._file(module)
+        inside = path and path.is_relative_to(self._root)
+        return path.relative_to(self._root).as_posix() if path and inside else module
+
+
+def _dotted(path: Path, root: Path) -> str:
+    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
+
+
+@cache
+def _inside(name: str, root: Path) -> Path | None:
     place = root.joinpath(*name.split("."))
     files = (place.with_name(f"{place.name}.py"), place / "__init__.py")
     return next((path for path in files if path.is_file()), None)
 
 
 @cache
-def read(name: str, path: Path) -> Code:
-    """Return the code of a module."""
-    reading = _Reading(name if path.name == "__init__.py" else name.rpartition(".")[0])
-    reading.see(ast.parse(path.read_bytes()))
-    digest = hashlib.sha256("\n".join(reading.shape).encode()).hexdigest()
-    return Code(digest, frozenset(reading.imports), reading.draws)
+def read(name: str, path: Path) -> Module:
+    """Return the definitions of a module."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = Module()
+    for statement in ast.parse(path.read_bytes()).body:
+        _take_in(statement, package, found)
+    return found
+
+
+def _take_in(statement: ast.stmt, package: str, found: Module) -> None:
+    if _is_comment(statement):
+        return
+    if isinstance(statement, ast.If) and _is_for_type_checkers(statement.test):
+        for inside in statement.orelse:
+            _take_in(inside, package, found)
+        return
+    if isinstance(statement, ast.Import | ast.ImportFrom):
+        found.links |= _links(statement, package)
+        return
+    piece = _Reading(package).read(statement)
+    for name in set(_bound(statement, found)) or {""}:
+        found.pieces.setdefault(name, []).append(piece)
+    if not isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        found.links |= piece.links
+
+
+def _bound(statement: ast.AST, found: Module) -> Iterator[str]:
+    """Yield the names that a statement defines, or adds to."""
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield statement.name
+        # as `@shown.register` adds to `shown`
+        for decorator in statement.decorator_list:
+            adding = decorator.func if isinstance(decorator, ast.Call) else decorator
+            owner = adding.value if isinstance(adding, ast.Attribute) else None
+            if isinstance(owner, ast.Name) and owner.id in found.pieces:
+                yield owner.id
+    elif isinstance(statement, ast.Name) and isinstance(statement.ctx, ast.Store):
+        yield statement.id
+    elif not isinstance(statement, ast.comprehension | ast.Lambda):
+        for inside in ast.iter_child_nodes(statement):
+            yield from _bound(inside, found)
+
+
+def _links(node: ast.Import | ast.ImportFrom, package: str) -> dict[str, Name]:
+    """Return what an import binds."""
+    if isinstance(node, ast.Import):
+        return {
+            alias.asname or alias.name.partition(".")[0]: (
+                (alias.name if alias.asname else alias.name.partition(".")[0]),
+                "",
+            )
+            for alias in node.names
+        }
+    base = node.module or ""
+    if node.level:
+        parts = package.split(".")
+        kept = parts[: len(parts) - node.level + 1]
+        base = ".".join([*kept, *filter(None, [node.module])])
+    return {alias.asname or alias.name: (base, alias.name) for alias in node.names}
 
 
 class _Reading:
-    """One pass over a module's syntax tree."""
+    """One pass over a statement's syntax tree."""
 
     def __init__(self, package: str) -> None:
-        self.package = package
-        self.shape: list[str] = []
-        self.imports: set[str] = set()
-        self.draws = False
-        self._functions = 0
+        self._package = package
+        self._shape: list[str] = []
+        self._piece = Piece()
 
-    def see(self, node: ast.AST) -> None:
-        """Take in a node and all below it."""
+    def read(self, statement: ast.stmt) -> Piece:
+        """Return what a statement consists of."""
+        self._see(statement)
+        digest = hashlib.sha256("\n".join(self._shape).encode()).hexdigest()
+        self._piece.digest = digest[:16]
+        return self._piece
+
+    def _see(self, node: ast.AST) -> None:
         if _is_comment(node):
             return
         if isinstance(node, ast.If) and _is_for_type_checkers(node.test):
             self._see_all(node.orelse)
             return
         if isinstance(node, ast.Import | ast.ImportFrom):
-            self._import(node)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            self._word(node.value)
-        inside = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        self._functions += inside
-        self.shape.append(type(node).__name__)
-        for field in node._fields:
-            self._see_field(getattr(node, field, None))
-        self._functions -= inside
+            self._piece.links |= _links(node, self._package)
+        elif isinstance(node, ast.Name | ast.Attribute) and (chain := _chain(node)):
+            self._piece.uses.add(chain)
+        self._shape.append(type(node).__name__)
+        for name in node._fields:
+            if name not in ("annotation", "returns"):
+                self._see_field(getattr(node, name, None))
 
     def _see_field(self, value: object) -> None:
         if isinstance(value, ast.AST):
-            self.see(value)
+            self._see(value)
         elif isinstance(value, list):
-            self.shape.append("[")
+            self._shape.append("[")
             self._see_all(value)
-            self.shape.append("]")
+            self._shape.append("]")
         else:
-            self.shape.append(repr(value))
+            self._shape.append(repr(value))
 
     def _see_all(self, values: Iterable[object]) -> None:
         for value in values:
             self._see_field(value)
 
-    def _import(self, node: ast.Import | ast.ImportFrom) -> None:
-        names = [alias.name for alias in node.names]
-        if isinstance(node, ast.ImportFrom):
-            if READERS.issuperset(names):
-                return
-            base = self._base(node)
-            names = [base, *(f"{base}.{name}" for name in names)]
-        self.imports.update(names)
-        self.draws |= not self._functions and names[0].partition(".")[0] == "matplotlib"
 
-    def _base(self, node: ast.ImportFrom) -> str:
-        if not node.level:
-            return node.module or ""
-        parts = self.package.split(".")
-        return ".".join([*parts[: len(parts) - node.level + 1], *filter(None, [node.module])])
-
-    def _word(self, text: str) -> None:
-        """Follow text that names a module, one with a member, or the beginning of some."""
-        name = text.partition(":")[0]
-        if "." in name and _NAME.fullmatch(name.removesuffix(".")):
-            self.imports.add(name)
+def _chain(node: ast.Name | ast.Attribute) -> str:
+    """Return a name with its attributes; an empty string if it begins with something else."""
+    parts: list[str] = []
+    inner: ast.expr = node
+    while isinstance(inner, ast.Attribute):
+        parts.append(inner.attr)
+        inner = inner.value
+    return ".".join([inner.id, *reversed(parts)]) if isinstance(inner, ast.Name) else ""
 
 
 def _is_comment(node: ast.AST) -> bool:

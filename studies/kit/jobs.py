@@ -59,8 +59,8 @@ class Job:
     def key(self) -> str:
         """The identity of the job: everything that its result depends on."""
         preset = resolve(self.source).preset
-        parts = [_plain(self), type(self.motion).__name__, preset]
-        text = json.dumps(parts, default=_plain, sort_keys=True)
+        parts = [plain(self), type(self.motion).__name__, preset]
+        text = json.dumps(parts, default=plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
     def has_made(self, row: Row) -> bool:
@@ -77,7 +77,8 @@ class Job:
         return source.kind == "engine" or long
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return a part of what is hashed as JSON knows it; TypeError if it cannot be told apart."""
     if is_dataclass(value) and not isinstance(value, type):
         # one level: what is inside comes here again
         return {part.name: getattr(value, part.name) for part in fields(value)}
@@ -85,7 +86,7 @@ def _plain(value: Any) -> Any:
         return [str(value.dtype), value.shape, hashlib.sha256(value.tobytes()).hexdigest()]
     if isinstance(value, Mapping):
         return dict(value)
-    raise TypeError(f"{value!r} cannot be part of a job's identity")
+    raise TypeError(f"{value!r} cannot be part of an identity")
 
 
 def short(job: Job) -> Job:

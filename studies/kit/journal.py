@@ -1,20 +1,24 @@
 """A results folder: who may write to it, what it belongs to, and the rows finished so far."""
 
 import fcntl
+import hashlib
 import json
 import os
 import stat
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from studies.kit.sealed import seal, unseal
 
 Row = dict[str, Any]
 """One line of a table."""
 
-FORMAT = 2
+Maker = Mapping[str, str]
+"""What made a row: the name of each thing that it depends on -> its version, or a hash of it."""
+
+FORMAT = 3
 """Version of the journal's own format."""
 
 JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
@@ -29,21 +33,37 @@ class FolderError(Exception):
         self.problem = problem
 
 
+class Entry(NamedTuple):
+    """A finished row, and the name of what made it."""
+
+    row: Row
+    made: str
+
+
+class Kept(NamedTuple):
+    """What a journal holds: entries by the keys of their jobs, what made them by its name."""
+
+    entries: dict[str, Entry]
+    makers: dict[str, Maker]
+
+
 class Journal:
     """Rows on disk, appended one at a time; a line that was not completed does not count.
 
-    The first line is the identity of the study: whatever changes the meaning of its rows. Every
-    other line is one finished job, `{"crc": ..., "key": ..., "row": {...}}`, crc its checksum.
-    Failures are written down but not remembered, so that a rerun tries them again.
+    The first line says of which study and settings the rows are. Every other line is one finished
+    job, `{"crc": ..., "key": ..., "made": ..., "row": {...}}`, crc its checksum, or what made
+    those that follow and name it, `{"crc": ..., "made": ..., "of": {...}}`. Of rows with the same
+    key the last one counts. Failures are written down but not remembered, so that a rerun tries
+    them again.
     """
 
-    def __init__(self, path: Path, rows: dict[str, Row]) -> None:
-        self.rows = rows
+    def __init__(self, path: Path, kept: Kept) -> None:
+        self.entries, self._makers = kept
         self._path = path
         self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW)
 
-    def append(self, key: str, row: Row) -> None:
-        """Store one finished row, at once and in one piece.
+    def append(self, key: str, row: Row, maker: Maker) -> None:
+        """Store one finished row and what made it, at once and in one piece.
 
         Raises
         ------
@@ -51,8 +71,16 @@ class Journal:
             If the folder is no longer there.
         """
         self.check()
-        _write(self._descriptor, {"key": key, "row": row})
-        self.rows[key] = row
+        made = named(maker)
+        if made not in self._makers:
+            _write(self._descriptor, {"made": made, "of": dict(maker)})
+            self._makers[made] = maker
+        _write(self._descriptor, {"key": key, "made": made, "row": row})
+        self.entries[key] = Entry(row, made)
+
+    def maker_of(self, key: str) -> Maker:
+        """Return what made the row of a key; KeyError if there is none."""
+        return self._makers[self.entries[key].made]
 
     def check(self) -> None:
         """Raise FolderError if the folder, or the journal in it, is no longer there."""
@@ -86,7 +114,7 @@ def open_journal(
     folder : Path
         Created if needed.
     identity : mapping
-        Must equal the one that the folder was made with.
+        Study and settings; must equal those that the folder was made with.
     products : sequence of str
         Names of the files that the study writes; where one of them lies in a folder without a
         journal, it is somebody else's.
@@ -158,18 +186,19 @@ def _begin(path: Path, header: Mapping[str, Any]) -> None:
         os.close(start)
 
 
-def _finished(path: Path, header: Mapping[str, Any]) -> dict[str, Row]:
+def _finished(path: Path, header: Mapping[str, Any]) -> Kept:
     """Read the finished rows, and cut off a last line that a killed run left incomplete."""
     found = belongs_to(path)
     if found != header:
-        words = "it must be new, or hold results of the same version and settings"
+        words = "it must be new, or hold results of the same study and settings"
         raise FolderError(path.parent, f"{words} ({differences(found, header)})")
     content = path.read_bytes()
-    rows = rows_in(path.parent, content)
+    entries, makers = rows_in(path.parent, content)
     whole = content.rfind(b"\n") + 1
     if whole < len(content):
         os.truncate(path, whole)
-    return {key: row for key, row in rows.items() if row["outcome"] != "failed"}
+    good = {key: entry for key, entry in entries.items() if entry.row["outcome"] != "failed"}
+    return Kept(good, makers)
 
 
 def belongs_to(path: Path) -> Row:
@@ -191,20 +220,35 @@ def belongs_to(path: Path) -> Row:
     return _entry(path.parent, 1, line) if "crc" in found else found
 
 
-def rows_in(folder: Path, content: bytes) -> dict[str, Row]:
-    """Return the rows of a folder's journal by their keys, failures among them.
+def rows_in(folder: Path, content: bytes) -> Kept:
+    """Return what a folder's journal holds, failures among it.
 
     Raises
     ------
     FolderError
         If one that was completed is damaged.
     """
-    rows: dict[str, Row] = {}
+    entries: dict[str, Entry] = {}
+    makers: dict[str, Maker] = {}
     for number, line in enumerate(content.split(b"\n")[1:-1], start=2):
-        key, row = _row(folder, number, line)
-        rows.pop(key, None)
-        rows[key] = row
-    return rows
+        found = _entry(folder, number, line)
+        made, of = found.get("made"), found.get("of")
+        if isinstance(of, dict) and made == named(of):
+            makers[made] = of
+            continue
+        key, row = found.get("key"), found.get("row")
+        if not isinstance(key, str) or made not in makers:
+            raise _damage(folder, number)
+        if not isinstance(row, dict) or "outcome" not in row:
+            raise _damage(folder, number)
+        entries.pop(key, None)
+        entries[key] = Entry(row, made)
+    return Kept(entries, makers)
+
+
+def named(maker: Maker) -> str:
+    """Return by what a journal knows what made some of its rows."""
+    return hashlib.sha256(json.dumps(dict(maker), sort_keys=True).encode()).hexdigest()[:12]
 
 
 def differences(found: Mapping[str, Any], here: Mapping[str, Any]) -> str:
@@ -226,14 +270,6 @@ def _leaves(values: Mapping[str, Any], prefix: str = "") -> Row:
         else:
             leaves[prefix + name] = value
     return leaves
-
-
-def _row(folder: Path, number: int, line: bytes) -> tuple[str, Row]:
-    entry = _entry(folder, number, line)
-    key, row = entry.get("key"), entry.get("row")
-    if not isinstance(key, str) or not isinstance(row, dict) or "outcome" not in row:
-        raise _damage(folder, number)
-    return key, row
 
 
 def _entry(folder: Path, number: int, line: bytes) -> Row:

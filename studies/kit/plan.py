@@ -14,6 +14,7 @@ from analytic.response import Response
 from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.digests import seal
+from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Row, open_journal
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -89,34 +90,36 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     Raises
     ------
     FolderError
-        If a folder cannot be used: results of another version or of other settings are refused.
+        If a folder cannot be used: results of another study or of other settings are refused.
     """
     executor = running.executor(plan.ask)
     began = time.perf_counter()
-    identity = provenance.identity(study.name, study.module, **plan.settings)
-    others = [elsewhere.read(folder, identity) for folder in running.also or ()]
-    with open_journal(out, identity, study.products) as journal:
-        _refuse_a_part(out, journal.rows.values(), plan.growing)
+    subject = provenance.subject(study.name, **plan.settings)
+    others = [elsewhere.read(folder, subject) for folder in running.also or ()]
+    with open_journal(out, subject, study.products) as journal:
+        _refuse_a_part(out, [entry.row for entry in journal.entries.values()], plan.growing)
         path = out / PROVENANCE
         asked = {column: _short(values) for column, values in plan.growing.items()}
-        record = provenance.begin(path, identity, asked)
+        record = provenance.begin(path, subject, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
-        taken = [elsewhere.take(other, jobs, journal, identity["engines"]) for other in others]
-        known = len(journal.rows)
+        makers = Makers(plan.ask, plan.reduce)
+        taken = [elsewhere.take(other, jobs, journal, makers) for other in others]
+        answered: list[Job] = []
         with _going_on(journal, out, len(jobs)):
             drivers: dict[str, set[str]] = {}
 
             def reduce(job: Job, response: Response) -> Row:
+                answered.append(job)
                 if response.driver:
                     drivers.setdefault(resolve(job.source).engine, set()).add(response.driver)
                 return plan.reduce(job, response)
 
-            rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal)
+            rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal, makers=makers)
             journal.check()
             tabulate = plan.tabulate or partial(_whole, study.name)
             for name, table in tabulate(rows).items():
                 write_table(out / f"{name}.csv", table)
-            computed = {"rows": len(rows), "computed": len(journal.rows) - known}
+            computed = {"rows": len(rows), "computed": len(answered)}
             found: dict[str, Any] = computed if jobs else {}
             found |= {"drivers": _listed(drivers)} if drivers else {}
             found |= {"also": taken} if taken else {}
@@ -175,7 +178,7 @@ def _going_on(journal: Journal, folder: Path, count: int) -> Iterator[None]:
         journal.check()
         if not count:
             raise
-        kept = f"{len(journal.rows)} of {count} rows are kept in {str(folder)!r}"
+        kept = f"{len(journal.entries)} of {count} rows are kept in {str(folder)!r}"
         words = f"{stop}; " if str(stop) else ""
         text = f"{words}{kept}; the same command goes on from there"
         if isinstance(stop, KeyboardInterrupt):

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from studies.kit.drafts import draft
-from studies.kit.fingerprint import ROOT, fingerprint
+from studies.kit.fingerprint import ROOT
 from studies.kit.journal import PROVENANCE, FolderError
 
 NOT_INSTALLED = "not installed"
@@ -52,23 +52,20 @@ def engine_packages(names: Iterable[str] | None = None) -> list[str]:
     return [package for name in names or ENGINES for package in ENGINES[name].packages]
 
 
-def identity(study: str, module: str, **settings: Any) -> dict[str, Any]:
-    """Return what the rows of a results folder depend on besides their own case and source.
+def subject(study: str, **settings: Any) -> dict[str, Any]:
+    """Return what all rows of a results folder are of: the study, and its settings."""
+    # as it will be read back: a tuple becomes a list
+    return dict(json.loads(json.dumps({"study": study, "settings": settings})))
 
-    The project's version; the code of the study's module and of all that it imports, pictures
-    apart; Python, the engines and the packages that compute; the settings.
-    """
-    parts = {
-        "study": study,
+
+def versions() -> dict[str, Any]:
+    """Return the versions of what may have a part in a number: project, Python, packages."""
+    return {
         "version": project_version(),
-        "code": fingerprint(module),
         "python": platform.python_version(),
         "engines": {name: version_of(name) for name in engine_packages()},
         "packages": {name: version_of(name) for name in NUMERICAL_PACKAGES},
-        "settings": settings,
     }
-    # as it will be read back: a tuple becomes a list
-    return dict(json.loads(json.dumps(parts)))
 
 
 def git_commit() -> dict[str, Any] | None:
@@ -120,6 +117,7 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     earlier = _earlier(path, subject)
     record = {
         **subject,
+        **_versions_of_rows(earlier),
         "git": git_commit(),
         "tools": {name: version_of(name) for name in TOOLS},
         "machine": {
@@ -133,6 +131,7 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
             {
                 "start": datetime.now(UTC).isoformat(timespec="seconds"),
                 "first": not are_compiled(),
+                "git": git_commit(),
                 **arguments,
             },
         ],
@@ -164,6 +163,14 @@ def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
 
 
+def _versions_of_rows(earlier: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the versions here, of an engine that is no longer here those of its rows."""
+    here = versions()
+    gone = {name for name, version in here["engines"].items() if version == NOT_INSTALLED}
+    then = {name: it for name, it in earlier.get("engines", {}).items() if name in gone}
+    return {**here, "engines": here["engines"] | then}
+
+
 def _earlier(path: Path, subject: dict[str, Any]) -> dict[str, Any]:
     if not path.exists():
         return {"runs": []}
@@ -173,7 +180,7 @@ def _earlier(path: Path, subject: dict[str, Any]) -> dict[str, Any]:
             return {**record, "runs": list(record["runs"])}
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
-    problem = "it must be new, or hold results of the same version and settings"
+    problem = "it must be new, or hold results of the same study and settings"
     raise FolderError(path.parent, f"{problem} (its provenance.json says otherwise)")
 
 

@@ -8,8 +8,10 @@ from tqdm import tqdm
 
 from analytic.response import Outcome, Response
 from studies.kit.executors import Executor
+from studies.kit.identity import Makers, changed, why
 from studies.kit.jobs import Job
 from studies.kit.journal import Journal, Row
+from studies.kit.streams import say
 
 _LABELS = ("figure", "panel", "case", "aspect", "width_m", "omega_over_p")
 """Columns that name a failed case."""
@@ -25,16 +27,15 @@ def run_jobs(
     executor: Executor,
     reduce: Reduce,
     journal: Journal | None = None,
+    makers: Makers | None = None,
 ) -> list[Row]:
     """Run the jobs that are not in the journal yet, and return the rows of all in their order.
 
-    Progress is shown on stderr if that is a terminal.
+    A row in the journal that would be made otherwise now is computed again; how many are, and why,
+    is said on stderr. Progress is shown there if it is a terminal.
     """
     keys = [job.key for job in jobs]
-    done = dict(journal.rows) if journal else {}
-    for job, key in zip(jobs, keys, strict=True):
-        if journal and key in done and not job.has_made(done[key]):
-            raise journal.stranger(key)
+    done = valid_rows(jobs, journal, makers) if journal and makers else {}
     pending = [number for number, key in enumerate(keys) if key not in done]
     finished = len(jobs) - len(pending)
     with (
@@ -49,10 +50,37 @@ def run_jobs(
                 **reduce(jobs[number], response),
             }
             done[keys[number]] = row
-            if journal:
-                journal.append(keys[number], row)
+            if journal and makers:
+                journal.append(keys[number], row, makers.of(jobs[number]))
             bar.update()
     return [done[key] for key in keys]
+
+
+def valid_rows(jobs: Sequence[Job], journal: Journal, makers: Makers) -> dict[str, Row]:
+    """Return the rows that need not be computed again, by the keys of their jobs.
+
+    Raises
+    ------
+    FolderError
+        If a row is not of the job which its key names.
+    """
+    valid: dict[str, Row] = {}
+    stale = []
+    for job in jobs:
+        key = job.key
+        if key not in journal.entries:
+            continue
+        row = journal.entries[key].row
+        if not job.has_made(row):
+            raise journal.stranger(key)
+        then, now = journal.maker_of(key), makers.of(job)
+        if changed(then, now):
+            stale.append((job.source, then, now))
+        else:
+            valid[key] = row
+    if stale:
+        say(f"{len(valid)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
+    return valid
 
 
 def exit_code(rows: Sequence[Row], shown: int = 10) -> int:

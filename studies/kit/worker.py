@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
-from studies.kit.fingerprint import EVERY_STUDY, fingerprint
+from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job
 from studies.kit.pool import Pool
 from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
@@ -36,12 +36,12 @@ class RefusedError(Exception):
 def fitness() -> dict[str, str]:
     """Return what must be the same on a worker for its results to be the same.
 
-    The code is that of every study: a worker that is another version is not asked which it knows.
+    The code is all of it: a worker that is another version is not asked which it knows.
     An engine of another package travels with its job.
     """
     packages = (*provenance.engine_packages(OWN), *provenance.NUMERICAL_PACKAGES)
     return {
-        "code": fingerprint(EVERY_STUDY),
+        "code": everything(),
         "python": platform.python_version(),
         **{name: provenance.version_of(name) for name in packages},
     }

@@ -305,7 +305,7 @@ def lasts(*records: Mapping[str, Any]) -> str:
     ValueError
         If the records are of different commands, machines or versions.
     """
-    same = ("study", "code", "engines", "machine", "settings")
+    same = ("study", "version", "engines", "machine", "settings")
     if len({json.dumps([record[name] for name in same]) for record in records}) > 1:
         raise ValueError(f"the provenances of two runs differ in one of {', '.join(same)}")
     runs = [run for record in records for run in provenance.whole_runs(record)]

@@ -40,7 +40,7 @@ def command(*, root: Path = Path()) -> int:
         check(root / PUBLISHED / chapter.folder, tables, "a published folder")
     folder.mkdir(exist_ok=True)
     hero.measure(folder / "hero.csv")
-    made_with = provenance.identity("readme", hero.__name__)
+    made_with = {**provenance.subject("readme"), **provenance.versions()}
     provenance.write_text(folder / PROVENANCE, json.dumps(made_with, indent=2) + "\n")
     seal(folder)
     samples = pd.read_csv(folder / "hero.csv")

@@ -9,7 +9,7 @@ from analytic import RigidBlock, SinePulse
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
 from studies.__main__ import run
-from studies.kit import provenance
+from studies.kit import identity, provenance
 from studies.kit.jobs import Job
 from studies.kit.journal import FolderError
 from studies.kit.options import Running
@@ -44,7 +44,8 @@ def versions(monkeypatch):
     monkeypatch.setattr(Job, "needs_process", lambda job, source: False)
     known = dict.fromkeys(provenance.engine_packages(), "1.0")
     whole = provenance.version_of
-    monkeypatch.setattr(provenance, "version_of", lambda name: known.get(name) or whole(name))
+    for module in (provenance, identity):
+        monkeypatch.setattr(module, "version_of", lambda name: known.get(name) or whole(name))
     return known
 
 
@@ -103,23 +104,38 @@ def test_a_failure_is_taken_where_it_cannot_be_tried_again(installed, versions, 
     assert list(kept(here)["outcome"]) == 2 * ["rocked" if installed else "failed"]
 
 
-def test_another_release_of_an_engine_that_is_installed_is_refused(versions, tmp_path):
+def test_rows_of_another_release_of_an_engine_that_is_installed_are_made_here(
+    versions, tmp_path, capsys
+):
     here, there = tmp_path / "here", tmp_path / "there"
     versions["Box2D"] = "0.9"
-    fill(STUDY, plan(SOURCES), there, also())
+    fill(STUDY, plan(SOURCES, 0.25), there, also())
     versions["Box2D"] = "1.0"
-    problem = "it holds results of Box2D 0.9, and 1.0 is installed"
-    with pytest.raises(FolderError, match=f"--also is .*; {problem}"):
-        fill(STUDY, plan(SOURCES), here, also(there))
-    # of which nothing is asked
-    fill(STUDY, plan(["exact", "pymunk"]), tmp_path / "third", also(there))
+    problem = "box2d: 2 rows made by Box2D 0.9, not 1.0"
+    with pytest.raises(FolderError, match=rf"--also is .*; all its rows are stale \({problem}\)"):
+        fill(STUDY, plan(["box2d"]), tmp_path / "only", also(there))
+    fill(STUDY, plan(SOURCES), here, also(there))
+    assert capsys.readouterr().err == f"not taken from {str(there)!r}: {problem}\n"
+    assert list(kept(here)["peak_ratio"]) == [0.25, 0.25, 0.25, 0.25, 0.5, 0.5]
+    (taken,) = json.loads((here / "provenance.json").read_text())["runs"][-1]["also"]
+    assert (taken["rows"], taken["engines"]) == (4, {"pymunk": "1.0"})
+
+
+def test_a_row_that_is_stale_here_is_taken_where_it_is_not(versions, tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    versions["Box2D"] = "0.9"
+    fill(STUDY, plan(["box2d"], 0.25), here, also())
+    versions["Box2D"] = "1.0"
+    fill(STUDY, plan(["box2d"], 0.75), there, also())
+    fill(STUDY, plan(["box2d"]), here, also(there))
+    assert list(kept(here)["peak_ratio"]) == [0.75, 0.75]
 
 
 def test_results_of_something_else_are_refused(versions, tmp_path):
     there = tmp_path / "there"
     fill(STUDY, plan(["exact"], step=1), there, also())
     for problem, asked, folder in (
-        ("same version and settings .settings step: 1 there, 2 here", {"step": 2}, there),
+        ("same study and settings .settings step: 1 there, 2 here", {"step": 2}, there),
         ("its journal.jsonl and provenance.json", {}, tmp_path / "nowhere"),
     ):
         with pytest.raises(FolderError, match=f"--also is .*{problem}"):
@@ -134,7 +150,7 @@ def test_a_damaged_folder_is_refused(versions, tmp_path):
     fill(STUDY, plan(["exact"]), there, also())
     journal = there / "journal.jsonl"
     journal.write_bytes(journal.read_bytes().replace(b"rocked", b"rockec"))
-    with pytest.raises(FolderError, match=r"--also is .*damaged in line 2"):
+    with pytest.raises(FolderError, match=r"--also is .*damaged in line 3"):
         fill(STUDY, plan(["exact"]), tmp_path / "here", also(there))
 
 

@@ -8,11 +8,13 @@ import pytest
 
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit.drafts import draft
-from studies.kit.journal import FolderError, open_journal
+from studies.kit.journal import FolderError, named, open_journal
 from studies.kit.sealed import seal, unseal
 from studies.page.facts import FIRST
 
-IDENTITY = {"study": "test", "settings": {"seed": 1}}
+SUBJECT = {"study": "test", "settings": {"seed": 1}}
+MAKERS = [{"engines/one.py": "a"}, {"engines/one.py": "b", "numpy": "2.4"}]
+MADE = named(MAKERS[0])
 ROWS = {f"key {n}": {"outcome": "rocked", "peak_ratio": 0.1 * n, "message": "θ"} for n in range(3)}
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 WRITING = [study for study in STUDIES if study.products]
@@ -20,15 +22,15 @@ OF_FOLDER = {chapter.folder: study for study, chapter in CHAPTERS}
 
 
 def fill(folder, rows=ROWS):
-    with open_journal(folder, IDENTITY, ()) as journal:
-        for key, row in rows.items():
-            journal.append(key, row)
+    with open_journal(folder, SUBJECT, ()) as journal:
+        for number, (key, row) in enumerate(rows.items()):
+            journal.append(key, row, MAKERS[number == 2])
     return folder / "journal.jsonl"
 
 
 def kept(folder):
-    with open_journal(folder, IDENTITY, ()) as journal:
-        return dict(journal.rows)
+    with open_journal(folder, SUBJECT, ()) as journal:
+        return {key: entry.row for key, entry in journal.entries.items()}
 
 
 def test_what_was_stored_is_read_back(tmp_path):
@@ -61,8 +63,8 @@ def test_a_journal_that_ends_anywhere_goes_on_with_its_whole_lines(tmp_path):
     content = path.read_bytes()
     for length in range(len(content) + 1):
         path.write_bytes(content[:length])
-        whole = max(content[:length].count(b"\n") - 1, 0)
-        assert kept(tmp_path) == dict(list(ROWS.items())[:whole])
+        whole = [line for line in content[:length].split(b"\n")[:-1] if b'"row"' in line]
+        assert kept(tmp_path) == dict(list(ROWS.items())[: len(whole)])
 
 
 @pytest.mark.parametrize("place", [1, 3, 4])
@@ -84,18 +86,33 @@ def test_a_damaged_line_is_named(place, tmp_path):
         b"[" * 100_000,
         seal({}).strip(),
         seal({"key": "a"}).strip(),
-        seal({"key": 1, "row": {"outcome": "rocked"}}).strip(),
-        seal({"key": "a", "row": ["outcome"]}).strip(),
-        seal({"key": "a", "row": {}}).strip(),
+        seal({"key": 1, "made": MADE, "row": {"outcome": "rocked"}}).strip(),
+        seal({"key": "a", "made": MADE, "row": ["outcome"]}).strip(),
+        seal({"key": "a", "made": MADE, "row": {}}).strip(),
+        seal({"key": "a", "row": {"outcome": "rocked"}}).strip(),
+        seal({"key": "a", "made": "unknown", "row": {"outcome": "rocked"}}).strip(),
+        seal({"made": MADE, "of": MAKERS[1]}).strip(),
+        seal({"made": MADE, "of": list(MAKERS[0])}).strip(),
         b'{"key": "a", "row": {"outcome": "rocked"}}',
     ],
-    ids=range(9),
+    ids=range(11),
 )
 def test_a_line_without_its_fields_is_damaged(line, tmp_path):
     with fill(tmp_path).open("ab") as journal:
         journal.write(line + b"\n")
-    with pytest.raises(FolderError, match="damaged in line 5"):
+    with pytest.raises(FolderError, match="damaged in line 7"):
         kept(tmp_path)
+
+
+def test_what_made_a_row_is_written_once_and_read_back(tmp_path):
+    path = fill(tmp_path)
+    with open_journal(tmp_path, SUBJECT, ()) as journal:
+        made = {key: journal.maker_of(key) for key in ROWS}
+        journal.append("key 0", ROWS["key 1"], MAKERS[1])
+        assert journal.maker_of("key 0") == MAKERS[1]
+    assert list(made.values()) == [MAKERS[0], MAKERS[0], MAKERS[1]]
+    assert sum(b'"of"' in line for line in path.read_bytes().splitlines()) == len(MAKERS)
+    assert kept(tmp_path) == ROWS | {"key 0": ROWS["key 1"]}
 
 
 @pytest.mark.parametrize("line", [b"?", b"[]", b"[" * 100_000, b'{"other": 1}', b"\xff", b"{}"])
@@ -123,7 +140,7 @@ def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study,
         (folder / name).write_text("mine")
         with (
             pytest.raises(FolderError, match=f"{name} of unknown origin"),
-            open_journal(folder, IDENTITY, products),
+            open_journal(folder, SUBJECT, products),
         ):
             pass
         assert {path.name for path in folder.iterdir()} <= {name, ".lock"}

@@ -4,10 +4,12 @@ import fcntl
 import math
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +20,13 @@ from analytic import RigidBlock, SinePulse, simulate
 from studies.__main__ import run
 from studies.kit import signals
 from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import FolderError, open_journal
+from studies.kit.fingerprint import PACKAGES, ROOT
+from studies.kit.identity import Makers
+from studies.kit.jobs import Job, ask, summary
+from studies.kit.journal import FolderError, open_journal, rows_in
 from studies.kit.options import Running
 from studies.kit.plan import fill
-from studies.kit.provenance import identity
+from studies.kit.provenance import record_of, subject
 from studies.kit.runner import run_jobs
 from studies.kit.sealed import seal, unseal
 from studies.sources.registry import SOURCES, Effort, Source, resolve
@@ -41,6 +45,9 @@ PATIENCE_S = 900.0
 ANSWERED = []
 FREE = 30
 """Cases that the source `waits` answers before it waits."""
+CASE = ["pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
+HEAD = 2
+"""Lines of a journal before its rows, where one source made them all."""
 
 
 def waits(block, motion, *, duration, times):
@@ -85,9 +92,13 @@ def test_failures_are_tried_again_and_successes_are_not(tmp_path, monkeypatch):
     monkeypatch.setitem(SOURCES, "sometimes", Source("model", sometimes))
     outcomes = []
     for _ in range(3):
-        with open_journal(tmp_path, identity("test", sweep.__name__), ()) as journal:
+        with open_journal(tmp_path, subject("test"), ()) as journal:
             (row,) = run_jobs(
-                [job("sometimes")], executor=Local(1, 1.0), reduce=summary, journal=journal
+                [job("sometimes")],
+                executor=Local(1, 1.0),
+                reduce=summary,
+                journal=journal,
+                makers=Makers(ask, summary),
             )
         outcomes.append(row["outcome"])
     assert outcomes == ["failed", "rocked", "rocked"]
@@ -149,14 +160,14 @@ def wait_at_the_gate(folder, process, rows=FREE):
     """Wait until so many rows are stored; the next one is not answered before the gate opens."""
     journal = folder / "journal.jsonl"
     deadline = time.monotonic() + PATIENCE_S
-    while not journal.exists() or len(lines_of(folder)) < 1 + rows:
+    while not journal.exists() or len(lines_of(folder)) < HEAD + rows:
         assert process.poll() is None, process.stderr.read()
         assert time.monotonic() < deadline
         time.sleep(0.005)
 
 
 def keys_of(lines):
-    return [unseal(line)["key"] for line in lines[1:]]
+    return [unseal(line)["key"] for line in lines[HEAD:]]
 
 
 def finish(folder):
@@ -174,7 +185,7 @@ def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
         wait_at_the_gate(folder, first)
         first.kill()
     finished = lines_of(folder)
-    assert len(finished) == 1 + FREE
+    assert len(finished) == HEAD + FREE
     with (folder / "journal.jsonl").open("ab") as journal:
         journal.write(b'{"crc": "00000000", "key": "torn in the mid')
     assert "not tested" in finish(folder)
@@ -196,7 +207,7 @@ def test_an_interrupted_run_says_how_to_go_on(number, tmp_path):
     assert len(errors.splitlines()) == 1
     assert "of 240 rows are kept" in errors
     assert "the same command goes on" in errors
-    assert len(lines_of(folder)) == 1 + FREE
+    assert len(lines_of(folder)) == HEAD + FREE
 
 
 def test_a_full_disk_loses_nothing_that_finished(tmp_path):
@@ -210,7 +221,7 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
     assert "the same command goes on" in errors
     # the last line may be torn; the ones before are whole
     finished = lines_of(folder)[:-1]
-    assert 30 <= len(finished) < 241
+    assert 30 <= len(finished) < HEAD + 240
     assert not (folder / "sweep.csv").exists()
     # there is room again
     finish(folder)
@@ -262,14 +273,12 @@ def test_two_runs_never_share_a_folder(tmp_path):
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        ({"version": "0.0.9"}, 'version: "0.0.9" there, "'),
+        ({"study": "free"}, 'study: "free" there, "sweep" here'),
         ({"journal": 0}, "journal: 0 there"),
-        ({"code": "old"}, 'code: "old" there'),
-        ({"python": "3.11.0rc1"}, 'python: "3.11.0rc1" there, "3.11'),
-        ({"packages": {"numpy": "1.0"}}, f'packages numpy: "1.0" there, "{np.__version__}" here'),
+        ({"settings": {"step": 0.1}}, "settings step: 0.1 there, null here"),
     ],
 )
-def test_a_folder_of_another_version_is_left_alone(tmp_path, change, named):
+def test_a_folder_of_something_else_is_left_alone(tmp_path, change, named):
     fill(STUDY, SMALL, tmp_path, ALONE)
     path = tmp_path / "journal.jsonl"
     header, rest = path.read_bytes().split(b"\n", 1)
@@ -278,6 +287,59 @@ def test_a_folder_of_another_version_is_left_alone(tmp_path, change, named):
     with pytest.raises(FolderError, match=named):
         fill(STUDY, SMALL, tmp_path, ALONE)
     assert {item.name: item.read_bytes() for item in tmp_path.iterdir()} == before
+
+
+def in_a_copy(root, *arguments):
+    """Start a command line of the packages in a folder."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "studies", *arguments],
+        cwd=root,
+        env=os.environ | {"PYTHONPATH": str(root)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_rows_made_by_other_code_are_computed_again_and_no_others(tmp_path):
+    """A run is killed, one adapter edited, and the run taken up again."""
+    for name in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__", "published")
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
+    folder = tmp_path / "out"
+    command = ("sweep", "--figure", "6", "--sources", "exact", "pymunk", "box2d", "--out", "out")
+
+    def again(changed, old, new):
+        file = tmp_path / changed
+        text = file.read_text()
+        assert old in text
+        file.write_text(text.replace(old, new, 1))
+        with in_a_copy(tmp_path, *command) as process:
+            _, said = process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 0
+        return said, record_of(folder)["runs"][-1]["computed"]
+
+    with in_a_copy(tmp_path, *command) as first:
+        wait_at_the_gate(folder, first, rows=300)
+        first.kill()
+    adapter = "engines/adapters/pymunk_settings.py"
+    made = sources_of(folder)
+    said, computed = again(
+        adapter, "def __post_init__(self)", "added = 1\n\n    def __post_init__(self)"
+    )
+    assert f"computed again: pymunk: {made['pymunk']} rows made by another {adapter}" in said
+    assert computed == 720 - made["exact"] - made["box2d"]
+    assert sources_of(folder) == {"exact": 240, "pymunk": 240, "box2d": 240}
+    assert pd.read_csv(folder / "sweep.csv").duplicated(["source", *CASE]).sum() == 0
+    assert again(adapter, "added = 1", "# a comment\n    added = 1") == ("", 0)
+    said, computed = again("engines/adapters/box2d.py", "return ", "return 0 or ")
+    assert (said.count("240 rows"), computed) == (1, 240)
+
+
+def sources_of(folder):
+    """Return how many rows of each source a journal holds."""
+    entries, _ = rows_in(folder, (folder / "journal.jsonl").read_bytes())
+    return Counter(entry.row["source"] for entry in entries.values())
 
 
 def test_a_folder_grows_and_never_shrinks(tmp_path):
@@ -298,7 +360,7 @@ def test_a_folder_grows_and_never_shrinks(tmp_path):
 def test_another_provenance_is_left_alone(tmp_path):
     fill(STUDY, SMALL, tmp_path, ALONE)
     path = tmp_path / "provenance.json"
-    for text in (path.read_text().replace('"version": "', '"version": "9.'), "{}", "?"):
+    for text in (path.read_text().replace('"study": "', '"study": "a '), "{}", "?"):
         path.write_text(text)
         with pytest.raises(FolderError, match="provenance"):
             fill(STUDY, SMALL, tmp_path, ALONE)

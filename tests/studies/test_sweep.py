@@ -5,6 +5,7 @@ import math
 import sys
 import tomllib
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -136,7 +137,7 @@ def test_a_rerun_computes_nothing(swept):
     folder = swept[0]
     journal = folder / "journal.jsonl"
     before = journal.read_bytes()
-    fill(STUDY, replace(WHOLE, ask=None), folder, ALONE)
+    fill(STUDY, replace(WHOLE, ask=partial(WHOLE.ask, None)), folder, ALONE)
     assert journal.read_bytes() == before
 
 

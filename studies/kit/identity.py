@@ -1,0 +1,153 @@
+"""What made a row: the code that it runs through, its source as it is declared, and versions.
+
+A row depends on the code by which its source answers and its study reduces the answer, on what the
+engine declares, and on the versions of the engine and of what computes; besides, on its case, which
+is its key in the journal. Not on another engine, nor on words, pictures and the command line.
+"""
+
+import enum
+import hashlib
+import json
+import platform
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
+from studies.kit.jobs import Job, plain
+from studies.kit.journal import Maker
+from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
+from studies.sources.registry import Source, resolve
+
+FOUND_BY_NAME: frozenset[Name] = frozenset(
+    {
+        ("engines.registry", "ENGINES"),
+        ("engines.registry", "find"),
+        ("studies.sources.registry", "SOURCES"),
+        ("studies.sources.registry", "presets_of"),
+        ("studies.sources.registry", "resolve"),
+    }
+)
+"""Where sources and engines are looked up: the one that a row asks is a part of it, by itself."""
+
+ASIDE = frozenset(
+    {"bouncing", "core", "factors", "install", "own_step", "rules", "script", "title"}
+)
+"""What an engine declares for readers, and for what is no row of a journal."""
+
+OF_A_PRESET = ("settings", "stepping", "step", "step_s")
+"""What of a preset makes a row."""
+
+SHOWN = 3
+"""Things that made a row otherwise, named at most."""
+
+
+class Makers:
+    """What makes the rows of a plan.
+
+    Parameters
+    ----------
+    ask, reduce : callable
+        Those of the plan.
+    root : Path, optional
+        The folder of the packages.
+    """
+
+    def __init__(
+        self, ask: Callable[..., Any], reduce: Callable[..., Any], root: Path = ROOT
+    ) -> None:
+        self._shared = {name_of(ask), name_of(reduce)}
+        self._root = root
+        self._known: dict[tuple[str, frozenset[Name]], Maker] = {}
+
+    def of(self, job: Job) -> Maker:
+        """Return what makes the row of a job."""
+        asked = job.source, self._kinds(job)
+        if asked not in self._known:
+            source = resolve(job.source)
+            packages = (*NUMERICAL_PACKAGES, *(source.declared.packages if source.engine else ()))
+            self._known[asked] = {
+                **self.reached(job).digests(),
+                **_declared(source),
+                "Python": ".".join(platform.python_version_tuple()[:2]),
+                **{name: version_of(name) for name in packages},
+            }
+        return self._known[asked]
+
+    def reached(self, job: Job) -> Reached:
+        """Return the code that the row of a job runs through."""
+        source = resolve(job.source)
+        names = {*self._shared, *self._kinds(job), name_of(source.call)}
+        if source.engine:
+            engine, preset = source.declared, source.used
+            parts = (type(engine), type(preset), type(preset.settings), engine.build, engine.spring)
+            names |= {name_of(part) for part in parts if part}
+        return reached(names, self._root, cut=FOUND_BY_NAME)
+
+    def _kinds(self, job: Job) -> frozenset[Name]:
+        """Return the kinds of a job's values, whose methods are called."""
+        values = (job.block, job.motion, *job.options.values())
+        return frozenset(name_of(type(value)) for value in values if is_dataclass(value))
+
+
+def _declared(source: Source) -> dict[str, str]:
+    """Return what of an engine's declaration its rows depend on, with one preset."""
+    if not source.engine:
+        return {}
+    engine, used = source.declared, source.used
+    values = {
+        **{item.name: getattr(engine, item.name) for item in fields(engine)},
+        "presets": {name: getattr(used, name) for name in OF_A_PRESET},
+    }
+    kept = {name: value for name, value in values.items() if name not in ASIDE}
+    text = json.dumps(kept, default=_plain, sort_keys=True)
+    return {f"declaration of {engine.name}": hashlib.sha256(text.encode()).hexdigest()[:12]}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, enum.Enum):
+        return str(value)
+    return name_of(value) if callable(value) else plain(value)
+
+
+def changed(then: Maker, now: Maker) -> list[str]:
+    """Return the names of what made a row and would make another one now.
+
+    A version counts only where there is one: what was made elsewhere cannot be made anew here.
+    """
+    return [
+        name
+        for name in {**now, **then}
+        if then.get(name) != now.get(name) and now.get(name) != NOT_INSTALLED
+    ]
+
+
+def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
+    """Say of rows that must be made anew how many there are of each source, and why.
+
+    Parameters
+    ----------
+    stale : iterable of (str, Maker, Maker)
+        The source of a row, what made it, and what would make it now.
+    """
+    counts = Counter(
+        (source, tuple(_said(name, then, now) for name in changed(then, now)))
+        for source, then, now in stale
+    )
+    return "; ".join(
+        f"{source}: {count} {'row' if count == 1 else 'rows'} made by {_listed(reasons)}"
+        for (source, reasons), count in counts.items()
+    )
+
+
+def _said(name: str, then: Maker, now: Maker) -> str:
+    if "/" in name or name.startswith("declaration"):
+        return f"another {name}"
+    return f"{name} {then.get(name, 'none')}, not {now.get(name, 'none')}"
+
+
+def _listed(reasons: tuple[str, ...]) -> str:
+    more = len(reasons) - SHOWN
+    return ", ".join([*reasons[:SHOWN], *([f"{more} more"] if more > 0 else [])])

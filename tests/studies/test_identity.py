@@ -1,0 +1,310 @@
+"""On what code a row depends: all of it, found by its names, and no more; and no comments."""
+
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from analytic import RigidBlock, SinePulse
+from studies.__main__ import run
+from studies.catalogue import CHAPTERS
+from studies.contact import study as contact
+from studies.kit import identity, plan
+from studies.kit.fingerprint import PACKAGES, ROOT, everything, reached
+from studies.kit.identity import FOUND_BY_NAME, Makers, changed
+from studies.kit.jobs import Job, ask, summary
+from studies.sources.registry import Source, resolve
+from studies.stability import study as stability
+
+AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
+DEAR = ("overturning", "precision")
+"""Studies that take many seconds before their first row."""
+RESUMABLE = [
+    pytest.param(study, chapter, id=chapter.folder, marks=[pytest.mark.slow] * (study.name in DEAR))
+    for study, chapter in CHAPTERS
+    if study.name not in AT_ONCE
+]
+SOURCES = ("exact", "rk45", "mujoco", "mujoco:naive", "pybullet", "box2d", "newton:fixed")
+ENGINE = set(SOURCES) - {"exact", "rk45"}
+MUJOCO = {"mujoco", "mujoco:naive"}
+
+
+LOOKUPS = FOUND_BY_NAME | {("engines.registry", "Engines")}
+"""What finds a source by its name."""
+
+
+def job(source):
+    motion = SinePulse(amplitude=3.0, omega=6.0)
+    return Job(labels={}, block=RigidBlock(width=0.5, height=1.5), motion=motion, source=source)
+
+
+def made(reduce, root=ROOT):
+    makers = Makers(ask, reduce, root)
+    return {source: makers.of(job(source)) for source in SOURCES}
+
+
+def stale(reduce, root):
+    """Return the sources whose rows were made by other code than that in a folder."""
+    now = made(reduce, root)
+    return {name for name, then in made(reduce).items() if changed(then, now[name])}
+
+
+@pytest.fixture
+def copy(tmp_path):
+    for name in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__", "published")
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
+    return tmp_path
+
+
+def edit(root, file, old, new):
+    path = root / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+EDITS = {
+    "an engine's build": ("engines/adapters/mujoco.py", "import_module(", "id(", MUJOCO),
+    "an engine's loop": ("engines/adapters/bullet_loop.py", "return ", "return 1 + ", {"pybullet"}),
+    "an engine's settings": (
+        *("engines/adapters/box2d_settings.py", "def __post_init__(self) -> None:"),
+        *("def __post_init__(self) -> None:\n        print()", {"box2d"}),
+    ),
+    "the run": ("engines/drive.py", "LOOK_AROUND = 256", "LOOK_AROUND = 257", ENGINE),
+    "steps that land": ("engines/stepping/landing.py", "return ", "return 1 + ", ENGINE),
+    "what is watched": ("engines/watching/observe.py", "return ", "return 1 + ", ENGINE),
+    "a kernel": ("analytic/kernels/excursions.py", "return n + 1", "return n + 2", {"exact"}),
+    "a peer": ("studies/sources/scipy_peers.py", "return ", "return 1 + ", {"rk45"}),
+    "the reduction": ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', set(SOURCES)),
+    "a registry's line": (
+        *("engines/registry.py", "OWN = {", 'OWN = {"ninth": "engines.adapters.ninth:ENGINE",'),
+        set(),
+    ),
+    "the registry": ("engines/registry.py", "return own | ", "return own | own | ", set()),
+    "a script": ("engines/adapters/mujoco_script.py", "return ", "return 1 + ", set()),
+    "a drop": ("engines/adapters/mujoco_drop.py", "return ", "return 1 + ", set()),
+    "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
+    "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
+    "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
+    "the command line": ("studies/kit/arguments.py", "return ", "return 1 + ", set()),
+    "a tabulation": ("studies/kit/tables.py", "return ", "return 1 + ", set()),
+    "a comment": ("engines/drive.py", "LOOK_AROUND = 256", "# 256\nLOOK_AROUND = 256", set()),
+    "a docstring": ("engines/drive.py", '"""Steps between', '"""How many steps between', set()),
+}
+
+
+@pytest.mark.parametrize(("file", "old", "new", "sources"), EDITS.values(), ids=EDITS)
+def test_an_edit_makes_stale_what_runs_through_it(file, old, new, sources, copy):
+    edit(copy, file, old, new)
+    assert stale(summary, copy) == sources
+
+
+def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
+    edit(copy, "analytic/kernels/excursions.py", "return n + 1", "return n + 2")
+    assert stale(stability.reduce, copy) == set(SOURCES)
+    assert stale(contact.reduce, copy) == {"exact"}
+
+
+@pytest.mark.parametrize(
+    ("change", "sources"),
+    [({"settings": {"friction": 0.9}}, {"mujoco:naive"}), ({"title": "another"}, set())],
+)
+def test_a_number_that_an_engine_declares_is_in_its_rows(change, sources, monkeypatch):
+    before, whole = made(summary), Source.used.fget
+
+    def used(source):
+        preset = whole(source)
+        if (source.engine, source.preset) != ("mujoco", "naive"):
+            return preset
+        inside = {"settings": replace(preset.settings, **change.get("settings", {}))}
+        return replace(preset, **(change | inside))
+
+    monkeypatch.setattr(Source, "used", property(used))
+    assert {name for name, maker in made(summary).items() if maker != before[name]} == sources
+
+
+@pytest.mark.parametrize(
+    ("package", "sources"), [("mujoco", MUJOCO), ("scipy", set(SOURCES)), ("pandas", set())]
+)
+def test_a_version_is_in_the_rows_of_what_computes_with_it(package, sources, monkeypatch):
+    before, whole = made(summary), identity.version_of
+    monkeypatch.setattr(identity, "version_of", lambda n: "9" if n == package else whole(n))
+    assert {name for name, maker in made(summary).items() if maker != before[name]} == sources
+
+
+class Seen(BaseException):
+    """Raised when the functions that a few rows run through were seen."""
+
+
+def look(jobs, *, executor, reduce, journal, makers):
+    """Stand in for `run_jobs`: run a job of each source, and compare what runs with what counts."""
+    missed, count = set(), 0
+    for job in {job.source: job for job in jobs}.values():
+        ours = places_in(lambda job=job: reduce(job, executor.ask(job, resolve(job.source))))
+        missed |= ours - makers.reached(job).names
+        count = max(count, len(ours))
+    raise Seen(missed, count)
+
+
+def places_in(run_it):
+    """Return the definitions that a call runs through."""
+    called = set()
+    sys.setprofile(lambda frame, event, argument: called.add(frame.f_code))
+    try:
+        run_it()
+    finally:
+        sys.setprofile(None)
+    return {place for code in called if (place := place_of(code))}
+
+
+def place_of(code):
+    """Return the module and the definition that a piece of code stands in, where it is ours."""
+    path, name = Path(code.co_filename), code.co_qualname.partition(".")[0]
+    if not path.is_relative_to(ROOT) or path.relative_to(ROOT).parts[0] not in PACKAGES:
+        return None
+    dotted = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    # what is registered under no name of its own is a part of that by which it is called
+    return None if name.startswith("<") or name == "_" else (dotted, name)
+
+
+@pytest.mark.parametrize(("study", "chapter"), RESUMABLE)
+def test_what_a_row_runs_through_was_found(study, chapter, monkeypatch, tmp_path):
+    monkeypatch.setattr(plan, "run_jobs", look)
+    with pytest.raises(Seen) as seen:
+        run(study.command_line(chapter, tmp_path, full=False))
+    missed, count = seen.value.args
+    assert count > 8
+    assert missed - {("studies.kit.plan", "fill"), *LOOKUPS} == set()
+
+
+MADE_UP = {
+    "analytic/__init__.py": "from .inner.deep import root",
+    "analytic/inner/__init__.py": "",
+    "analytic/inner/deep.py": """
+from ..forces import push
+from typing import TYPE_CHECKING
+if TYPE_CHECKING:
+    from analytic.types import Vector
+
+def root(x: "Vector") -> "Vector":
+    return push(x)
+
+def other(x):
+    return pull(x)
+""",
+    "analytic/forces.py": "LEAST = 2\n\ndef push(x):\n    return x + LEAST\n\ndef pull(x): ...",
+    "analytic/shown.py": """
+from functools import singledispatch
+
+@singledispatch
+def shown(x):
+    return ""
+
+@shown.register
+def _(x: int):
+    return number(x)
+
+def number(x): ...
+""",
+    "engines/__init__.py": "",
+    "engines/settings.py": "import engines.parts\nengines.parts.prepare()\n\nclass Settings: ...",
+    "engines/parts.py": "def prepare(): ...\n\ndef unused(): ...",
+    "studies/__init__.py": "",
+    "studies/kit.py": "import analytic as a\nfrom engines import settings\n\nKEPT = a.root",
+    "studies/swing.py": """
+from studies import kit as k
+
+def late():
+    from studies.kit import settings
+    return settings.Settings()
+
+def early():
+    'a docstring'
+    return (k.KEPT +
+        2)  # three
+
+@property
+def both():
+    return early() or late()
+
+def run():
+    from analytic.shown import shown
+    return shown
+""",
+}
+
+
+def laid_out(root, **changed):
+    for name, text in (MADE_UP | changed).items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def found(name, root, **options):
+    names = reached([("studies.swing", name)], laid_out(root), **options).names
+    return {f"{module}.{name}" for module, name in names if name}
+
+
+ROOTED = {"analytic.root", "analytic.inner.deep.root", "analytic.inner.deep.push"} | {
+    "analytic.forces.push",
+    "analytic.forces.LEAST",
+}
+EARLY = ROOTED | {"studies.swing.early", "studies.swing.k", "studies.kit.KEPT", "studies.kit.a"}
+LATE = {"studies.swing.late", "studies.kit.settings", "engines.settings.Settings"} | {
+    "engines.settings.engines",
+    "engines.parts.prepare",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("early", EARLY),
+        ("late", LATE),
+        ("both", EARLY | LATE | {"studies.swing.both"}),
+        (
+            "run",
+            {"studies.swing.run", "analytic.shown.singledispatch"}
+            | {f"analytic.shown.{name}" for name in ("shown", "number")},
+        ),
+    ],
+)
+def test_names_are_followed_wherever_they_lead(name, expected, tmp_path):
+    assert found(name, tmp_path) == expected
+
+
+def test_what_is_cut_is_not_followed(tmp_path):
+    cut = {("studies.kit", "KEPT")}
+    assert found("early", tmp_path, cut=cut) == {"studies.swing.early", "studies.swing.k"}
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ('# new\ndef find():\n    """Other words."""\n\n    return 1 + 2', True),
+        ("def find() -> int:\n    return 1 + 2", True),
+        ("def find():\n    return 1 + 2\n\ndef unused(): ...", True),
+        ("def find():\n    return 1 + 3", False),
+        ("def find():\n    return 2 + 1", False),
+        ("def find(x=1):\n    return 1 + 2", False),
+        ("def find():\n    return 1 + 2\n\nfind()", False),
+        ("def find():\n    return '1 + 2'", False),
+    ],
+)
+def test_comments_docstrings_and_layout_do_not_count(text, same, tmp_path):
+    place = [("studies.kit", "find")]
+    before = laid_out(tmp_path / "a", **{"studies/kit.py": "def find():\n    return 1 + 2"})
+    after = laid_out(tmp_path / "b", **{"studies/kit.py": text})
+    assert (reached(place, before).digests() == reached(place, after).digests()) is same
+
+
+def test_everything_is_all_code(tmp_path):
+    before = everything(laid_out(tmp_path / "a"))
+    after = {"analytic/forces.py": MADE_UP["analytic/forces.py"].replace("2", "3")}
+    assert everything(laid_out(tmp_path / "b", **after)) != before
+    assert everything(laid_out(tmp_path / "c")) == before
