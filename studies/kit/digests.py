@@ -8,15 +8,12 @@ import zlib
 from collections.abc import Iterable
 from pathlib import Path
 
-from studies.kit.journal import PROVENANCE, FolderError
+from studies.kit.journal import PACKED, PROVENANCE, FolderError
 from studies.kit.provenance import record_of, write_text
-
-PACKED = ".gz"
-"""What the name of a packed table ends in; its digest is that of the table unpacked."""
 
 
 def seal(folder: Path) -> None:
-    """Write into a folder's provenance the digest of each table that lies beside it.
+    """Write into a folder's provenance the digest of each table that lies beside it, unpacked.
 
     Every study does so with its own; what has been published from several folders is sealed anew.
 

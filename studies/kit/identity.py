@@ -2,7 +2,8 @@
 
 A row depends on the code by which its source answers and its study reduces the answer, on what the
 engine declares, and on the versions of the engine and of what computes; besides, on its case, which
-is its key in the journal. Not on another engine, nor on words, pictures and the command line.
+is its key in the journal. Not on another engine, nor on words, pictures and the command line. A
+table depends on its rows and on how they are tabulated.
 """
 
 import enum
@@ -17,7 +18,7 @@ from typing import Any
 
 from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
 from studies.kit.jobs import Job, plain
-from studies.kit.journal import Maker
+from studies.kit.journal import Maker, named
 from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
 from studies.sources.registry import Source, resolve
 
@@ -85,6 +86,15 @@ class Makers:
             parts = (type(engine), type(preset), type(preset.settings), engine.build, engine.spring)
             names |= {name_of(part) for part in parts if part}
         return reached(names, self._root, cut=FOUND_BY_NAME)
+
+    def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:
+        """Return what makes tables: their tabulation, and by source what makes their rows."""
+        made: dict[str, set[str]] = {}
+        for job in jobs:
+            made.setdefault(job.source, set()).add(named(self.of(job)))
+        tabulation = reached([name_of(tabulate)], self._root, cut=FOUND_BY_NAME).digests()
+        rows = {source: sorted(names) for source, names in made.items()}
+        return {"tabulation": named(tabulation), "rows": rows}
 
     def _kinds(self, job: Job) -> frozenset[Name]:
         """Return the kinds of a job's values, whose methods are called."""

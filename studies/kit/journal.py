@@ -1,15 +1,19 @@
 """A results folder: who may write to it, what it belongs to, and the rows finished so far."""
 
 import fcntl
+import gzip
 import hashlib
 import json
 import os
+import shutil
 import stat
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from studies.kit.drafts import draft
 from studies.kit.sealed import seal, unseal
 
 Row = dict[str, Any]
@@ -23,6 +27,9 @@ FORMAT = 3
 
 JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
 """Files of every results folder, beside the products of its study."""
+
+PACKED = ".gz"
+"""What the name of a packed journal or table ends in; one that is not packed is the newer."""
 
 
 class FolderError(Exception):
@@ -132,6 +139,7 @@ def open_journal(
             folder.mkdir(parents=True, exist_ok=True)
             _refuse_strangers(path, header, products)
             stack.enter_context(_locked(folder))
+            _unpack(path)
             if _refuse_strangers(path, header, products):
                 _begin(path, header)
             journal = Journal(path, _finished(path, header))
@@ -159,13 +167,16 @@ def _locked(folder: Path) -> Iterator[None]:
 def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[str]) -> bool:
     """Refuse a folder with files that are not ours; say whether its journal has yet to begin."""
     folder = path.parent
-    for name in (LOCK, JOURNAL, PROVENANCE):
+    for name in (LOCK, JOURNAL, JOURNAL + PACKED, PROVENANCE):
         # a link leads elsewhere, and on a pipe or a device a run would hang
         if os.path.lexists(folder / name) and not stat.S_ISREG((folder / name).lstat().st_mode):
             raise FolderError(folder, f"its {name} must be a file")
     for name in products:
         if (folder / name).is_dir():
             raise FolderError(folder, f"its {name} must be a file")
+    packed = path.with_name(path.name + PACKED)
+    if packed.exists() and not path.exists():
+        return False
     content = path.read_bytes() if path.exists() else b""
     # a run may have been killed while it wrote the first line
     if not seal(header).startswith(content) or content.endswith(b"\n"):
@@ -176,6 +187,18 @@ def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[
     if strange:
         raise FolderError(folder, f"it must be new, and it holds a {strange[0]} of unknown origin")
     return True
+
+
+def _unpack(path: Path) -> None:
+    """Unpack a journal that was published."""
+    packed = path.with_name(path.name + PACKED)
+    if path.exists() or not packed.exists():
+        return
+    try:
+        with draft(path) as file, gzip.open(packed) as inside:
+            shutil.copyfileobj(inside, file)
+    except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+        raise FolderError(path.parent, f"its {packed.name} is damaged") from error
 
 
 def _begin(path: Path, header: Mapping[str, Any]) -> None:

@@ -123,6 +123,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
             found: dict[str, Any] = computed if jobs else {}
             found |= {"drivers": _listed(drivers)} if drivers else {}
             found |= {"also": taken} if taken else {}
+            record["made"] = makers.of_tables(jobs, tabulate)
             provenance.finish(path, record, began, **found)
             seal(out)
     return rows

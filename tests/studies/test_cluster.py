@@ -102,7 +102,7 @@ def test_a_worker_of_another_version_is_refused(station, monkeypatch, tmp_path, 
     finally:
         worker.fitness.cache_clear()
     assert "code " in line
-    assert "code other code here" in line
+    assert "there, other code here" in line
 
 
 def test_a_workers_address_is_no_schedulers(station, tmp_path, capsys):

@@ -193,11 +193,13 @@ ROW = {
 
 
 @pytest.mark.parametrize("forge", ROW.values(), ids=ROW)
-@pytest.mark.parametrize("lines", [slice(1, 2), slice(1, None)], ids=["one line", "all lines"])
-def test_a_forged_row_is_one_line(forge, lines, folder, capsys):
+@pytest.mark.parametrize("count", [1, None], ids=["one line", "all lines"])
+def test_a_forged_row_is_one_line(forge, count, folder, capsys):
     path = folder / "journal.jsonl"
     kept = path.read_bytes().splitlines()
-    kept[lines] = [forged(line, forge) for line in kept[lines]]
+    rows = [number for number, line in enumerate(kept) if b'"row"' in line]
+    for number in rows[:count]:
+        kept[number] = forged(kept[number], forge)
     path.write_bytes(b"\n".join(kept) + b"\n")
     few = ["--figure", "6", "--sources", "exact", "housner"]
     refused(capsys, ["sweep", *few, "--out", folder], "--out", "journal.jsonl")

@@ -11,6 +11,7 @@ from analytic import RigidBlock, SinePulse
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
+from studies.histories import study as histories
 from studies.kit import identity, plan
 from studies.kit.fingerprint import PACKAGES, ROOT, everything, reached
 from studies.kit.identity import FOUND_BY_NAME, Makers, changed
@@ -106,6 +107,34 @@ def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
     edit(copy, "analytic/kernels/excursions.py", "return n + 1", "return n + 2")
     assert stale(stability.reduce, copy) == set(SOURCES)
     assert stale(contact.reduce, copy) == {"exact"}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "tables", "rows"),
+    [
+        (
+            "studies/histories/study.py",
+            'if row["samples"]:',
+            'if len(row["samples"]):',
+            True,
+            set(),
+        ),
+        ("studies/kit/plan.py", "return {name", "return {str(name)", False, set()),
+        ("studies/histories/study.py", "report(", "repr(", False, set()),
+        ("engines/adapters/box2d.py", "return ", "return 0 or ", False, {"box2d"}),
+        ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', False, set(SOURCES)),
+    ],
+)
+def test_a_table_is_of_its_rows_and_its_tabulation(file, old, new, tables, rows, copy):
+    def made(root):
+        jobs = [job(source) for source in SOURCES]
+        return Makers(ask, summary, root).of_tables(jobs, histories.tabulate)
+
+    before = made(ROOT)
+    edit(copy, file, old, new)
+    after = made(copy)
+    assert (after["tabulation"] != before["tabulation"]) == tables
+    assert {name for name in SOURCES if after["rows"][name] != before["rows"][name]} == rows
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """The journal of a results folder: damage, strangers, links, pipes."""
 
+import gzip
 import json
 import os
 from pathlib import Path
@@ -95,7 +96,7 @@ def test_a_damaged_line_is_named(place, tmp_path):
         seal({"made": MADE, "of": list(MAKERS[0])}).strip(),
         b'{"key": "a", "row": {"outcome": "rocked"}}',
     ],
-    ids=range(11),
+    ids=range(12),
 )
 def test_a_line_without_its_fields_is_damaged(line, tmp_path):
     with fill(tmp_path).open("ab") as journal:
@@ -113,6 +114,22 @@ def test_what_made_a_row_is_written_once_and_read_back(tmp_path):
     assert list(made.values()) == [MAKERS[0], MAKERS[0], MAKERS[1]]
     assert sum(b'"of"' in line for line in path.read_bytes().splitlines()) == len(MAKERS)
     assert kept(tmp_path) == ROWS | {"key 0": ROWS["key 1"]}
+
+
+def test_a_packed_journal_goes_on_unpacked(tmp_path):
+    path = fill(tmp_path)
+    packed = path.with_name("journal.jsonl.gz")
+    packed.write_bytes(gzip.compress(path.read_bytes()))
+    path.unlink()
+    assert kept(tmp_path) == ROWS
+    with open_journal(tmp_path, SUBJECT, ()) as journal:
+        journal.append("key 3", ROWS["key 0"], MAKERS[0])
+    assert kept(tmp_path) == ROWS | {"key 3": ROWS["key 0"]}
+    path.unlink()
+    packed.write_bytes(packed.read_bytes()[:-9])
+    with pytest.raises(FolderError, match=r"its journal\.jsonl\.gz is damaged$"):
+        kept(tmp_path)
+    assert not path.exists()
 
 
 @pytest.mark.parametrize("line", [b"?", b"[]", b"[" * 100_000, b'{"other": 1}', b"\xff", b"{}"])
@@ -149,13 +166,13 @@ def test_whatever_a_study_writes_is_not_overwritten_where_it_is_another_s(study,
 
 @pytest.mark.parametrize("folder", [name for name in OF_FOLDER if (PUBLISHED / name).is_dir()])
 def test_whatever_a_study_writes_is_among_its_products(folder):
-    products = {*OF_FOLDER[folder].products, "provenance.json", FIRST}
+    products = {*OF_FOLDER[folder].products, "journal.jsonl", "provenance.json", FIRST}
     # what is large is published packed
     found = {path.name.removesuffix(".gz") for path in (PUBLISHED / folder).iterdir()}
     assert found <= products
 
 
-@pytest.mark.parametrize("name", ["journal.jsonl", ".lock", "provenance.json"])
+@pytest.mark.parametrize("name", ["journal.jsonl", "journal.jsonl.gz", ".lock", "provenance.json"])
 @pytest.mark.parametrize("kind", ["a link", "a link to nothing", "a pipe", "a folder", "/dev/full"])
 def test_what_is_no_file_is_refused_and_never_waited_for(name, kind, tmp_path):
     target, folder = tmp_path / "target", tmp_path / "out"

@@ -87,7 +87,7 @@ def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
 def runs_of(*runs, commit="a", **record):
     named = ("first", "rows", "computed", "duration_s")
     return {
-        **{"study": "sweep", "code": "c", "engines": {}, "machine": {}, "settings": {}},
+        **{"study": "sweep", "version": "1", "engines": {}, "machine": {}, "settings": {}},
         "git": {"commit": commit},
         **record,
         "runs": [dict(zip(named, run, strict=True)) for run in runs],
