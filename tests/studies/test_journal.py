@@ -96,7 +96,7 @@ def test_a_damaged_line_is_named(place, tmp_path):
         seal({"made": MADE, "of": list(MAKERS[0])}).strip(),
         b'{"key": "a", "row": {"outcome": "rocked"}}',
     ],
-    ids=range(12),
+    ids=range(13),
 )
 def test_a_line_without_its_fields_is_damaged(line, tmp_path):
     with fill(tmp_path).open("ab") as journal:
