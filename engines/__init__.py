@@ -5,13 +5,13 @@ contact holds. It never decides what the state becomes: the pose and the velocit
 before the first step, and the impact is the engine's. What a preset does besides setting the
 engine is declared (`engines.declaration.Help`).
 
-To add an engine, write one file in ``engines/adapters`` and one line in ``engines.registry.OWN``,
+To add an engine, write one folder beside these and one line in ``engines.registry.OWN``,
 or declare it in a package of your own under the entry point group ``rocking.engines``::
 
     [project.entry-points."rocking.engines"]
     mine = "my_package.rocking:ENGINE"
 
-The file holds
+It holds
 
 - a frozen settings class, whose defaults are the library's own (`engines.parts.settings`); one
   setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),

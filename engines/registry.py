@@ -17,14 +17,14 @@ GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""
 
 OWN = {
-    "pybullet": "engines.adapters.bullet:ENGINE",
-    "mujoco": "engines.adapters.mujoco:ENGINE",
-    "pymunk": "engines.adapters.pymunk:ENGINE",
-    "box2d": "engines.adapters.box2d:ENGINE",
-    "dart": "engines.adapters.dart:ENGINE",
-    "rapier": "engines.adapters.rapier:ENGINE",
-    "drake": "engines.adapters.drake:ENGINE",
-    "newton": "engines.adapters.newton:ENGINE",
+    "pybullet": "engines.pybullet:ENGINE",
+    "mujoco": "engines.mujoco:ENGINE",
+    "pymunk": "engines.pymunk:ENGINE",
+    "box2d": "engines.box2d:ENGINE",
+    "dart": "engines.dart:ENGINE",
+    "rapier": "engines.rapier:ENGINE",
+    "drake": "engines.drake:ENGINE",
+    "newton": "engines.newton:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

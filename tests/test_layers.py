@@ -30,9 +30,9 @@ def test_an_adapter_that_would_see_the_answer_is_named(tmp_path):
         kept = shutil.ignore_patterns("__pycache__", "published")
         shutil.copytree(ROOT / name, tmp_path / name, ignore=kept)
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    (tmp_path / "engines" / "adapters" / "allowed.py").write_text(ALLOWED)
+    (tmp_path / "engines" / "pymunk" / "allowed.py").write_text(ALLOWED)
     for number, statement in enumerate(FORBIDDEN.values()):
-        (tmp_path / "engines" / "adapters" / f"forbidden_{number}.py").write_text(statement)
+        (tmp_path / "engines" / "pymunk" / f"forbidden_{number}.py").write_text(statement)
     done = subprocess.run(
         [sys.executable, "-c", LINT],
         cwd=tmp_path,
@@ -44,6 +44,6 @@ def test_an_adapter_that_would_see_the_answer_is_named(tmp_path):
     assert "1 broken" in done.stdout
     named = re.findall(r"(engines\.\S+) -> (analytic\S*) \(l", done.stdout)
     expected = [
-        (f"engines.adapters.forbidden_{number}", module) for number, module in enumerate(FORBIDDEN)
+        (f"engines.pymunk.forbidden_{number}", module) for number, module in enumerate(FORBIDDEN)
     ]
     assert sorted(named) == sorted(expected)

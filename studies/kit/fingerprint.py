@@ -216,7 +216,7 @@ class Reached:
     def _shown(self, module: str) -> str:
         path = self._file(module)
         inside = path and path.is_relative_to(self._root)
-        return path.relative_to(self._root).as_posix() if path and inside else module
+        return path.relative_to(self._root).as_posix() if path and inside else f"{module}.py"
 
 
 def _dotted(path: Path, root: Path) -> str:

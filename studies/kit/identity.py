@@ -153,7 +153,7 @@ def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
 
 
 def _said(name: str, then: Maker, now: Maker) -> str:
-    if "/" in name or name.startswith("declaration"):
+    if name.endswith(".py") or name.startswith("declaration"):
         return f"another {name}"
     return f"{name} {then.get(name, 'none')}, not {now.get(name, 'none')}"
 

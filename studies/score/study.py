@@ -1,8 +1,6 @@
 """One engine, put to what the sweep, the study of precision and that of stability ask."""
 
 import functools
-import hashlib
-import inspect
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -90,18 +88,12 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
     """Return the plan of the three tables."""
     return Plan(
         jobs=score_jobs(name, quick),
-        settings={"engine": name, "adapter": adapter(name), "quick": quick, "bands": BANDS},
+        settings={"engine": name, "quick": quick, "bands": BANDS},
         ask=functools.partial(ask_of_table, quick=quick, time_limit_s=time_limit_s),
         reduce=reduce,
         tabulate=by_label("table"),
         needed=lambda rows: [row for row in rows if row["table"] == SWEEP],
     )
-
-
-def adapter(name: str) -> str:
-    """Return a hash of the module that builds an engine's worlds, which may be anybody's."""
-    file = getattr(inspect.getmodule(ENGINES[name].build), "__file__", None)
-    return hashlib.sha256(Path(file).read_bytes() if file else b"").hexdigest()[:12]
 
 
 def score_jobs(name: str, quick: bool) -> list[Job]:

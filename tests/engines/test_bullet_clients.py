@@ -8,9 +8,9 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import Scene, run
-from engines.adapters import bullet_clients
-from engines.adapters.bullet import BulletWorld
-from engines.adapters.bullet_settings import FACTORS, LANDING, TUNED
+from engines.pybullet import clients as bullet_clients
+from engines.pybullet.build import BulletWorld
+from engines.pybullet.settings import FACTORS, LANDING, TUNED
 
 pytest.importorskip("pybullet")
 

@@ -17,9 +17,10 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Reason
 from engines import ENGINES, Scene, run
-from engines.adapters import bullet, bullet_loop
-from engines.adapters.bullet_addresses import spans
 from engines.drive import build, simulate_world
+from engines.pybullet import build as bullet
+from engines.pybullet import fast as bullet_loop
+from engines.pybullet.addresses import spans
 from engines.world import Grip
 
 p = pytest.importorskip("pybullet")

@@ -15,9 +15,9 @@ from analytic import simulate
 from analytic.record import Record
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, run
-from engines.adapters.bullet import BulletWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
 from engines.drive import build
+from engines.pybullet.build import BulletWorld
 from engines.world import Moment, Pose
 from studies.cases.variants import variants
 

@@ -120,7 +120,7 @@ def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A condition of its own that does not hold is no error in Python but the end of it."""
-    from engines.adapters import drake
+    from engines.drake import build as drake
 
     monkeypatch.setattr(drake, "mean_velocity_of", lambda _: lambda begin, end: float("nan"))
     response = rocked(OWN_STEPS)
@@ -140,7 +140,7 @@ def test_a_step_that_does_not_end_is_ended_by_the_limit() -> None:
 
 
 def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    from engines.adapters.drake import DrakeWorld
+    from engines.drake.build import DrakeWorld
 
     made = DrakeWorld._properties
 

@@ -34,9 +34,9 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, FRAMES, Scene, core_engines, run
-from engines.adapters.bullet_calls import Call
 from engines.declaration import Stepping
 from engines.drive import build, simulate_world
+from engines.pybullet.calls import Call
 from engines.world import Moment, Pose, Step, World
 
 
@@ -327,7 +327,7 @@ def test_poses_that_are_no_rocking_block(pose: Pose, message: str, reason: Reaso
 
 def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
     """A library that takes a setting and does not keep it makes a failed response."""
-    from engines.adapters import bullet
+    from engines.pybullet import build as bullet
 
     do = bullet.BulletWorld._do
 

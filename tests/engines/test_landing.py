@@ -318,7 +318,7 @@ def test_processes_agree_bit_by_bit(engine: str) -> None:
 
 def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where only the base's position moves, friction feels nothing and the block slides."""
-    from engines.adapters import bullet
+    from engines.pybullet import build as bullet
 
     if engine == "pybullet":
         monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, step: None)

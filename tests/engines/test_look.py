@@ -13,9 +13,11 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, run
-from engines.adapters import bullet_clients, mujoco_loop, mujoco_models
 from engines.drive import LOOK_AROUND, build
 from engines.look import roomy
+from engines.mujoco import fast as mujoco_loop
+from engines.mujoco import models as mujoco_models
+from engines.pybullet import clients as bullet_clients
 from studies.cases.motions import noise
 
 TIMES = [0.02 * i for i in range(80)]

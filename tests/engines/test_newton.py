@@ -98,7 +98,7 @@ def test_a_trial_step_leaves_no_trace() -> None:
 @pytest.mark.parametrize("solver", ["xpbd", "dvi"])
 def test_a_model_is_as_good_as_new_for_the_next_run(solver: str) -> None:
     """Making it takes as long as hundreds of steps; what a solver remembers would show."""
-    from engines.adapters import newton_models
+    from engines.newton import models as newton_models
 
     asked = scene(MOTION, preset="fixed", settings={"solver": solver})
     other = replace(asked, motion=pulse(1.6, 2.0, 1), start=(0.4 * BLOCK.alpha, 0.0))

@@ -13,13 +13,13 @@ import pytest
 from analytic import simulate
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, core_engines, installed_engines, run
-from engines.adapters.bullet import BulletWorld
-from engines.adapters.bullet_settings import BulletSettings
-from engines.adapters.mujoco_settings import TUNED, MujocoSettings
 from engines.declaration import Stepping
 from engines.drive import build
 from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.look import Look
+from engines.mujoco.settings import TUNED, MujocoSettings
+from engines.pybullet.build import BulletWorld
+from engines.pybullet.settings import BulletSettings
 from studies.contact.claims import prices, rules
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import (

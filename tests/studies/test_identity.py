@@ -68,10 +68,10 @@ def edit(root, file, old, new):
 
 
 EDITS = {
-    "an engine's build": ("engines/adapters/mujoco.py", "import_module(", "id(", MUJOCO),
-    "an engine's loop": ("engines/adapters/bullet_loop.py", "return ", "return 1 + ", {"pybullet"}),
+    "an engine's build": ("engines/mujoco/build.py", "import_module(", "id(", MUJOCO),
+    "an engine's loop": ("engines/pybullet/fast.py", "return ", "return 1 + ", {"pybullet"}),
     "an engine's settings": (
-        *("engines/adapters/box2d_settings.py", "def __post_init__(self) -> None:"),
+        *("engines/box2d/settings.py", "def __post_init__(self) -> None:"),
         *("def __post_init__(self) -> None:\n        print()", {"box2d"}),
     ),
     "the run": ("engines/drive.py", "LOOK_AROUND = 256", "LOOK_AROUND = 257", ENGINE),
@@ -81,12 +81,12 @@ EDITS = {
     "a peer": ("studies/sources/scipy_peers.py", "return ", "return 1 + ", {"rk45"}),
     "the reduction": ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', set(SOURCES)),
     "a registry's line": (
-        *("engines/registry.py", "OWN = {", 'OWN = {"ninth": "engines.adapters.ninth:ENGINE",'),
+        *("engines/registry.py", "OWN = {", 'OWN = {"ninth": "engines.ninth:ENGINE",'),
         set(),
     ),
     "the registry": ("engines/registry.py", "return own | ", "return own | own | ", set()),
-    "a script": ("engines/adapters/mujoco_script.py", "return ", "return 1 + ", set()),
-    "a drop": ("engines/adapters/mujoco_drop.py", "return ", "return 1 + ", set()),
+    "a script": ("engines/mujoco/script.py", "return ", "return 1 + ", set()),
+    "a drop": ("engines/mujoco/drop.py", "return ", "return 1 + ", set()),
     "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
@@ -121,7 +121,7 @@ def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
         ),
         ("studies/kit/plan.py", "return {name", "return {str(name)", False, set()),
         ("studies/histories/study.py", "report(", "repr(", False, set()),
-        ("engines/adapters/box2d.py", "return ", "return 0 or ", False, {"box2d"}),
+        ("engines/box2d/build.py", "return ", "return 0 or ", False, {"box2d"}),
         ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', False, set(SOURCES)),
     ],
 )

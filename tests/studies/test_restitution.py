@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engines import ENGINES
-from engines.adapters.mujoco_drop import damping_ratio, given_back
 from engines.drop import Drop, rebound
+from engines.mujoco.drop import damping_ratio, given_back
 from engines.strike import Strike, strike
 from studies.__main__ import run
 from studies.contact.study import newton_e
@@ -233,7 +233,7 @@ def test_a_strike_that_gravity_would_not_let_begin_is_refused():
 
 
 def test_a_block_whose_library_says_that_it_went_wrong_keeps_no_number(monkeypatch):
-    monkeypatch.setattr("engines.adapters.mujoco.MujocoWorld.fault", lambda _: "it went wrong")
+    monkeypatch.setattr("engines.mujoco.build.MujocoWorld.fault", lambda _: "it went wrong")
     _, found = striking("mujoco", "spring and damper over 5 steps", 0.5)
     assert all(map(math.isnan, found))
 

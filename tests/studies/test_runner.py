@@ -322,7 +322,7 @@ def test_rows_made_by_other_code_are_computed_again_and_no_others(tmp_path):
     with in_a_copy(tmp_path, *command) as first:
         wait_at_the_gate(folder, first, rows=300)
         first.kill()
-    adapter = "engines/adapters/pymunk_settings.py"
+    adapter = "engines/pymunk/settings.py"
     made = sources_of(folder)
     said, computed = again(
         adapter, "def __post_init__(self)", "added = 1\n\n    def __post_init__(self)"
@@ -332,7 +332,7 @@ def test_rows_made_by_other_code_are_computed_again_and_no_others(tmp_path):
     assert sources_of(folder) == {"exact": 240, "pymunk": 240, "box2d": 240}
     assert pd.read_csv(folder / "sweep.csv").duplicated(["source", *CASE]).sum() == 0
     assert again(adapter, "added = 1", "# a comment\n    added = 1") == ("", 0)
-    said, computed = again("engines/adapters/box2d.py", "return ", "return 0 or ")
+    said, computed = again("engines/box2d/build.py", "return ", "return 0 or ")
     assert (said.count("240 rows"), computed) == (1, 240)
 
 

@@ -1,1 +1,0 @@
-"""One file an engine: how a scene is built, set, stepped and read back."""

@@ -1,0 +1,49 @@
+"""Box2D: what it can do, how it is used, what its users should know first."""
+
+from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld
+from engines.box2d.drop import BOUNCING
+from engines.box2d.script import script
+from engines.box2d.settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+
+ENGINE = Engine(
+    name="box2d",
+    title="Box2D",
+    library="Box2D",
+    packages=("Box2D",),
+    install="rocking[box2d]",
+    build=Box2DWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=Box2DSettings(sleeping=False),
+            step_s=LIBRARY_STEP_S,
+            step_source=MANUAL,
+            misses=(Miss.MIRROR, Miss.PEAK),
+            own={"friction": 0.2, "sleeping": True},
+        ),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=1e-3,
+            helped_by={Help.MARGIN: {"margin": None}},
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    script=script,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+)

@@ -1,0 +1,47 @@
+"""DART: what it can do, how it is used, what its users should know first."""
+
+from engines.dart.build import DartWorld
+from engines.dart.drop import BOUNCING
+from engines.dart.script import script
+from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
+from engines.declaration import Engine, Help, Preset, Stepping
+
+ENGINE = Engine(
+    name="dart",
+    title="DART",
+    library="dartpy",
+    packages=("dartpy",),
+    install="rocking[dart]",
+    build=DartWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=DartSettings(),
+            step_s=1e-3,
+            step_source="the world's own time step, 0.001 s",
+        ),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=5e-4,
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    spatial=True,
+    calmest=1.0,
+    script=script,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+    own_step="dartpy:simulation.World.step",
+)

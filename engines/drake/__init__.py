@@ -1,0 +1,40 @@
+"""Drake: what it can do, how it is used, what its users should know first."""
+
+from engines.declaration import Engine, Miss, Preset, Stepping
+from engines.drake.build import DrakeWorld
+from engines.drake.script import script
+from engines.drake.settings import CONTROLLED, FACTORS, RULES, TUNED, DrakeSettings
+
+ENGINE = Engine(
+    name="drake",
+    title="Drake",
+    library="pydrake",
+    packages=("drake",),
+    install="rocking[drake]",
+    build=DrakeWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=DrakeSettings(),
+            step_s=1e-3,
+            step_source="MultibodyPlantConfig's own time_step, 0.001 s",
+            misses=(Miss.PEAK,),
+            own={"friction": 0.5},
+        ),
+        Preset(name="fixed", settings=TUNED, step=3e-4),
+        Preset(
+            name="error-controlled",
+            title="steps of its own, by its own estimate of the error",
+            settings=CONTROLLED,
+            stepping=Stepping.OWN,
+            dial=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
+        ),
+    ),
+    frames=("base",),
+    geometries=("box", "corners"),
+    spatial=True,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+    own_step="pydrake.systems.analysis:Simulator.AdvanceTo",
+)

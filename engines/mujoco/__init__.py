@@ -1,0 +1,58 @@
+"""MuJoCo: what it can do, how it is used, what its users should know first."""
+
+from engines.declaration import Engine, Help, Preset, Stepping
+from engines.mujoco.build import LIBRARY_STEP_S, build
+from engines.mujoco.drop import BOUNCING
+from engines.mujoco.script import script
+from engines.mujoco.settings import (
+    DEFAULT_CONTACT_S,
+    FACTORS,
+    LANDING,
+    RULES,
+    TUNED,
+    MujocoSettings,
+    spring,
+)
+from engines.scene import GEOMETRIES
+
+ENGINE = Engine(
+    name="mujoco",
+    title="MuJoCo",
+    library="mujoco",
+    packages=("mujoco",),
+    install="rocking",
+    build=build,
+    presets=(
+        Preset(
+            name="naive",
+            settings=MujocoSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source="the library's own timestep, 0.002 s",
+            contact_s=DEFAULT_CONTACT_S,
+        ),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.PHASES: {"by_phase": False},
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"carry": None, "preload": False},
+                Help.PRELOAD: {"preload": False},
+            },
+        ),
+    ),
+    core=True,
+    geometries=GEOMETRIES,
+    spatial=True,
+    script=script,
+    spring=spring,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+    remedy={"impratio": 100.0},
+    own_step="mujoco:mj_step",
+    compiles=True,
+)

@@ -1,0 +1,131 @@
+"""MuJoCo: how a scene is built, set, read back and stepped."""
+
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+from engines.mujoco.contact import (
+    Hold,
+    arrays_of,
+    begin_hold,
+    notice_step,
+    pose_now,
+    prepare_step,
+)
+from engines.mujoco.fast import drive, memory_of, obstacle
+from engines.mujoco.model import OPTIONS, coordinates, model_xml
+from engines.mujoco.models import given_back, taken
+from engines.mujoco.settings import (
+    MujocoSettings,
+    kept,
+)
+from engines.parts.readback import disagreement
+from engines.scene import Scene
+from engines.world import Driver, Moment, Pose, Step
+
+LIBRARY_STEP_S = 0.002
+"""The library's own time step [s]."""
+
+KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
+"""Options that the library numbers, by the names that it gives their values."""
+
+
+class MujocoWorld:
+    """A block on a plane, or on a driven box where the base moves.
+
+    A driven body has no velocity that friction could feel, so the box is given the surface
+    velocity that its motion has.
+    """
+
+    def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
+        self._s = s = settings
+        self._mj = import_module("mujoco")
+        self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
+        self._built = taken(self._mj, model_xml(scene, s))
+        self._model, self._data = self._built.model, self._built.data
+        self._option = self._model.opt
+        self._fault = self._read_back(scene)
+        if not scene.beginning.at_rest:
+            self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
+        self._holds = Hold.blank()
+        self._held = self._holds[0]
+        begin_hold(self._held, scene, s, dt_s, self._model.npair)
+        self._arrays = tuple(arrays_of(self._model, self._data, self._held))
+        self._memory = memory_of(self._model, self._data)
+        # the library would write its warnings to a file; they are counted and read from `fault`
+        self._mj.set_mju_user_warning(_ignore)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        data, numbers = self._data, (*step[:-2], int(step.grip), step.side)
+        prepare_step(self._holds, self._arrays, numbers)
+        self._option.timestep = step.dt_s
+        self._mj.mj_step(self._model, data)
+        forces = data.ncon, data.nefc, data.efc_R, data.efc_force
+        notice_step(self._holds, self._arrays, forces, numbers)
+
+    @property
+    def drive(self) -> Driver | None:
+        """What takes many steps at once; see `engines.world.DrivenWorld`."""
+        if self._memory is None:
+            return None
+        return partial(drive, self._holds, self._arrays, self._memory)
+
+    @property
+    def obstacle(self) -> str:
+        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        return obstacle()
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        return Pose(*pose_now(self._holds, self._arrays))
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or what the engine warned of."""
+        if self._fault:
+            return self._fault
+        # all at once: to ask each kind by itself takes as long as fifty steps
+        warned = self._data.warning.number.nonzero()[0]
+        if warned.size:
+            kind = list(self._mj.mjtWarning.__members__)[warned[0]]
+            return f"MuJoCo warned: {kind.removeprefix('mjWARN_')}"
+        return disagreement({"time": (self._held.time, self._data.time)})
+
+    def close(self) -> None:
+        """Give warnings back to the library, and leave the model to the next run."""
+        self._mj.set_mju_user_warning(None)
+        given_back(self._mj, self._built)
+
+    def _read_back(self, scene: Scene) -> str:
+        s, model = self._s, self._model
+        pairs: dict[str, tuple[Any, Any]] = {
+            "mass": (scene.mass, model.body_mass[-1]),
+            "timestep": (LIBRARY_STEP_S, self._option.timestep),
+            "friction": (s.friction, model.geom_friction[-1, 0]),
+        }
+        pairs |= {f"inertia {i}": (scene.inertia[i], model.body_inertia[-1, i]) for i in range(3)}
+        pairs |= {name: self._read_option(name) for name in OPTIONS}
+        if s.impedance is not None:
+            pairs |= {
+                f"impedance {i}": (value, model.pair_solimp[0, i])
+                for i, value in enumerate(s.impedance)
+            }
+            pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
+        return disagreement(pairs)
+
+    def _read_option(self, name: str) -> tuple[Any, Any]:
+        """Return a wanted option as the library numbers it, and the option as it is."""
+        wanted, found = getattr(self._s, name), getattr(self._option, name)
+        if wanted is None or name not in KINDS:
+            return wanted, found
+        kind = getattr(self._mj, f"mjt{name.capitalize()}")
+        return int(kind.__members__[KINDS[name] + wanted.upper()]), int(found)
+
+
+def build(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
+    """Build a scene; a preset's impratio is kept to what the friction allows."""
+    return MujocoWorld(scene, kept(scene, settings), dt_s)
+
+
+def _ignore(message: str) -> None:
+    """Take a warning without writing it anywhere."""

@@ -1,0 +1,47 @@
+"""A scene in MuJoCo's own words, for a script that needs the library alone."""
+
+from engines.mujoco.model import coordinates, stepped_xml
+from engines.mujoco.settings import MujocoSettings, kept
+from engines.scene import Scene
+from engines.script import Script
+from engines.world import Moment
+
+MODEL = "block.xml"
+"""File of the model, beside the script."""
+
+SAID = ("<option", "<geom", "<pair")
+"""Elements of a model that a preset sets, the joints apart."""
+
+PLANAR_POSE = ("theta, rate = data.qpos[2], data.qvel[2]",)
+FREE_POSE = (
+    "theta = 2.0 * math.atan2(data.qpos[5], data.qpos[3])",
+    "rate = data.qvel[4]",
+)
+
+
+def _beginning(scene: Scene, s: MujocoSettings) -> tuple[str, ...]:
+    """Return lines that let the block set out; none where it is at rest."""
+    if scene.beginning.at_rest:
+        return ()
+    place, velocity = coordinates(scene, s)
+    return (f"data.qpos[:] = {place}", f"data.qvel[:] = {velocity}")
+
+
+def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as a model of MuJoCo; see `engines.script`."""
+    s = kept(scene, s)
+    model = stepped_xml(scene, s, dt_s)
+    lines = map(str.strip, model.splitlines())
+    return Script(
+        imports=("import mujoco",),
+        settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
+        build=(
+            f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))',
+            "data = mujoco.MjData(model)",
+            *_beginning(scene, s),
+        ),
+        step=("model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)"),
+        pose=PLANAR_POSE if s.planar else FREE_POSE,
+        moment=Moment.END if s.integrator == "RK4" else Moment.MIDDLE,
+        files={MODEL: model},
+    )

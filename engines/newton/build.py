@@ -1,0 +1,71 @@
+"""Newton (Warp): how a scene is set, stepped and read back, on the CPU.
+
+A step is dozens of short kernels: they are recorded once, with the step's length, and replayed.
+The library compiles them when they are first used on a machine, for minutes, and keeps them there.
+"""
+
+import math
+
+from engines.declaration import Precision
+from engines.newton.models import given_back, taken
+from engines.newton.settings import NewtonSettings
+from engines.parts.quiet import imported, silence
+from engines.parts.readback import disagreement
+from engines.scene import Scene
+from engines.world import Moment, Pose, Step
+
+
+class NewtonWorld:
+    """A block in space, on a plane that does not move."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:
+        self._s, self._dt = settings, dt_s
+        self._mass, self._gravity = scene.mass, scene.block.gravity
+        newton, self._warp = imported("newton"), imported("warp")
+        self._warp.config.log_level = self._warp.LOG_ERROR
+        with silence():
+            self._recorded = taken(newton, self._warp, scene, settings, dt_s)
+        self._graph, self._force = self._recorded.graph, self._recorded.force
+        self._place, self._velocity = self._recorded.place, self._recorded.velocity
+        self._put(scene)
+        self._fault = self._read_back(scene)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step, of which all are equal; see `engines.world.SteppedWorld`."""
+        if step.dt_s != self._dt:
+            self._fault = self._fault or "its steps are recorded, and all of one length"
+        self._force[0, 0] = self._mass * step.pull_x
+        self._force[0, 2] = self._mass * (step.pull_z + self._gravity)
+        self._warp.capture_launch(self._graph)
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        x, _, z, _, turn_y, _, turn_w = self._place[0].tolist()
+        theta = 2.0 * math.atan2(turn_y, turn_w)
+        return Pose(x, z, theta, float(self._velocity[0, 4]))
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that a step was not the one that is recorded."""
+        return self._fault
+
+    def close(self) -> None:
+        """Leave the engine's memory to the next run of the same block."""
+        given_back(self._recorded)
+
+    def _put(self, scene: Scene) -> None:
+        """Let the block set out from where the scene begins."""
+        at = scene.beginning
+        half = 0.5 * at.theta
+        self._place[0] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
+        self._velocity[0] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+
+    def _read_back(self, scene: Scene) -> str:
+        model = self._recorded.model
+        pairs = {
+            "mass": (scene.mass, float(model.body_mass.numpy()[0])),
+            "moment": (scene.inertia[1], float(model.body_inertia.numpy()[0, 1, 1])),
+            "friction": (self._s.friction, min(model.shape_material_mu.numpy().tolist())),
+        }
+        return disagreement(pairs, Precision.SINGLE.value)

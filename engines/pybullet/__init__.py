@@ -1,0 +1,56 @@
+"""PyBullet: what it can do, how it is used, what its users should know first."""
+
+from engines.declaration import Engine, Help, Preset, Stepping
+from engines.pybullet.build import BulletWorld
+from engines.pybullet.drop import BOUNCING
+from engines.pybullet.script import script
+from engines.pybullet.settings import (
+    FACTORS,
+    LANDING,
+    LIBRARY_STEP_S,
+    RULES,
+    TUNED,
+    BulletSettings,
+    spring,
+)
+from engines.scene import GEOMETRIES
+
+ENGINE = Engine(
+    name="pybullet",
+    title="PyBullet",
+    library="pybullet",
+    packages=("pybullet",),
+    install="rocking",
+    build=BulletWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=BulletSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source="the library's own time step, 1/240 s",
+            own={"friction": 0.5},
+        ),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.PHASES: {"by_phase": False},
+                Help.MARGIN: {"gap_by_step": False},
+            },
+        ),
+    ),
+    core=True,
+    geometries=GEOMETRIES,
+    spatial=True,
+    script=script,
+    spring=spring,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+    remedy={"iterations": 10000},
+    own_step="pybullet:stepSimulation",
+    compiles=True,
+)

@@ -1,0 +1,244 @@
+"""PyBullet: how a scene is built, set, read back and stepped."""
+
+import contextlib
+import math
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines.compiled import SWITCHED_OFF, switched_off
+from engines.parts.quiet import imported, silence
+from engines.parts.readback import disagreement
+from engines.pybullet.calls import (
+    Call,
+    Constant,
+    base_body,
+    base_call,
+    base_place,
+    base_shape,
+    block_body,
+    block_call,
+    block_shape,
+    engine_call,
+)
+from engines.pybullet.clients import given_back, held_for_all, taken
+from engines.pybullet.fast import (
+    Client,
+    Hold,
+    begin_hold,
+    client_of,
+    clients,
+    corrected,
+    drive,
+    once,
+)
+from engines.pybullet.settings import (
+    LANDING,
+    BulletSettings,
+)
+from engines.scene import Scene
+from engines.world import Driver, Grip, Moment, Pose, Step
+
+TRIAL = (
+    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, Grip.SWING, 1.0),
+    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, Grip.SWING, 1.0),
+    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, Grip.SWING, 1.0),
+    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, Grip.APPROACH, 1.0),
+    Step(1e-5, 4.51e-3, 5.05e-4, 0.0, -495.4, 0.006, 0.054, 1.22e-4, Grip.STRIKE, 1.0),
+    Step(1e-3, 5.51e-3, 5.05e-4, 0.0, -4.95, 0.006, 0.060, 1.82e-4, Grip.REST, 0.0),
+)
+"""Steps by which a compiled loop is held against Python."""
+
+
+class BulletWorld:
+    """A block on a base in a PyBullet client that no other run uses meanwhile.
+
+    The base is a multibody without mass, whether it moves or not: of the bases PyBullet offers,
+    the only one whose velocity friction feels. On a static rigid body the response to the mirrored
+    motion is not the mirror image.
+    """
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
+        self._s, self._ordinary = settings, dt_s
+        self._p = imported("pybullet")
+        loops = scene.compiled and loop_agrees()
+        self._client = taken(self._p)
+        self._moving = scene.frame == "world"
+        self._grip: Grip | None = None
+        self._ground = base_place(scene, settings)
+        with held_for_all:
+            self._set_engine(scene)
+            floor = self._do(base_shape(scene, settings))
+            self._base = int(self._do(base_body(floor, self._ground)))
+            shape = self._do(block_shape(scene, settings, dt_s))
+            self._body = int(self._do(block_body(scene, settings, shape)))
+            self._fault = self._set_bodies(scene)
+            self._take_inertia(scene)
+        self._put(scene)
+        self._holds = Hold.blank()
+        self._held = self._holds[0]
+        begin_hold(self._held, scene, settings, dt_s)
+        self._held.block, self._held.base = self._body, self._base
+        self._lent = self.lent() if loops else None
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        p, client = self._p, self._client
+        if step.dt_s != self._held.dt or step.grip is not self._grip:
+            erp = self._erp(step) if self._s.by_phase else {}
+            p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
+            self._held.dt, self._grip = step.dt_s, step.grip
+        if self._moving:
+            self._move_base(step)
+        p.setGravity(step.pull_x, 0.0, step.pull_z, physicsClientId=client)
+        p.stepSimulation(physicsClientId=client)
+
+    @property
+    def drive(self) -> Driver | None:
+        """What takes many steps at once; see `engines.world.DrivenWorld`."""
+        return None if self._lent is None else partial(drive, *self._lent)
+
+    @property
+    def obstacle(self) -> str:
+        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        if switched_off():
+            return SWITCHED_OFF
+        if not clients(self._p).size:
+            return "the library is another build, whose clients are not known"
+        return "" if loop_agrees() else "its loop does not step as Python does"
+
+    def lent(self) -> tuple[Sequence[Hold], Client]:
+        """Return what a compiled loop steps by."""
+        return self._holds, client_of(self._p, self._client, self._body)
+
+    def pose(self) -> Pose:
+        """Read the block's pose back."""
+        p, client = self._p, self._client
+        (x, _, z), q = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
+        rate = p.getBaseVelocity(self._body, physicsClientId=client)[1][1]
+        if self._moving:
+            x -= p.getBasePositionAndOrientation(self._base, physicsClientId=client)[0][0]
+        return Pose(x, z, 2.0 * math.atan2(q[1], q[3]), rate)
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that the step is not the one that was set."""
+        engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
+        return self._fault or disagreement(
+            {"fixedTimeStep": (self._held.dt or None, engine["fixedTimeStep"])}
+        )
+
+    def close(self) -> None:
+        """Leave the client to the next run."""
+        given_back(self._p, self._client)
+
+    def _take_inertia(self, scene: Scene) -> None:
+        """Take a step far from the base: only after its first has a body the inertia that was set.
+
+        With the shape's own a block that is lifted or released at once would turn too fast.
+        """
+        p, client = self._p, self._client
+        aloft, upright = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
+        p.resetBasePositionAndOrientation(self._body, aloft, upright, physicsClientId=client)
+        p.stepSimulation(physicsClientId=client)
+
+    def _put(self, scene: Scene) -> None:
+        """Let the block set out from where the scene begins."""
+        p, client, start = self._p, self._client, scene.beginning
+        turned = (0.0, math.sin(0.5 * start.theta), 0.0, math.cos(0.5 * start.theta))
+        place, velocity = (start.x, 0.0, start.z), (start.velocity_x, 0.0, start.velocity_z)
+        p.resetBasePositionAndOrientation(self._body, place, turned, physicsClientId=client)
+        p.resetBaseVelocity(self._body, velocity, (0.0, start.rate, 0.0), physicsClientId=client)
+
+    def _move_base(self, step: Step) -> None:
+        p, client = self._p, self._client
+        if self._s.base_velocity:
+            velocity = (step.base_velocity, 0.0, 0.0)
+            p.resetBaseVelocity(self._base, velocity, physicsClientId=client)
+            return
+        place, upright = (step.base_x, *self._ground[1:]), (0.0, 0.0, 0.0, 1.0)
+        p.resetBasePositionAndOrientation(self._base, place, upright, physicsClientId=client)
+
+    def _erp(self, step: Step) -> dict[str, float]:
+        """Return what a step corrects of positions."""
+        held = self._held
+        normal, across = corrected(step.grip, step.dt_s, held.ordinary)
+        return {
+            "contactERP": normal * held.contact_erp,
+            "frictionERP": across * held.friction_erp,
+        }
+
+    def _set_engine(self, scene: Scene) -> None:
+        # the library announces a solver past Python
+        with silence() if self._s.solver is not None else contextlib.nullcontext():
+            self._do(engine_call(scene, self._s, self._ordinary))
+
+    def _do(self, call: Call) -> Any:
+        """Make a call in this world's client."""
+        arguments = {name: self._value(value) for name, value in call.arguments.items()}
+        return getattr(self._p, call.name)(**arguments, physicsClientId=self._client)
+
+    def _value(self, value: Any) -> Any:
+        if isinstance(value, Constant):
+            return getattr(self._p, value)
+        return [self._value(item) for item in value] if isinstance(value, list) else value
+
+    def _set_bodies(self, scene: Scene) -> str:
+        """Set the bodies' dynamics and say where reading them back disagrees."""
+        call = block_call(scene, self._s, self._body)
+        self._do(call)
+        self._do(base_call(self._s, self._base))
+        return self._read_back(scene, call.arguments)
+
+    def _read_back(self, scene: Scene, wanted: Mapping[str, Any]) -> str:
+        s = self._s
+        block, base = self._dynamics(self._body), self._dynamics(self._base)
+        engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
+        pairs: dict[str, tuple[Any, Any]] = {
+            "mass": (scene.mass, block[0]),
+            "friction of the block": (s.friction, block[1]),
+            "friction of the base": (1.0, base[1]),
+            "numSolverIterations": (s.iterations_of(scene), engine["numSolverIterations"]),
+        }
+        if s.exact_inertia:
+            pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}
+        if s.multibody:
+            # a body in maximal coordinates takes them, too, but reads zeros
+            pairs["restitution"] = (s.restitution, block[5])
+            pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
+            pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
+        return disagreement(pairs)
+
+    def _dynamics(self, body: int) -> tuple[Any, ...]:
+        return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
+
+
+@cache
+def loop_agrees() -> bool:
+    """Return whether a loop can step a block on a moving base, and as Python does."""
+    known = clients(imported("pybullet"))
+    return bool(known.size) and _trial(_by_loop) == _trial(_by_calls)
+
+
+def _trial(after: Callable[[BulletWorld, Step], Pose]) -> list[Pose]:
+    """Return the poses after each step of the trial."""
+    block = RigidBlock(width=0.5, height=1.5)
+    motion = SinePulse(amplitude=1.0, omega=1.0)
+    scene = Scene(block=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
+    world = BulletWorld(scene, LANDING, TRIAL[0].dt_s)
+    try:
+        return [after(world, step) for step in TRIAL]
+    finally:
+        world.close()
+
+
+def _by_calls(world: BulletWorld, step: Step) -> Pose:
+    world.step(step)
+    return world.pose()
+
+
+def _by_loop(world: BulletWorld, step: Step) -> Pose:
+    return Pose(*once(*world.lent(), (*step[:-2], int(step.grip), step.side)))

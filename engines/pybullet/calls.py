@@ -1,0 +1,151 @@
+"""A scene as calls of PyBullet, before any is made: what the adapter does and a script prints."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from engines.parts.settings import given
+from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size, hull_points
+from engines.pybullet.settings import SOLVERS, BulletSettings
+from engines.scene import Scene
+
+KEPT_GAP = 4.0
+"""Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot
+rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
+must be let go: an anchor that is still kept at the next impact pulls it back to where it stood."""
+
+ROLLED = 0.75
+"""Part of that gap at most by which a corner sphere rolls while the block turns by alpha. An anchor
+stays where it was made: from a gap away the library adds a contact, then another, and keeps all."""
+
+
+class Constant(str):
+    """A number of the library's, by its name there."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of the library: the name of a function, and its arguments by name."""
+
+    name: str
+    arguments: Mapping[str, Any]
+
+
+def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
+    """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
+    wanted = {
+        "numSolverIterations": s.iterations_of(scene),
+        "solverResidualThreshold": s.residual,
+        "contactERP": s.contact_erp,
+        "frictionERP": s.friction_erp,
+        "contactSlop": s.contact_slop,
+        "contactBreakingThreshold": kept_gap(scene, s, dt_s),
+        "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),
+        "warmStartingFactor": s.warm_starting,
+        "useSplitImpulse": s.split_impulse,
+        "enableConeFriction": s.cone_friction,
+        "enableSAT": s.separating_axis,
+        "restitutionVelocityThreshold": s.restitution_threshold,
+    }
+    return Call("setPhysicsEngineParameter", given(wanted))
+
+
+def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the gap, over the half diagonal, up to which a contact is kept."""
+    if s.gap_by_step:
+        return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
+    return s.breaking_threshold
+
+
+def corner_radius(scene: Scene, s: BulletSettings, dt_s: float) -> float:
+    """Return the radius [m] of the corner spheres."""
+    radius = s.corner_radius * scene.block.width
+    if s.gap_by_step:
+        gap = kept_gap(scene, s, dt_s) * scene.block.R
+        radius = min(radius, ROLLED * gap / scene.block.alpha)
+    return radius
+
+
+def base_shape(scene: Scene, s: BulletSettings) -> Call:
+    """Return the call that makes the shape of the base."""
+    if s.base_geometry == "box":
+        return _shape("GEOM_BOX", halfExtents=floor_half_size(scene))
+    return _shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
+
+
+def block_shape(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
+    """Return the call that makes what the block touches its base with."""
+    if s.geometry == "box":
+        return _shape("GEOM_BOX", halfExtents=half_size(scene))
+    if s.geometry == "hull":
+        return _shape("GEOM_MESH", vertices=hull_points(scene))
+    radius = corner_radius(scene, s, dt_s)
+    corners = corner_spheres(scene, radius, planar=s.planar)
+    spheres = {
+        "shapeTypes": [Constant("GEOM_SPHERE")] * len(corners),
+        "radii": [radius] * len(corners),
+        "collisionFramePositions": corners,
+    }
+    return Call("createCollisionShapeArray", spheres)
+
+
+def _shape(kind: str, **shape: Any) -> Call:
+    return Call("createCollisionShape", {"shapeType": Constant(kind), **shape})
+
+
+def base_place(scene: Scene, s: BulletSettings) -> Point:
+    """Return where the centre of the base is [m]."""
+    return (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
+
+
+def base_body(shape: Any, place: tuple[float, ...]) -> Call:
+    """Return the call that makes the base of its shape."""
+    return _body(0.0, shape, place, False)
+
+
+def block_body(scene: Scene, s: BulletSettings, shape: Any) -> Call:
+    """Return the call that makes the block of its shape."""
+    return _body(scene.mass, shape, (0.0, 0.0, 0.5 * scene.block.height), not s.multibody)
+
+
+def _body(mass: float, shape: Any, place: tuple[float, ...], rigid: bool) -> Call:
+    body = {
+        "baseMass": mass,
+        "baseCollisionShapeIndex": shape,
+        "basePosition": place,
+        "useMaximalCoordinates": rigid,
+    }
+    return Call("createMultiBody", body)
+
+
+def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
+    """Return the call that sets the block's dynamics."""
+    p = scene.block.p
+    wanted: dict[str, Any] = {
+        "lateralFriction": s.friction,
+        # without its mass in the same call, a block in maximal coordinates becomes NaN
+        "mass": scene.mass,
+        "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
+        "linearDamping": s.damping,
+        "angularDamping": s.damping,
+        "restitution": s.restitution,
+    }
+    if s.contact_stiffness is not None and s.contact_damping is not None:
+        wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
+        wanted["contactDamping"] = s.contact_damping * scene.mass * p
+    return _change(s, body, given(wanted))
+
+
+def base_call(s: BulletSettings, body: Any) -> Call:
+    """Return the call that sets the base's dynamics."""
+    return _change(
+        s, body, {"lateralFriction": 1.0, **({} if s.restitution is None else {"restitution": 1.0})}
+    )
+
+
+def _change(s: BulletSettings, body: Any, wanted: Mapping[str, Any]) -> Call:
+    anchor = {"frictionAnchor": 1} if s.friction_anchor else {}
+    return Call("changeDynamics", {"bodyUniqueId": body, "linkIndex": -1, **wanted, **anchor})

@@ -1,0 +1,48 @@
+"""pymunk: what it can do, how it is used, what its users should know first."""
+
+from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld
+from engines.pymunk.drop import BOUNCING
+from engines.pymunk.script import script
+from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
+
+ENGINE = Engine(
+    name="pymunk",
+    title="pymunk",
+    library="pymunk",
+    packages=("pymunk",),
+    install="rocking[pymunk]",
+    build=PymunkWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=PymunkSettings(),
+            step_s=LIBRARY_STEP_S,
+            step_source=README,
+            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+            own={"friction": 0.0},
+        ),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=2.5e-4,
+            helped_by={Help.MARGIN: {"margin": None}},
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.POSITIONS: {"positions": False},
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    script=script,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+)

@@ -1,0 +1,47 @@
+"""Rapier: what it can do, how it is used, what its users should know first."""
+
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.rapier.build import RapierWorld
+from engines.rapier.drop import BOUNCING
+from engines.rapier.script import script
+from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
+
+ENGINE = Engine(
+    name="rapier",
+    title="Rapier",
+    library="rapier3d",
+    packages=("rapier3d",),
+    install="rocking[rapier]",
+    build=RapierWorld,
+    presets=(
+        Preset(
+            name="naive",
+            settings=RapierSettings(sleeping=False),
+            step_s=1.0 / 60.0,
+            step_source="the library's own time step, 1/60 s",
+            misses=(Miss.MIRROR,),
+            own={"friction": 0.5, "sleeping": True},
+        ),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    spatial=True,
+    precision=Precision.SINGLE,
+    scatter=6e-3,
+    shortest_step=3e-6,
+    script=script,
+    bouncing=BOUNCING,
+    factors=FACTORS,
+    rules=RULES,
+    remedy={"iterations": 1000},
+    own_step="rapier3d:PhysicsWorld.step",
+)
