@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
@@ -210,10 +211,19 @@ class Scene:
         return replace(settings, **chosen)  # type: ignore[type-var]
 
 
+LIKENESS = 0.7
+"""How like another word one must be for it to be named as what was meant."""
+
+
 def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
     """Raise ValueError unless `value` is one of those allowed."""
     if value not in allowed:
-        raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+        near = [
+            f", perhaps {word!r}" for word in get_close_matches(str(value), allowed, 1, LIKENESS)
+        ]
+        raise ValueError(
+            f"{name} is {value!r}{''.join(near)}; it must be one of {', '.join(allowed)}"
+        )
 
 
 def _moves(motion: Motion) -> bool:

@@ -49,11 +49,13 @@ def respond(
 
     Raises
     ------
-    studies.sources.UnknownSourceError
-        If there is no such source or preset.
+    ValueError
+        If there is no such source, preset or option, or a value is not allowed.
     """
     from studies.sources.registry import resolve
 
     if tuple(start) != (0.0, 0.0):
         options["start"] = start
-    return resolve(source).call(block, motion, duration=duration, times=times, **options)
+    asked = resolve(source)
+    asked.check(block, motion, duration=duration, times=times, **options)
+    return asked.call(block, motion, duration=duration, times=times, **options)

@@ -83,7 +83,7 @@ class DartSettings:
     geometry: str = setting("box", names=("box", "corners"))
     planar: bool = False
     aside: bool = False
-    friction: float = 1.0
+    friction: float = setting(1.0, least=0.0)
     exact_inertia: bool = True
     collision: str | None = setting(names=tuple(DETECTORS))
     solver: str | None = setting(names=tuple(SOLVERS))

@@ -60,7 +60,7 @@ class DrakeSettings:
 
     geometry: str = setting("box", names=("box", "corners"))
     planar: bool = False
-    friction: float = 1.0
+    friction: float = setting(1.0, least=0.0)
     solver: str | None = setting(names=SOLVERS)
     stiffness: float | None = setting(above=0.0)
     relaxation: float | None = setting(least=0.0)

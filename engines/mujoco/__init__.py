@@ -1,7 +1,7 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Preset, Stepping
-from engines.mujoco.build import LIBRARY_STEP_S, build
+from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.drop import BOUNCING
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
@@ -21,7 +21,7 @@ ENGINE = Engine(
     library="mujoco",
     packages=("mujoco",),
     install="rocking",
-    build=build,
+    build=world_of,
     presets=(
         Preset(
             name="naive",

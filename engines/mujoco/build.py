@@ -122,7 +122,7 @@ class MujocoWorld:
         return int(kind.__members__[KINDS[name] + wanted.upper()]), int(found)
 
 
-def build(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
+def world_of(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
     """Build a scene; a preset's impratio is kept to what the friction allows."""
     return MujocoWorld(scene, kept(scene, settings), dt_s)
 

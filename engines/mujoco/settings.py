@@ -70,14 +70,14 @@ class MujocoSettings:
 
     geometry: str = setting("box", names=GEOMETRIES)
     planar: bool = False
-    friction: float = 1.0
+    friction: float = setting(1.0, least=0.0)
     corner_radius: float = setting(1e-7, above=0.0)
     cone: str | None = None
     solver: str | None = None
     jacobian: str | None = None
-    tolerance: float | None = None
-    iterations: int | None = None
-    impratio: float | None = None
+    tolerance: float | None = setting(least=0.0)
+    iterations: int | None = setting(least=0)
+    impratio: float | None = setting(above=0.0)
     # a reference with one zero would be replaced by the library's default
     damping: float | None = setting(above=0.0, beside=("sliding_damping", "stiffness"))
     sliding_damping: float | None = setting(above=0.0)

@@ -46,7 +46,7 @@ class NewtonSettings:
     """
 
     geometry: str = setting("box", names=("box", "corners"))
-    friction: float = 1.0
+    friction: float = setting(1.0, least=0.0)
     solver: str = setting(XPBD, names=SOLVERS)
     iterations: int | None = setting(least=1)
     relaxation: float | None = setting(above=0.0, most=2.0)

@@ -103,7 +103,7 @@ class BulletSettings:
     geometry: str = setting("box", names=GEOMETRIES)
     planar: bool = False
     multibody: bool = True
-    friction: float = setting(1.0, most=LARGEST_FRICTION)
+    friction: float = setting(1.0, least=0.0, most=LARGEST_FRICTION)
     corner_radius: float = setting(1e-6, above=0.0)
     exact_inertia: bool = False
     damping: float | None = None

@@ -86,7 +86,7 @@ class RapierSettings(Counted):
     geometry: str = setting("box", names=("box", "corners"))
     planar: bool = False
     locked_aside: bool = False
-    friction: float = 1.0
+    friction: float = setting(1.0, least=0.0)
     substeps: int | None = setting(least=1)
     iterations: int | None = setting(least=1)
     stabilization: int | None = setting(least=0)

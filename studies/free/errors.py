@@ -11,7 +11,6 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.sources.registry import resolve
 
 SWINGS = 3
 """Swings after the fall from the tilt that are compared."""
@@ -26,7 +25,7 @@ def reduce(job: Job, response: Response) -> Row:
 
     The fall from the tilt counts as a quarter of a period, and begins the drift.
     """
-    model = resolve(job.source).model
+    model = job.asked.model
     period_error = decay_error = drift = math.nan
     timed = 0
     theta, _ = job.options["start"]

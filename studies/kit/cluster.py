@@ -16,7 +16,7 @@ from studies.kit.dask_client import AsyncClient, ClusterError, client_of, gone, 
 from studies.kit.jobs import Job, ask
 from studies.kit.refusing import one_line
 from studies.kit.worker import RefusedError, fitness, work
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import Source
 
 LOOK_S = 1.0
 """How long to wait for the next answer before asking whether anybody is left to give it [s]."""
@@ -71,7 +71,7 @@ class Cluster:
                 await asyncio.gather(*numbers, return_exceptions=True)
 
     async def _response(self, client: AsyncClient, job: Job) -> Response:
-        order = (fitness(), job, resolve(job.source), self.ask, self.time_limit_s)
+        order = (fitness(), job, job.asked, self.ask, self.time_limit_s)
         try:
             future = client.submit(work, *order, pure=False)
         except OSError:

@@ -112,7 +112,7 @@ def take(other: Elsewhere, jobs: Sequence[Job], journal: Journal, makers: Makers
         elif not known and _is_wanted(row):
             journal.append(key, row, then)
             taken += 1
-            engine = resolve(job.source).engine
+            engine = job.asked.engine
             packages = ENGINES[engine].packages if engine else ()
             versions |= {name: then[name] for name in packages}
     if len(stale) == len(asked):

@@ -12,7 +12,7 @@ from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool, StartError
 from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import Source
 
 
 class Executor(Protocol):
@@ -48,7 +48,7 @@ class Local:
         slow: dict[int, Job] = {}
         loaded: set[str] = set()
         for number, job in enumerate(jobs):
-            source = resolve(job.source)
+            source = job.asked
             if job.needs_process(source):
                 slow[number] = job
                 continue
@@ -65,12 +65,10 @@ class Local:
         for job in jobs.values():
             firsts.setdefault(job.source, job)
         with Pool(min(self.workers, len(jobs))) as pool:
-            compile_ahead(pool, self.ask, [(job, resolve(job.source)) for job in firsts.values()])
+            compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
             # the source travels with the job, so that a worker needs no registry of its own
             tasks = {
-                pool.schedule(
-                    ask_loaded, (self.ask, job, resolve(job.source)), self.time_limit_s
-                ): number
+                pool.schedule(ask_loaded, (self.ask, job, job.asked), self.time_limit_s): number
                 for number, job in jobs.items()
             }
             try:

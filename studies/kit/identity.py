@@ -20,7 +20,7 @@ from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
 from studies.kit.jobs import Job, plain
 from studies.kit.journal import Maker, named
 from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import Source
 
 FOUND_BY_NAME: frozenset[Name] = frozenset(
     {
@@ -67,7 +67,7 @@ class Makers:
         """Return what makes the row of a job."""
         asked = job.source, self._kinds(job)
         if asked not in self._known:
-            source = resolve(job.source)
+            source = job.asked
             packages = (*NUMERICAL_PACKAGES, *(source.declared.packages if source.engine else ()))
             self._known[asked] = {
                 **self.reached(job).digests(),
@@ -79,7 +79,7 @@ class Makers:
 
     def reached(self, job: Job) -> Reached:
         """Return the code that the row of a job runs through."""
-        source = resolve(job.source)
+        source = job.asked
         names = {*self._shared, *self._kinds(job), name_of(source.call)}
         if source.engine:
             engine, preset = source.declared, source.used

@@ -12,6 +12,7 @@ import numpy as np
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
+from studies.cases.refusal import BadInputError
 from studies.kit.journal import Row
 from studies.kit.refusing import brief, one_line
 from studies.sources.registry import Source, resolve
@@ -24,6 +25,9 @@ STEP_S = {"peer": 1e-6}
 
 COMPILED_STEP_S = 1e-7
 """About how long a compiled source takes over a step [s]."""
+
+NOBODY = Source("model", Response.failure)
+"""Who is asked before a name is resolved."""
 
 SLOWEST_RETURN = 40.0
 """Time, in units of 1/p, in which a free block turns or is lost, if it does so at all: so near to
@@ -45,6 +49,15 @@ class Job:
         As in `studies.respond`.
     options : mapping
         Further settings of the source.
+    asked : Source
+        What the name means, found when the job is made.
+
+    Raises
+    ------
+    BadInputError
+        If an option is none of the source's, or a value is not allowed.
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
     """
 
     labels: Mapping[str, Any]
@@ -54,12 +67,25 @@ class Job:
     duration: float | None = None
     times: FloatArray | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
+    asked: Source = field(default=NOBODY, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        # what was resolved travels with a job that is made of another, where no registry is
+        if self.asked.name != self.source:
+            object.__setattr__(self, "asked", resolve(self.source))
+        times, duration = self.times, self.duration
+        try:
+            self.asked.check(
+                self.block, self.motion, duration=duration, times=times, **self.options
+            )
+        except (TypeError, ValueError) as error:
+            raise BadInputError(f"source {self.source!r} cannot be asked so: {error}") from error
 
     @property
     def key(self) -> str:
         """The identity of the job: everything that its result depends on."""
-        preset = resolve(self.source).preset
-        parts = [plain(self), type(self.motion).__name__, preset]
+        asked = {name: value for name, value in plain(self).items() if name != "asked"}
+        parts = [asked, type(self.motion).__name__, self.asked.preset]
         text = json.dumps(parts, default=plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 

@@ -22,7 +22,7 @@ from studies.kit.refusing import one_line
 from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study
 from studies.kit.tables import write_table
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import Source
 
 Tables = Mapping[str, pd.DataFrame]
 """Tables by the names of their files, without .csv."""
@@ -111,7 +111,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
             def reduce(job: Job, response: Response) -> Row:
                 answered.append(job)
                 if response.driver:
-                    drivers.setdefault(resolve(job.source).engine, set()).add(response.driver)
+                    drivers.setdefault(job.asked.engine, set()).add(response.driver)
                 return plan.reduce(job, response)
 
             rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal, makers=makers)

@@ -36,7 +36,7 @@ NO_BOUND = "no bound"
 
 def halved(job: Job) -> Job | None:
     """Return a job at half of its step; None where a source has no step that could be halved."""
-    source = resolve(job.source)
+    source = job.asked
     if source.kind != "engine" or source.used.stepping is Stepping.OWN:
         return None
     options = {name: value for name, value in job.options.items() if name != "accuracy"}
@@ -47,7 +47,7 @@ def step_of(job: Job) -> float:
     """Return p dt of an engine's job."""
     if "step" in job.options:
         return float(job.options["step"])
-    preset, block = resolve(job.source).used, job.block
+    preset, block = job.asked.used, job.block
     return _declared(preset.step_s, block) or preset.ordinary_step(
         str(job.options.get("accuracy", "standard"))
     )

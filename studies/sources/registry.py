@@ -1,7 +1,8 @@
 """Who answers: the models, the paper's solvers and the engines, each by its name."""
 
+import inspect
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, Literal
 
@@ -11,11 +12,16 @@ from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from engines import ENGINES
 from engines.declaration import Engine, Preset, Stepping
+from engines.scene import Scene, one_of
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
 """Models and solvers take microseconds, peers (general-purpose integrators) milliseconds, and
 none of them crashes; an engine may."""
+
+
+NOT_OPTIONS = frozenset({"block", "motion", "model", "method", "preset", "times"})
+"""What is asked and who, beside which an option is a question of how."""
 
 
 class UnknownSourceError(ValueError):
@@ -28,7 +34,8 @@ class Source:
 
     It can be sent to another process or machine. `engine` and `preset` are names, the preset by
     default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
-    ones an option `accuracy`. `model` is the name of the one whose equation it solves.
+    ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
+    that by which it was asked for.
     """
 
     kind: Kind
@@ -37,6 +44,31 @@ class Source:
     preset: str = ""
     stepping: bool = False
     model: str = "exact"
+    name: str = ""
+
+    def check(
+        self,
+        block: RigidBlock,
+        motion: Motion,
+        *,
+        duration: float | None,
+        times: FloatArray | None,
+        **options: Any,
+    ) -> None:
+        """Refuse what it cannot be asked, before it is.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an option is not one of its own, or a value is not allowed.
+        """
+        taken = inspect.signature(self.call).parameters
+        if self.engine:
+            asked = {**options, "duration": duration, "times": times}
+            scene_of(block, motion, self.preset, **asked).choose(self.used.settings)
+        elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
+            for name in options:
+                one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
 
     @property
     def declared(self) -> Engine:
@@ -69,19 +101,32 @@ def run_engine(
     times: FloatArray | None = None,
     **options: Any,
 ) -> Response:
-    """Build the scene and let the engine run it; `options` are settings of the `Scene`."""
+    """Build the scene and let the engine run it; `options` are those of the `Scene`."""
     from engines import run
-    from engines.scene import Scene
 
-    scene = Scene(
-        block=block,
-        motion=motion,
-        preset=preset,
-        duration=duration,
-        times=None if times is None else times.tolist(),
-        **options,
-    )
-    return run(engine, scene)
+    return run(engine, scene_of(block, motion, preset, duration=duration, times=times, **options))
+
+
+def scene_of(
+    block: RigidBlock,
+    motion: Motion,
+    preset: str,
+    *,
+    times: FloatArray | None = None,
+    **options: Any,
+) -> Scene:
+    """Return the scene that an engine is asked about.
+
+    Raises
+    ------
+    ValueError
+        If there is no such option, or a value is not allowed.
+    """
+    allowed = [item.name for item in fields(Scene) if item.name not in NOT_OPTIONS]
+    for name in options:
+        one_of("option", name, allowed)
+    sampled = None if times is None else times.tolist()
+    return Scene(block=block, motion=motion, preset=preset, times=sampled, **options)
 
 
 def _engine(name: str, preset: str) -> Source:
@@ -127,8 +172,9 @@ def resolve(name: str) -> Source:
     if source is None or (colon and preset not in presets_of(source)):
         raise UnknownSourceError(f"source is {name!r}; it must be one of {allowed()}")
     if not colon:
-        return source
-    return replace(source, call=partial(source.call, preset=preset), preset=preset)
+        return replace(source, name=name)
+    call = partial(source.call, preset=preset)
+    return replace(source, call=call, preset=preset, name=name)
 
 
 def presets_of(source: Source) -> list[str]:

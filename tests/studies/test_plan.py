@@ -3,6 +3,8 @@
 import json
 import math
 import os
+import pickle
+import re
 import subprocess
 import sys
 import time
@@ -15,6 +17,8 @@ import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Response
+from studies import respond
+from studies.cases.refusal import BadInputError
 from studies.histories import STUDY as HISTORIES
 from studies.histories import study as histories
 from studies.kit import provenance
@@ -24,6 +28,7 @@ from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, by_label, carry_out, fill
 from studies.kit.study import Study
 from studies.kit.tables import write_table
+from studies.sources.registry import SOURCES, UnknownSourceError, resolve
 from studies.stability.study import PatientRunning
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
@@ -166,3 +171,36 @@ print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
         for _ in range(2)
     ]
     assert said == [["True", "False"], ["False", "False"]]
+
+
+@pytest.mark.parametrize(
+    ("source", "options", "problem"),
+    [
+        ("mujoco", {"frction": 0.8}, "option is 'frction', perhaps 'friction'; it must be one of"),
+        ("mujoco:naive", {"settings": {"dampin": 1.0}}, "setting is 'dampin', perhaps 'damping'"),
+        ("mujoco", {"settings": {"iterations": -1}}, "iterations is -1; it must be 0 or more"),
+        ("pymunk", {"friction": -1.0}, "friction is -1.0; it must not be negative"),
+        ("box2d", {"accuracy": "tigt"}, "accuracy is 'tigt', perhaps 'tight'"),
+        ("exact", {"friction": 0.8}, "option is 'friction'; it must be one of start,"),
+        ("rk4", {"stepp": 0.1}, "option is 'stepp', perhaps 'step'"),
+        ("radau", {"step": 0.1}, "option is 'step'; it must be one of rtol,"),
+    ],
+)
+def test_what_a_source_cannot_be_asked_is_refused_before_the_first_case(source, options, problem):
+    with pytest.raises(BadInputError) as refused:
+        Job(labels={}, block=BLOCK, motion=PULSE, source=source, options=options)
+    assert str(refused.value).startswith(f"source {source!r} cannot be asked so: {problem}")
+    with pytest.raises(ValueError, match=re.escape(problem)):
+        respond(source, BLOCK, PULSE, **options)
+
+
+def test_a_job_travels_with_what_its_name_meant(monkeypatch):
+    """Another process knows the names of the registry alone."""
+    monkeypatch.setitem(SOURCES, "mine", resolve("housner"))
+    job = Job(labels={}, block=BLOCK, motion=PULSE, source="mine")
+    monkeypatch.undo()
+    sent = pickle.loads(pickle.dumps(job))
+    assert replace(sent, labels={"case": 1}).asked.model == "housner"
+    assert replace(sent, source="exact").asked.model == "exact"
+    with pytest.raises(UnknownSourceError):
+        replace(sent, source="another")
