@@ -1,5 +1,6 @@
 """The published tables still hold: a sample of their rows is computed again."""
 
+import gzip
 import math
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, sim
 from engines import ENGINES, installed_engines
 from studies import respond
 from studies.cases.paper import Case
+from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
 
 PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
@@ -47,6 +49,19 @@ def test_a_published_row_is_what_comes_out_today(row):
     engine = row["source"].partition(":")[0]
     within = equal_to(engine, 1e-6) if engine in ENGINES else 1e-6
     assert response.peak_ratio == pytest.approx(float(row["peak_ratio"]), rel=within, nan_ok=True)
+
+
+@pytest.mark.parametrize("name", ["sweep", "presets"])
+def test_a_published_journal_holds_the_rows_of_its_table(name):
+    """So that the command makes the same table of them when it is run there again."""
+    packed = PUBLISHED / name / "journal.jsonl.gz"
+    entries, makers = rows_in(packed.parent, gzip.decompress(packed.read_bytes()))
+    kept = pd.DataFrame([entry.row for entry in entries.values()])
+    table = pd.read_csv(PUBLISHED / name / "sweep.csv", keep_default_na=False, na_values=["nan"])
+    key = [column for column in table if column != "wall_s"]
+    kept, table = (one.sort_values(key, ignore_index=True) for one in (kept, table))
+    pd.testing.assert_frame_equal(kept, table, check_exact=True)
+    assert {entry.made for entry in entries.values()} == makers.keys()
 
 
 def published(name, **options):

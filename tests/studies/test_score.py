@@ -7,13 +7,19 @@ from collections import Counter
 import pandas as pd
 import pytest
 
+from analytic import RigidBlock, SinePulse
 from engines import ENGINES, registry
 from engines.declaration import Stepping
 from engines.registry import FURTHER, announce
 from studies import respond
 from studies.__main__ import run
+from studies.kit.jobs import Job
 from studies.kit.options import Running
+from studies.kit.plan import Plan, fill
+from studies.kit.provenance import record_of
+from studies.score import STUDY
 from studies.score import study as score
+from studies.sources import registry as sources
 from studies.sources.registry import SOURCES, resolve
 
 MINE = "my_engine:World"
@@ -48,6 +54,21 @@ def test_an_engine_that_is_announced_is_known_to_processes_that_are_started(alon
     path = f"import sys; sys.path[:0] = {sys.path!r}; "
     done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("landing\n", "")
+
+
+def test_an_engine_that_is_announced_makes_no_row_stale(alone, tmp_path, capsys):
+    pytest.importorskip("pymunk")
+    block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=3.9, omega=6.3)
+
+    def computed(*names):
+        jobs = [Job(labels={}, block=block, motion=pulse, source=name) for name in names]
+        fill(STUDY, Plan(jobs=jobs, growing={"source": names}), tmp_path, Running(jobs=1))
+        return record_of(tmp_path)["runs"][-1]["computed"]
+
+    assert computed("exact", "mujoco") == 2
+    sources.announce(MINE)
+    assert computed("exact", "mujoco", "my_engine") == 1
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize(
