@@ -23,9 +23,10 @@ It holds
   place where it is "world";
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
-- where it can be, ``script``: the scene in the library's own words (`engines.script`), by which
-  `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a dropped
-  sphere (`engines.drop`), by which `rocking restitution` asks for a coefficient of restitution;
+- where it can be, ``script``: the scene in the library's own words (`engines.parts.script`), by
+  which `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a
+  dropped sphere (`engines.parts.drop`), by which `rocking restitution` asks for a coefficient of
+  restitution;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``pose`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
@@ -36,7 +37,6 @@ The conformance tests (``tests/engines``) run over the registry and take their t
 declaration; every study reads it, and none names an engine.
 """
 
-from engines.drive import run
 from engines.registry import ENGINES, core_engines, installed_engines
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene
 
@@ -48,5 +48,4 @@ __all__ = [
     "Scene",
     "core_engines",
     "installed_engines",
-    "run",
 ]

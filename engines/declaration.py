@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from analytic.block import RigidBlock
-from engines.drop import Bouncing
-from engines.factors import Factor, Rule
+from engines.parts.drop import Bouncing
+from engines.parts.factors import Factor, Rule
+from engines.parts.script import Script
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
-from engines.script import Script
 from engines.world import CALMEST, ROUNDINGS, Resolution, World
 
 

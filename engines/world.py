@@ -144,7 +144,7 @@ class SteppedWorld(World, Protocol):
 
 Driver = Callable[[Any, Any, int], int]
 """``(runs, lists, most) -> taken``: takes up to so many steps of a run, in a compiled loop that
-chooses each and looks on by the functions of `engines.look`, as long as the run goes on."""
+chooses each and looks on by the functions of `engines.run.look`, as long as the run goes on."""
 
 
 class DrivenWorld(SteppedWorld, Protocol):

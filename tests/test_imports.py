@@ -42,7 +42,7 @@ def test_nothing_is_loaded_before_signals_are_dealt_with():
 
 FORBIDDEN = {
     "studies asks, engines simulates, analytic knows": ("analytic/block.py", "import engines"),
-    "an adapter never sees the answer": ("engines/drive.py", "from analytic import simulate"),
+    "an adapter never sees the answer": ("engines/run/drive.py", "from analytic import simulate"),
     "the mathematics knows no engine, table or plot": ("analytic/maps.py", "import pandas"),
     "kernels know none of the friendly modules above them": (
         "analytic/kernels/taylor.py",

@@ -8,7 +8,7 @@ counts in parts of its height by itself.
 from functools import partial
 
 from engines.box2d.settings import TUNED
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 from engines.parts.quiet import imported
 
 SMALL = 20.0

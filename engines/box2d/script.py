@@ -1,13 +1,13 @@
 """A scene in Box2D's own words, for a script that needs the library alone."""
 
 from engines.box2d.settings import Box2DSettings
+from engines.parts.script import Script
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
-from engines.script import Script
 
 
 def script(scene: Scene, s: Box2DSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Box2D; see `engines.script`."""
+    """Return a scene on a base at rest as calls of Box2D; see `engines.parts.script`."""
     unit, reach, paired = s.unit_of(scene), s.reach_of(scene, dt_s), s.geometry == "corners"
     world = (
         "world = Box2D.b2World(gravity=(0.0, 0.0))",

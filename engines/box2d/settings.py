@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import (
+from engines.parts.factors import (
     AS_BEST,
     ASLEEP,
     BEST,

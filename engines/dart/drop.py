@@ -7,7 +7,7 @@ come off at more than 100; no setting changes that, but the unit does.
 from functools import partial
 
 from engines.dart.settings import TUNED
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 from engines.parts.quiet import imported
 
 BETWEEN = 10.0

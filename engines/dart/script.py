@@ -1,9 +1,9 @@
 """A scene in DART's own words, for a script that needs the library alone."""
 
 from engines.dart.settings import IN_PLANE, IN_SPACE, SOLVERS, DartSettings
+from engines.parts.script import Script
 from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size
 from engines.scene import Scene
-from engines.script import Script
 
 SHAPED = (
     "def touching(body, shape, at):",
@@ -15,7 +15,7 @@ SHAPED = (
 
 
 def script(scene: Scene, s: DartSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of DART; see `engines.script`."""
+    """Return a scene on a base at rest as calls of DART; see `engines.parts.script`."""
     unit, theta = s.unit, (IN_PLANE if s.planar else IN_SPACE)[2]
     rough = f"node.createDynamicsAspect().setFrictionCoeff({float(s.friction)!r})"
     world, base, joint = _world(s), _base(s), _joint(s)

@@ -22,8 +22,8 @@ from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.settings import given
 from engines.parts.shapes import corner_spheres, half_size
+from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
-from engines.stepping.ground import mean_velocity_of
 from engines.world import Moment, Pose, Step
 
 MODULES = (

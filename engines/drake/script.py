@@ -1,14 +1,14 @@
 """A scene in Drake's own words, for a script that needs the library alone."""
 
 from engines.drake.settings import CENIC, LONGEST, PLANE, DrakeSettings
+from engines.parts.script import Script
 from engines.parts.settings import given
 from engines.parts.shapes import corner_spheres, half_size
 from engines.scene import Scene
-from engines.script import Script
 
 
 def script(scene: Scene, s: DrakeSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Drake; see `engines.script`."""
+    """Return a scene on a base at rest as calls of Drake; see `engines.parts.script`."""
     config, material = _config(scene, s, dt_s), _material(scene, s, dt_s)
     shapes, joint, steps = _shapes(scene, s), _joint(s), _steps(scene, s, dt_s)
     return Script(

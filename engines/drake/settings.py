@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
+from engines.parts.factors import BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM
 

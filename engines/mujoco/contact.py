@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engines.compiled import FloatArray, State, fill, kernel, shared
 from engines.mujoco.model import direct_reference
 from engines.mujoco.settings import MujocoSettings
+from engines.parts.compiled import FloatArray, State, fill, kernel, shared
 from engines.parts.reflection import Reflection, begin_reflection, part_of, take_in
 from engines.scene import Scene
 from engines.world import Grip, Pose, Step

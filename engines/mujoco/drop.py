@@ -10,7 +10,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 
 IMPEDANCE = 0.9999
 """Largest that the library takes, by which it scales a contact's acceleration."""

@@ -17,9 +17,9 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from engines.compiled import SWITCHED_OFF, FloatArray, kernel, shared, switched_off
-from engines.look import Lists, Run, onward, undecided
 from engines.mujoco.contact import Arrays, Forces, Hold, notice, pose_of, prepare
+from engines.parts.compiled import SWITCHED_OFF, FloatArray, kernel, shared, switched_off
+from engines.run.look import Lists, Run, onward, undecided
 
 mj_step: Any = types.ExternalFunction(
     "mj_step",

@@ -3,8 +3,8 @@
 import math
 from xml.etree import ElementTree
 
-from engines.compiled import shared
 from engines.mujoco.settings import MujocoSettings
+from engines.parts.compiled import shared
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.scene import Scene
 

@@ -7,7 +7,7 @@ and the data reset, before the next.
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
-from engines.compiled import FloatArray
+from engines.parts.compiled import FloatArray
 
 EDITED = (
     "pair_solref",

@@ -2,8 +2,8 @@
 
 from engines.mujoco.model import coordinates, stepped_xml
 from engines.mujoco.settings import MujocoSettings, kept
+from engines.parts.script import Script
 from engines.scene import Scene
-from engines.script import Script
 from engines.world import Moment
 
 MODEL = "block.xml"
@@ -28,7 +28,7 @@ def _beginning(scene: Scene, s: MujocoSettings) -> tuple[str, ...]:
 
 
 def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as a model of MuJoCo; see `engines.script`."""
+    """Return a scene on a base at rest as a model of MuJoCo; see `engines.parts.script`."""
     s = kept(scene, s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())

@@ -3,7 +3,16 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import BOTH, DEFAULT, MOVING_BASE, UNMOVED_BASE, Factor, Rule, factor, level
+from engines.parts.factors import (
+    BOTH,
+    DEFAULT,
+    MOVING_BASE,
+    UNMOVED_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
 
@@ -77,7 +86,7 @@ class MujocoSettings:
     jacobian: str | None = None
     tolerance: float | None = setting(least=0.0)
     iterations: int | None = setting(least=0)
-    impratio: float | None = setting(above=0.0)
+    impratio: float | None = setting(least=0.0)
     # a reference with one zero would be replaced by the library's default
     damping: float | None = setting(above=0.0, beside=("sliding_damping", "stiffness"))
     sliding_damping: float | None = setting(above=0.0)

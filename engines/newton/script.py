@@ -2,13 +2,13 @@
 
 from engines.newton.models import MOST_CONTACTS
 from engines.newton.settings import XPBD, NewtonSettings
+from engines.parts.script import Script
 from engines.parts.shapes import corner_spheres, half_size
 from engines.scene import Scene
-from engines.script import Script
 
 
 def script(scene: Scene, s: NewtonSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Newton; see `engines.script`."""
+    """Return a scene on a base at rest as calls of Newton; see `engines.parts.script`."""
     rough = f"builder.default_shape_cfg.mu = {float(s.friction)!r}"
     block, solver = _block(scene, s), _solver(scene, s)
     step = "solver.step(now, after, None, contacts, {})"

@@ -3,7 +3,17 @@
 from dataclasses import dataclass
 from typing import Any
 
-from engines.factors import AS_BEST, BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
+from engines.parts.factors import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    Factor,
+    Rule,
+    factor,
+    level,
+)
 from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM
 from engines.scene import Scene

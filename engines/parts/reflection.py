@@ -6,7 +6,7 @@ next step with c h/2, or with c h if it was held and not returned before. Throug
 the first step after it, nothing is given back.
 """
 
-from engines.compiled import State, fill, shared
+from engines.parts.compiled import State, fill, shared
 from engines.scene import Scene
 from engines.world import Grip, Step
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from engines.compiled import SWITCHED_OFF, switched_off
+from engines.parts.compiled import SWITCHED_OFF, switched_off
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
 from engines.pybullet.calls import (

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 from engines.parts.quiet import imported
 from engines.pybullet.settings import LIBRARY_BREAKING_THRESHOLD
 

@@ -18,12 +18,12 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from engines.compiled import FloatArray, State, exclusive, fill, shared
-from engines.look import Lists, Run, onward, undecided
+from engines.parts.compiled import FloatArray, State, exclusive, fill, shared
 from engines.pybullet.addresses import spans
 from engines.pybullet.calls import base_place
 from engines.pybullet.clients import given_back, taken
 from engines.pybullet.settings import BulletSettings
+from engines.run.look import Lists, Run, onward, undecided
 from engines.scene import Scene
 from engines.world import Grip, Pose, Step
 

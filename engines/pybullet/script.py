@@ -4,6 +4,7 @@ import math
 from textwrap import fill
 from typing import Any
 
+from engines.parts.script import Script
 from engines.pybullet.calls import (
     Call,
     Constant,
@@ -18,14 +19,13 @@ from engines.pybullet.calls import (
 )
 from engines.pybullet.settings import BulletSettings
 from engines.scene import Scene
-from engines.script import Script
 
 FLOOR, SHAPE, BASE, BLOCK = map(Constant, ("floor", "shape", "base", "block"))
 """Variables of the script."""
 
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of PyBullet; see `engines.script`."""
+    """Return a scene on a base at rest as calls of PyBullet; see `engines.parts.script`."""
     ground = base_place(scene, s)
     engine, bodies = engine_call(scene, s, dt_s), (block_call(scene, s, BLOCK), base_call(s, BASE))
     shape, body = block_shape(scene, s, dt_s), block_body(scene, s, SHAPE)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import (
+from engines.parts.factors import (
     AS_BEST,
     BEST,
     BOTH,

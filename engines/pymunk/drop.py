@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 from engines.parts.quiet import imported
 
 

@@ -1,15 +1,15 @@
 """A scene in pymunk's own words, for a script that needs the library alone."""
 
+from engines.parts.script import Script
 from engines.parts.settings import given
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.pymunk.settings import LEVEL, PymunkSettings
 from engines.scene import Scene
-from engines.script import Script
 from engines.world import Moment
 
 
 def script(scene: Scene, s: PymunkSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of pymunk; see `engines.script`."""
+    """Return a scene on a base at rest as calls of pymunk; see `engines.parts.script`."""
     margin = s.margin_of(scene, dt_s)
     space = _space(scene, s, dt_s)
     shapes = _box(scene) if s.geometry == "box" else _corners(scene, margin)

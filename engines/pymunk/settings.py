@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.factors import (
+from engines.parts.factors import (
     DEFAULT,
     LEFT_OUT,
     MOVING_BASE,

@@ -6,7 +6,7 @@ a corner that bounces slides.
 
 from functools import partial
 
-from engines.drop import Bouncing, Drop, rebound
+from engines.parts.drop import Bouncing, Drop, rebound
 from engines.parts.quiet import imported
 
 

@@ -1,14 +1,14 @@
 """A scene in Rapier's own words, for a script that needs the library alone."""
 
+from engines.parts.script import Script
 from engines.parts.shapes import corner_spheres, half_size
 from engines.parts.units import counted
 from engines.rapier.settings import RapierSettings, parameters
 from engines.scene import Scene
-from engines.script import Script
 
 
 def script(scene: Scene, s: RapierSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Rapier; see `engines.script`."""
+    """Return a scene on a base at rest as calls of Rapier; see `engines.parts.script`."""
     rough = f".friction({float(s.friction)!r})"
     set_ = _parameters(scene, s, dt_s)
     locks, shape = _locks(s), _touching(scene, s)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.factors import (
+from engines.parts.factors import (
     ASLEEP,
     BEST,
     BOTH,

@@ -3,7 +3,7 @@
 import math
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
-from engines.compiled import FloatArray
+from engines.parts.compiled import FloatArray
 from engines.watching.observe import (
     DIVERGED,
     IMPACT,

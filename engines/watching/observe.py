@@ -7,7 +7,7 @@ of the steps; what lies between two steps is interpolated.
 import math
 from typing import Annotated
 
-from engines.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.swing import (
     TIME,

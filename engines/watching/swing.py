@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, NamedTuple
 
-from engines.compiled import FloatArray, State, shared
+from engines.parts.compiled import FloatArray, State, shared
 
 RESOLVED_ROWS = 3
 """An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""

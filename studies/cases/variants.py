@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
-from engines.factors import (
+from engines.parts.factors import (
     AS_BEST,
     BEST,
     BOTH,

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS, Rule
+from engines.parts.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS, Rule
 from studies.cases.variants import MOVED
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from engines.factors import BEST, DEFAULT
+from engines.parts.factors import BEST, DEFAULT
 from studies.drawing.styles import PRESET_COLOURS
 from studies.measures.words import part
 

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
+from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, overview, variant_of
 from studies.kit import provenance

@@ -11,7 +11,7 @@ import numpy as np
 from analytic.response import Outcome, Response
 from engines import ENGINES, core_engines
 from engines.declaration import Stepping
-from engines.factors import DEFAULT, OWN_STEPS
+from engines.parts.factors import DEFAULT, OWN_STEPS
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, variants

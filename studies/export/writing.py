@@ -10,8 +10,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from analytic.motion import Motion
 from engines import Scene
 from engines.declaration import Engine, Preset
-from engines.script import Script
-from engines.stepping import ground
+from engines.parts.script import Script
+from engines.run import ground
 from engines.world import Moment
 from studies.kit.provenance import project_version, version_of
 from studies.measures.words import listed

@@ -9,7 +9,7 @@ from typing import Any
 
 from analytic.response import Reason, Response
 from engines import ENGINES
-from engines.look import compile_look
+from engines.run.look import compile_look
 from studies.kit.jobs import Job, ask, short
 from studies.kit.pool import MEMORY_BYTES, EndedError, OvertimeError, Pool, StartError, TaskError
 from studies.kit.refusing import one_line

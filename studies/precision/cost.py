@@ -15,8 +15,8 @@ from analytic import peak_ratios, simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
-from engines import ENGINES, Scene, core_engines, run
-from engines.drive import build
+from engines import ENGINES, Scene, core_engines
+from engines.run.drive import build, run
 from studies.cases.paper import free_rocking_window, sweep_cases
 from studies.kit.arguments import Place, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING

@@ -15,10 +15,10 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
-from engines import ENGINES, Scene, run
+from engines import ENGINES, Scene
 from engines.declaration import Stepping
-from engines.drive import build
-from engines.look import Look
+from engines.run.drive import build, run
+from engines.run.look import Look
 from engines.world import World
 from studies.cases.paper import HISTORIES
 from studies.precision.repeats import best_of, enough

@@ -5,8 +5,8 @@ from dataclasses import replace
 from itertools import product
 from typing import TypeVar
 
-from engines.drop import Drop
-from engines.strike import Strike
+from engines.parts.drop import Drop
+from engines.run.strike import Strike
 
 WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 """Coefficients of restitution."""

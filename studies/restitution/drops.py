@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 import pandas as pd
 
 from engines import ENGINES
-from engines.drop import SHOWN, Drop
+from engines.parts.drop import SHOWN, Drop
 from studies.kit.journal import Row
 from studies.measures.formulas import by_step
 from studies.restitution.asked import one_at_a_time

@@ -6,8 +6,8 @@ from typing import Any
 
 import pandas as pd
 
-from engines.drop import SHOWN, Drop
-from engines.strike import Strike
+from engines.parts.drop import SHOWN, Drop
+from engines.run.strike import Strike
 from studies.measures.words import listed
 from studies.restitution import drops, strikes
 from studies.restitution.asked import PHASES

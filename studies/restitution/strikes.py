@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from engines import ENGINES
-from engines.strike import Strike, strike
+from engines.run.strike import Strike, strike
 from studies.kit.journal import Row
 from studies.restitution.asked import one_at_a_time
 

@@ -63,7 +63,7 @@ class Source:
             If an option is not one of its own, or a value is not allowed.
         """
         taken = inspect.signature(self.call).parameters
-        if self.engine:
+        if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
             scene_of(block, motion, self.preset, **asked).choose(self.used.settings)
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
@@ -102,7 +102,7 @@ def run_engine(
     **options: Any,
 ) -> Response:
     """Build the scene and let the engine run it; `options` are those of the `Scene`."""
-    from engines import run
+    from engines.run.drive import run
 
     return run(engine, scene_of(block, motion, preset, duration=duration, times=times, **options))
 

@@ -9,8 +9,8 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.drop import SHOWN, Drop
-from engines.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
+from engines.parts.drop import SHOWN, Drop
+from engines.parts.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from studies.kit.journal import Row
 from studies.measures.formulas import by_step
 from studies.symptoms.patch import own_step_s, patch

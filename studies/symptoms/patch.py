@@ -8,8 +8,8 @@ from typing import Any
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, Scene
-from engines.factors import DEFAULT
-from engines.script import Script
+from engines.parts.factors import DEFAULT
+from engines.parts.script import Script
 from studies.cases.variants import variants
 
 BLOCK = RigidBlock(width=0.5, height=1.5)

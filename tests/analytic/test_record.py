@@ -13,8 +13,8 @@ from scipy.integrate import quad
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, FRAMES, installed_engines
 from engines.declaration import Miss
-from engines.stepping.ground import mean_velocity_of
-from engines.stepping.timetable import loads_of
+from engines.run.ground import mean_velocity_of
+from engines.run.timetable import loads_of
 from studies import respond
 from studies.kit.jobs import Job
 from studies.sources.registry import SOURCES

@@ -8,8 +8,9 @@ import pytest
 
 from analytic import simulate
 from analytic.response import Response
-from engines import ENGINES, Scene, run
+from engines import ENGINES, Scene
 from engines.declaration import Preset, Stepping
+from engines.run.drive import run
 from engines.world import Moment, Pose, Step
 
 
@@ -113,7 +114,7 @@ def watched(
     step = {"step": 1e-2} if stepping is Stepping.FIXED else {}
     use = Preset(name="known", title="", settings=NoSettings(), stepping=stepping, **step)
     engine = replace(ENGINES["mujoco"], build=lambda *_: world, presets=(use,))
-    monkeypatch.setattr("engines.drive.find", lambda name: engine)
+    monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
     return run("known", scene)
 
 

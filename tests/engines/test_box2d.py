@@ -11,7 +11,8 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
-from engines import Scene, run
+from engines import Scene
+from engines.run.drive import run
 
 pytestmark = pytest.mark.skipif("box2d" not in HERE, reason="Box2D is not installed")
 

@@ -7,10 +7,11 @@ import pytest
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
-from engines import Scene, run
+from engines import Scene
 from engines.pybullet import clients as bullet_clients
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import FACTORS, LANDING, TUNED
+from engines.run.drive import run
 
 pytest.importorskip("pybullet")
 

@@ -16,11 +16,11 @@ from uses import BLOCK, pulse, scene
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Reason
-from engines import ENGINES, Scene, run
-from engines.drive import build, simulate_world
+from engines import ENGINES, Scene
 from engines.pybullet import build as bullet
 from engines.pybullet import fast as bullet_loop
 from engines.pybullet.addresses import spans
+from engines.run.drive import build, run, simulate_world
 from engines.world import Grip
 
 p = pytest.importorskip("pybullet")

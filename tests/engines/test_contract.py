@@ -14,17 +14,17 @@ from uses import BLOCK, HERE, every_use, pulse, scene
 from analytic import simulate
 from analytic.record import Record
 from analytic.response import Outcome, Reason
-from engines import ENGINES, Scene, run
+from engines import ENGINES, Scene
 from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.drive import build
 from engines.pybullet.build import BulletWorld
+from engines.run.drive import build, run
 from engines.world import Moment, Pose
 from studies.cases.variants import variants
 
 
 def use(monkeypatch: pytest.MonkeyPatch, engine: Engine) -> None:
     """Let `run` find an engine under any name."""
-    monkeypatch.setattr("engines.drive.find", lambda name: engine)
+    monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
 
 
 def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,8 +10,8 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic import RigidBlock, simulate
 from analytic.response import Outcome, Reason
-from engines import Scene, run
-from engines.drive import build
+from engines import Scene
+from engines.run.drive import build, run
 
 pytestmark = pytest.mark.skipif("dart" not in HERE, reason="dartpy is not installed")
 

@@ -12,8 +12,9 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic import RigidBlock, simulate
 from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
-from engines import Scene, run
+from engines import Scene
 from engines.parts.shapes import NO_JAM
+from engines.run.drive import run
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
 

@@ -33,10 +33,10 @@ from uses import (
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Reason, Response
-from engines import ENGINES, FRAMES, Scene, core_engines, run
+from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import Stepping
-from engines.drive import build, simulate_world
 from engines.pybullet.calls import Call
+from engines.run.drive import build, run, simulate_world
 from engines.world import Moment, Pose, Step, World
 
 

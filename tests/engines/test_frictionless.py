@@ -7,7 +7,8 @@ from uses import BLOCK, HERE, every_landing_use
 
 from analytic import RigidBlock, Still
 from analytic.criteria import frictionless_fall
-from engines import Scene, run
+from engines import Scene
+from engines.run.drive import run
 
 STILL = Still()
 FLAT = RigidBlock(width=1.0, height=0.5)

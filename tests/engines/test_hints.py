@@ -6,8 +6,9 @@ import pytest
 from uses import BLOCK, pulse
 
 from analytic import simulate
-from engines import Scene, core_engines, run
+from engines import Scene, core_engines
 from engines.hints import TRUE, Hints
+from engines.run.drive import run
 
 every_core_engine = pytest.mark.parametrize("engine", core_engines())
 

@@ -21,7 +21,8 @@ from analytic.block import RigidBlock
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
-from engines import FRAMES, Scene, core_engines, run
+from engines import FRAMES, Scene, core_engines
+from engines.run.drive import run
 from engines.scene import ACCURACIES
 
 

@@ -12,12 +12,12 @@ import pytest
 from uses import BLOCK, HERE, pulse, scene
 
 from analytic.response import Outcome, Response
-from engines import ENGINES, Scene, run
-from engines.drive import LOOK_AROUND, build
-from engines.look import roomy
+from engines import ENGINES, Scene
 from engines.mujoco import fast as mujoco_loop
 from engines.mujoco import models as mujoco_models
 from engines.pybullet import clients as bullet_clients
+from engines.run.drive import LOOK_AROUND, build, run
+from engines.run.look import roomy
 from studies.cases.motions import noise
 
 TIMES = [0.02 * i for i in range(80)]
@@ -97,7 +97,7 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
     code = (
         "from test_look import all_but_times\n"
         "from uses import pulse, scene\n"
-        "from engines import run\n"
+        "from engines.run.drive import run\n"
         f"asked = scene(pulse(1.3, 3.0, 2), accuracy='loose', times={TIMES!r})\n"
         f"found = run({engine!r}, asked)\n"
         "print(found.driver, all_but_times(found), sep='\\n')\n"

@@ -11,8 +11,9 @@ from uses import BLOCK, HERE, every_use, pulse, scene
 from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
-from engines import Scene, run
+from engines import Scene
 from engines.declaration import Stepping
+from engines.run.drive import run
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset

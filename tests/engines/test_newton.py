@@ -14,10 +14,10 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Response
-from engines import ENGINES, Scene, run
+from engines import ENGINES, Scene
 from engines.declaration import Stepping
-from engines.drive import build
-from engines.look import Look
+from engines.run.drive import build, run
+from engines.run.look import Look
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
 from studies.sources.registry import Source

@@ -11,9 +11,9 @@ from uses import HERE, pulse, scene
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome
-from engines import Scene, run
-from engines.drive import build
+from engines import Scene
 from engines.parts.shapes import NO_JAM
+from engines.run.drive import build, run
 
 pytestmark = pytest.mark.skipif("pymunk" not in HERE, reason="pymunk is not installed")
 

@@ -13,7 +13,8 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic import RigidBlock, simulate
 from analytic.motion import Still
 from analytic.response import Outcome, Response
-from engines import Scene, run
+from engines import Scene
+from engines.run.drive import run
 from studies.cases.drawn import RandomCase, draw
 
 pytestmark = pytest.mark.skipif("rapier" not in HERE, reason="rapier3d is not installed")

@@ -24,7 +24,8 @@ from analytic import simulate
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome
-from engines import Scene, core_engines, run
+from engines import Scene, core_engines
+from engines.run.drive import run
 
 STILL = Still()
 TILT = 0.4 * BLOCK.alpha

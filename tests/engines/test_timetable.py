@@ -5,7 +5,7 @@ import math
 import pytest
 
 from analytic.motion import SinePulse
-from engines.stepping.timetable import loads_of
+from engines.run.timetable import loads_of
 
 
 @pytest.mark.parametrize("excess", [1e-9, 0.1, 5.0])

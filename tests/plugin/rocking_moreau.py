@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from engines.declaration import Engine, Help, Preset, Stepping
-from engines.factors import factor, level
+from engines.parts.factors import factor, level
 from engines.parts.settings import check, setting
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step

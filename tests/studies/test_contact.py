@@ -12,14 +12,14 @@ import pytest
 
 from analytic import simulate
 from analytic.response import Outcome, Reason
-from engines import ENGINES, Scene, core_engines, installed_engines, run
+from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.declaration import Stepping
-from engines.drive import build
-from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
-from engines.look import Look
 from engines.mujoco.settings import TUNED, MujocoSettings
+from engines.parts.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
+from engines.run.drive import build, run
+from engines.run.look import Look
 from studies.contact.claims import prices, rules
 from studies.contact.report import recommendation, report, variant_table
 from studies.contact.study import (

@@ -10,8 +10,9 @@ import pytest
 from declared import equal_to
 
 from analytic.response import Outcome, Reason, Response
-from engines import ENGINES, Scene, core_engines, installed_engines, run
+from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.declaration import Stepping
+from engines.run.drive import run
 from studies.measures.costs import LEAST_RUNS
 from studies.precision import cost, shares
 from studies.precision.cost import (

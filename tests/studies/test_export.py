@@ -10,8 +10,9 @@ import pytest
 
 from analytic import RigidBlock, SinePulse
 from analytic.record import Record
-from engines import ENGINES, Scene, installed_engines, run
+from engines import ENGINES, Scene, installed_engines
 from engines.declaration import Stepping
+from engines.run.drive import run
 from studies.__main__ import run as rocking
 from studies.export.writing import Exported, files, script_of
 from studies.kit.provenance import project_version, version_of

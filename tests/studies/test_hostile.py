@@ -16,9 +16,9 @@ import pytest
 
 from analytic import RigidBlock, SinePulse
 from engines import registry
-from engines.drive import simulate_world
-from engines.look import compile_look
 from engines.registry import FURTHER
+from engines.run.drive import simulate_world
+from engines.run.look import compile_look
 from engines.scene import Scene
 from studies.__main__ import run
 from studies.kit.executors import Local

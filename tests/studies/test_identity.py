@@ -32,8 +32,12 @@ ENGINE = set(SOURCES) - {"exact", "rk45"}
 MUJOCO = {"mujoco", "mujoco:naive"}
 
 
-LOOKUPS = FOUND_BY_NAME | {("engines.registry", "Engines")}
-"""What finds a source by its name."""
+LOOKUPS = FOUND_BY_NAME | {
+    ("engines.registry", "Engines"),
+    ("studies.kit.jobs", "Job"),
+    ("studies.sources.registry", "Source"),
+}
+"""What poses a question, and finds by its name whom it is put to."""
 
 
 def job(source):
@@ -74,8 +78,8 @@ EDITS = {
         *("engines/box2d/settings.py", "def __post_init__(self) -> None:"),
         *("def __post_init__(self) -> None:\n        print()", {"box2d"}),
     ),
-    "the run": ("engines/drive.py", "LOOK_AROUND = 256", "LOOK_AROUND = 257", ENGINE),
-    "steps that land": ("engines/stepping/landing.py", "return ", "return 1 + ", ENGINE),
+    "the run": ("engines/run/drive.py", "LOOK_AROUND = 256", "LOOK_AROUND = 257", ENGINE),
+    "steps that land": ("engines/run/landing.py", "return ", "return 1 + ", ENGINE),
     "what is watched": ("engines/watching/observe.py", "return ", "return 1 + ", ENGINE),
     "a kernel": ("analytic/kernels/excursions.py", "return n + 1", "return n + 2", {"exact"}),
     "a peer": ("studies/sources/scipy_peers.py", "return ", "return 1 + ", {"rk45"}),
@@ -92,8 +96,8 @@ EDITS = {
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
     "the command line": ("studies/kit/arguments.py", "return ", "return 1 + ", set()),
     "a tabulation": ("studies/kit/tables.py", "return ", "return 1 + ", set()),
-    "a comment": ("engines/drive.py", "LOOK_AROUND = 256", "# 256\nLOOK_AROUND = 256", set()),
-    "a docstring": ("engines/drive.py", '"""Steps between', '"""How many steps between', set()),
+    "a comment": ("engines/run/drive.py", "LOOK_AROUND = 256", "# 256\nLOOK_AROUND = 256", set()),
+    "a docstring": ("engines/run/drive.py", '"""Steps between', '"""How many steps between', set()),
 }
 
 

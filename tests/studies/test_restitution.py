@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engines import ENGINES
-from engines.drop import Drop, rebound
 from engines.mujoco.drop import damping_ratio, given_back
-from engines.strike import Strike, strike
+from engines.parts.drop import Drop, rebound
+from engines.run.strike import Strike, strike
 from studies.__main__ import run
 from studies.contact.study import newton_e
 from studies.measures.published import PUBLISHED

@@ -10,8 +10,9 @@ import pandas as pd
 import pytest
 
 from analytic import simulate
-from engines import ENGINES, Scene, run
-from engines.factors import DEFAULT, OWN_STEPS
+from engines import ENGINES, Scene
+from engines.parts.factors import DEFAULT, OWN_STEPS
+from engines.run.drive import run
 from studies.__main__ import run as run_command
 from studies.cases.paper import free_rocking_window
 from studies.cases.variants import variants

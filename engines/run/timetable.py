@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.motion import Motion
-from engines.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 
 SAME_TIME = 1e-9

@@ -18,10 +18,13 @@ from analytic.kernels.compiled import keeper
 
 FloatArray = NDArray[np.float64]
 
-kernel = keeper(Path(__file__).parent)
+PACKAGE = Path(__file__).parents[__name__.count(".") - 1]
+"""The folder of the package that holds the engines' kernels and all that they call."""
+
+kernel = keeper(PACKAGE)
 """Compile a function at its first call; see `analytic.kernels.compiled.keeper`."""
 
-exclusive = keeper(Path(__file__).parent, nogil=False)
+exclusive = keeper(PACKAGE, nogil=False)
 """Compile, as `kernel`, what calls a library that keeps some of its numbers for the whole process:
 no other thread of Python runs meanwhile."""
 

@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from engines.compiled import FloatArray, State, fill, shared
 from engines.declaration import Stepping
+from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.run import ground as plain
+from engines.run.ground import Ground, mean_velocity_over
+from engines.run.landing import Landing, begin_landing, choose
+from engines.run.timetable import Times, begin_times, even, pass_to
 from engines.scene import Scene
-from engines.stepping import ground as plain
-from engines.stepping.ground import Ground, mean_velocity_over
-from engines.stepping.landing import Landing, begin_landing, choose
-from engines.stepping.timetable import Times, begin_times, even, pass_to
 from engines.world import UNLIMITED, Choice, Grip, Moment, Pose, Resolution, Step
 
 for function in (

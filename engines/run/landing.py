@@ -8,9 +8,9 @@ impact the steps are too short for anything but the contact to act.
 
 import math
 
-from engines.compiled import State, fill, shared
+from engines.parts.compiled import State, fill, shared
+from engines.run.timetable import SAME_TIME, Times, even
 from engines.scene import Scene
-from engines.stepping.timetable import SAME_TIME, Times, even
 from engines.world import Choice, Grip, Moment, Pose, Resolution
 
 SWING_PART = 8.0

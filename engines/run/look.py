@@ -12,12 +12,12 @@ import numpy as np
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Problem, Response
-from engines.compiled import FloatArray, State, kernel, shared
 from engines.declaration import Stepping
+from engines.parts.compiled import FloatArray, State, kernel, shared
+from engines.run.ground import rows_of
+from engines.run.steps import Pace, begin_pace, next_step
+from engines.run.timetable import timetable
 from engines.scene import Scene
-from engines.stepping.ground import rows_of
-from engines.stepping.steps import Pace, begin_pace, next_step
-from engines.stepping.timetable import timetable
 from engines.watching.answer import problem_of, response_of
 from engines.watching.history import sample
 from engines.watching.observe import (

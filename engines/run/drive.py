@@ -8,8 +8,8 @@ from typing import cast
 
 from analytic.response import Problem, Reason, Response
 from engines.declaration import Engine, Stepping
-from engines.look import Look
 from engines.registry import find
+from engines.run.look import Look
 from engines.scene import Scene
 from engines.world import (
     UNLIMITED,

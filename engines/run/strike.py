@@ -20,8 +20,8 @@ from analytic.block import RigidBlock
 from analytic.checks import positive
 from analytic.motion import SinePulse
 from engines.declaration import Engine
-from engines.drive import build
-from engines.drop import AHEAD
+from engines.parts.drop import AHEAD
+from engines.run.drive import build
 from engines.scene import Scene
 from engines.world import Grip, Pose, Step, SteppedWorld
 

@@ -1,0 +1,1 @@
+"""One run: equal steps, steps that land on impacts, or the engine's own; and who looks on."""
