@@ -378,13 +378,14 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine: str) -> None:
     libraries = {other.library for other in ENGINES.values()} - {"numpy"}
     script = (
         "import sys, engines\n"
+        "from engines.run.drive import run\n"
         "from analytic.block import RigidBlock\n"
         "from analytic.motion import SinePulse\n"
         "assert all(engine.presets for engine in engines.ENGINES.values())\n"
         f"assert not {libraries!r} & set(sys.modules)\n"
         "block = RigidBlock(width=0.5, height=1.5)\n"
         "scene = engines.Scene(block=block, motion=SinePulse(amplitude=4.0, omega=20.0))\n"
-        f"engines.run({engine!r}, scene)\n"
+        f"run({engine!r}, scene)\n"
         f"assert not {libraries - own!r} & set(sys.modules)\n"
     )
     done = subprocess.run(

@@ -308,7 +308,8 @@ def test_processes_agree_bit_by_bit(engine: str) -> None:
     script = (
         "from analytic.block import RigidBlock\n"
         "from analytic.motion import SinePulse\n"
-        "from engines import Scene, run\n"
+        "from engines import Scene\n"
+        "from engines.run.drive import run\n"
         f"block, motion = {BLOCK!r}, {motion!r}\n"
         f"print(run({engine!r}, Scene(block=block, motion=motion)).peak_ratio.hex())\n"
     )
