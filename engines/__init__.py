@@ -24,9 +24,7 @@ It holds
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
 - where it can be, ``script``: the scene in the library's own words (`engines.parts.script`), by
-  which `rocking export` writes it out and `rocking advise` says what to set; and ``bouncing``: a
-  dropped sphere (`engines.parts.drop`), by which `rocking restitution` asks for a coefficient of
-  restitution;
+  which `rocking export` writes it out and `rocking advise` says what to set;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``pose`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library

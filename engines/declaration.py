@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from analytic.block import RigidBlock
-from engines.parts.drop import Bouncing
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
@@ -175,8 +174,6 @@ class Engine:
     spring : callable or None
         ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
         m/time^2 with critical damping, both arguments in units of 1/p.
-    bouncing : tuple of Bouncing
-        Ways to ask it for a coefficient of restitution; none where it was not tried.
     factors : tuple of Factor
         What its contact can be set to.
     rules : tuple of Rule
@@ -207,7 +204,6 @@ class Engine:
     calmest: float = CALMEST
     script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
-    bouncing: tuple[Bouncing, ...] = ()
     factors: tuple[Factor, ...] = ()
     rules: tuple[Rule, ...] = ()
     remedy: Mapping[str, Any] = field(default_factory=dict)

@@ -1,7 +1,6 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
 from engines.dart.build import DartWorld
-from engines.dart.drop import BOUNCING
 from engines.dart.script import script
 from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
 from engines.declaration import Engine, Help, Preset, Stepping
@@ -40,7 +39,6 @@ ENGINE = Engine(
     spatial=True,
     calmest=1.0,
     script=script,
-    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     own_step="dartpy:simulation.World.step",

@@ -123,7 +123,7 @@ class DartWorld:
         x, y, z = (2.0 * size * self._unit for size in floor_half_size(scene))
         top = self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
         if self._s.restitution is not None:
-            top.getDynamicsAspect().setRestitutionCoeff(1.0)
+            top.getDynamicsAspect().setRestitutionCoeff(self._s.base_restitution)
         self._world.addSkeleton(skeleton)
         return joint, body
 
@@ -188,7 +188,7 @@ class DartWorld:
                 "moment": (moment, self._block.getInertia().getMoment()[1, 1]),
                 "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
                 "restitution": (
-                    s.restitution,
+                    None if s.restitution is None else s.restitution * s.base_restitution,
                     top.getRestitutionCoeff() * own.getRestitutionCoeff(),
                 ),
                 "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),

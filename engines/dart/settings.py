@@ -77,7 +77,9 @@ class DartSettings:
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
     restitution : float or None
-        Coefficient of the block, on a base whose own is 1: the library takes their product.
+        Coefficient of the block.
+    base_restitution : float
+        That of the base, with which the library multiplies it.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -95,6 +97,7 @@ class DartSettings:
     reflection: bool = False
     base_velocity: bool = True
     restitution: float | None = setting(least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

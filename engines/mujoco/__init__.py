@@ -2,7 +2,6 @@
 
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
-from engines.mujoco.drop import BOUNCING
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
     DEFAULT_CONTACT_S,
@@ -49,7 +48,6 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     spring=spring,
-    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     remedy={"impratio": 100.0},

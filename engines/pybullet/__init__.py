@@ -2,7 +2,6 @@
 
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.pybullet.build import BulletWorld
-from engines.pybullet.drop import BOUNCING
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
     FACTORS,
@@ -47,7 +46,6 @@ ENGINE = Engine(
     spatial=True,
     script=script,
     spring=spring,
-    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     remedy={"iterations": 10000},

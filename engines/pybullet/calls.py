@@ -141,9 +141,8 @@ def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
 
 def base_call(s: BulletSettings, body: Any) -> Call:
     """Return the call that sets the base's dynamics."""
-    return _change(
-        s, body, {"lateralFriction": 1.0, **({} if s.restitution is None else {"restitution": 1.0})}
-    )
+    bounce = None if s.restitution is None else s.base_restitution
+    return _change(s, body, given({"lateralFriction": 1.0, "restitution": bounce}))
 
 
 def _change(s: BulletSettings, body: Any, wanted: Mapping[str, Any]) -> Call:

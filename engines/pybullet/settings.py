@@ -93,7 +93,9 @@ class BulletSettings:
         Correct penetration without giving it a velocity; bound friction by a cone instead of a
         pyramid; find contacts of polyhedra by separating axes.
     restitution : float or None
-        Of the block, on a base whose own is 1: the library takes their product.
+        Coefficient of the block.
+    base_restitution : float
+        That of the base, with which the library multiplies it.
     restitution_threshold : float or None
         Speed [m/s] below which nothing bounces.
     contact_stiffness, contact_damping : float or None
@@ -125,6 +127,7 @@ class BulletSettings:
     cone_friction: bool | None = None
     separating_axis: bool | None = None
     restitution: float | None = setting(least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
     restitution_threshold: float | None = setting(least=0.0)
     contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
     contact_damping: float | None = setting(above=0.0)

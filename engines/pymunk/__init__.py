@@ -2,7 +2,6 @@
 
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld
-from engines.pymunk.drop import BOUNCING
 from engines.pymunk.script import script
 from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
 
@@ -42,7 +41,6 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     script=script,
-    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
 )

@@ -120,12 +120,13 @@ class PymunkWorld:
         turning = step.grip in (Grip.SWING, Grip.APPROACH)
         if self.settings.reflection and before and turning:
             back = min(step.dt_s / before, MOST_REFLECTION)
+        bounce = self.settings.restitution * self.settings.base_restitution
         about = step.side or -self._body.angle  # equal steps do not say
         for side, corner, floor in zip((-1.0, 1.0), self._corners, self._floors, strict=True):
             pivot = step.grip is Grip.REST or side * about >= -LEVEL
             floor.unsafe_set_radius(self._margin if pivot else 0.0)
             returned = back if pivot and step.side else 0.0
-            corner.elasticity, floor.elasticity = 1.0, max(returned, self.settings.restitution)
+            corner.elasticity, floor.elasticity = 1.0, max(returned, bounce)
             slip = 0.0
             if returned:
                 at = (side * self._half[0], -self._half[1])

@@ -48,7 +48,9 @@ class PymunkSettings:
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
     restitution : float
-        Coefficient of the corners, the product of two `elasticity`; a box has none.
+        Coefficient of the corners, which have it as their `elasticity`; a box has none.
+    base_restitution : float
+        That of the base, with which the library multiplies it.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -62,6 +64,7 @@ class PymunkSettings:
     reflection: bool = False
     base_velocity: bool = True
     restitution: float = setting(0.0, least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

@@ -2,7 +2,6 @@
 
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.rapier.build import RapierWorld
-from engines.rapier.drop import BOUNCING
 from engines.rapier.script import script
 from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
 
@@ -39,7 +38,6 @@ ENGINE = Engine(
     scatter=6e-3,
     shortest_step=3e-6,
     script=script,
-    bouncing=BOUNCING,
     factors=FACTORS,
     rules=RULES,
     remedy={"iterations": 1000},

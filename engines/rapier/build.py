@@ -106,7 +106,10 @@ class RapierWorld:
         rapier, (x, y, z) = self._rapier, counted(self._s.base_half_size(scene), self._unit)
         floor = rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
         body = rapier.RigidBody.kinematic_velocity_based().translation((0.0, 0.0, -self._sunk))
-        return self._add(body, [floor])
+        bounce = (
+            self._s.restitution if self._s.base_restitution is None else self._s.base_restitution
+        )
+        return self._add(body, [floor], bounce)
 
     def _add_block(self, scene: Scene) -> Any:
         rapier, s, start, unit = self._rapier, self._s, scene.beginning, self._unit
@@ -124,7 +127,7 @@ class RapierWorld:
             body = body.can_sleep(s.sleeping)
         if s.geometry == "box":
             box = rapier.Collider.cuboid(*self._half).density(scene.density / unit**3)
-            return self._add(body, [box])
+            return self._add(body, [box], s.restitution)
         radius = s.corner_radius * scene.block.height
         corners = [
             rapier.Collider.ball(radius * unit).density(0.0).translation(counted(at, unit))
@@ -132,10 +135,10 @@ class RapierWorld:
         ]
         moments = tuple(moment * unit**2 for moment in scene.inertia)
         inertia = rapier.MassProperties((0.0, 0.0, 0.0), scene.mass, moments)
-        return self._add(body.additional_mass_properties(inertia), corners)
+        return self._add(body.additional_mass_properties(inertia), corners, s.restitution)
 
-    def _add(self, body: Any, colliders: list[Any]) -> Any:
-        rough = [it.friction(self._s.friction).restitution(self._s.restitution) for it in colliders]
+    def _add(self, body: Any, colliders: list[Any], restitution: float) -> Any:
+        rough = [it.friction(self._s.friction).restitution(restitution) for it in colliders]
         return self._world.rigid_bodies[self._world.add_body(body, rough)]
 
     def _read_back(self, scene: Scene) -> str:

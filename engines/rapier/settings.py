@@ -80,7 +80,9 @@ class RapierSettings(Counted):
     base_velocity : bool
         Give a moving base its velocity; else it is moved by position alone.
     restitution : float
-        Coefficient of block and base; the library takes their mean.
+        Coefficient of the block.
+    base_restitution : float or None
+        That of the base, the block's by default; the library takes their mean.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -105,6 +107,7 @@ class RapierSettings(Counted):
     reflection: bool = False
     base_velocity: bool = True
     restitution: float = setting(0.0, least=0.0, most=1.0)
+    base_restitution: float | None = setting(least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
         check(self)

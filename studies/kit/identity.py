@@ -33,9 +33,7 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
 )
 """Where sources and engines are looked up: the one that a row asks is a part of it, by itself."""
 
-ASIDE = frozenset(
-    {"bouncing", "core", "factors", "install", "own_step", "rules", "script", "title"}
-)
+ASIDE = frozenset({"core", "factors", "install", "own_step", "rules", "script", "title"})
 """What an engine declares for readers, and for what is no row of a journal."""
 
 OF_A_PRESET = ("settings", "stepping", "step", "step_s")

@@ -172,30 +172,25 @@ SYMPTOMS = {
 
 RESTITUTION = {
     "way": Column("", "how the coefficient of restitution is asked for"),
-    "varied": Column("", "what differs from the drop, or the strike, that stands first"),
+    "varied": Column("", "what differs from the strike that stands first"),
     "wanted": Column("-", "coefficient of restitution that is asked for"),
-    "speed_m_s": Column("m/s", "speed with which a sphere sets out"),
-    "radius_m": Column("m", "radius of the sphere"),
-    "phase": Column("-", "part of a step after which it meets the base"),
-    "speed_ratio": Column("-", "speed after over before; nan where the library went wrong"),
+    "phase": Column("-", "part of a step after which the corner meets the base"),
     "p_dt": Column("-", "step in units of 1/p"),
     "rate_over_alpha_p": Column("-", "angular rate of a block at its impact, over α p"),
     "kept_ratio": Column("-", "1 - 3/2 (1 + e) sin² α, what the block should keep of its rate"),
     "rate_ratio": Column("-", "angular rate after over before the impact"),
-    "corner_ratio": Column("-", "upward speed of the striking corner over that of its approach"),
+    "corner_ratio": Column(
+        "-", "upward speed of the striking corner over that of its approach; nan: it went wrong"
+    ),
     "slide_ratio": Column("-", "its speed along the base over that of its approach"),
     "off": Column("-", "largest difference of a ratio after over before from what it should be"),
-    "off_dt_s": Column("-", "the same at other steps"),
-    "off_speed": Column("-", "the same at other speeds"),
-    "off_radius": Column("-", "the same at other radii"),
-    "off_over_all": Column("-", "the largest of all these"),
     "off_p_dt": Column("-", "the same at other steps"),
     "off_rate_over_alpha_p": Column("-", "the same at other rates"),
     "off_height_m": Column("-", "the same at other heights"),
     "off_aspect": Column("-", "the same at another slenderness"),
-    "corner": Column("-", "largest |corner_ratio - wanted|"),
+    "off_over_all": Column("-", "the largest of all these"),
     "slide": Column("-", "largest |slide_ratio|"),
-    "broken": Column("-", "drops that the library did not survive"),
+    "broken": Column("-", "strikes that the library did not survive"),
 }
 
 VERSIONS = {

@@ -7,6 +7,9 @@ from collections.abc import Callable
 NUMBER = re.compile(r"((?<![\w.])-?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)")
 """A number, and no digit of a name."""
 
+FORMULA = re.compile(NUMBER.pattern + r"?([*/]?)\bDT\b(?:\*\*(\d+))?")
+"""A power of DT, with a coefficient or without."""
+
 STEPS_S = (2.0**-10, 2.0**-9, 2.0**-8)
 """Steps [s] whose powers are exact."""
 
@@ -35,6 +38,17 @@ def by_step(written: Callable[[float], str]) -> str:
     numbers = [_of_step(*three) for three in zip(*(part[1::2] for part in parts), strict=True)]
     words = [word for pair in zip(parts[0][::2], [*numbers, ""], strict=True) for word in pair]
     return "".join(words)
+
+
+def at_step(written: str, dt_s: float) -> str:
+    """Return a text with its formulas of DT, as `by_step` writes them, as numbers at a step [s]."""
+
+    def number(found: re.Match[str]) -> str:
+        times, sign, power = found.groups()
+        exponent = float(power or 1) * (-1.0 if sign == "/" else 1.0)
+        return f"{float(times or 1.0) * dt_s**exponent:.10g}"
+
+    return FORMULA.sub(number, written)
 
 
 def _of_step(first: str, second: str, third: str) -> str:

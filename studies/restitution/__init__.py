@@ -7,24 +7,24 @@ STUDY = Study(
     module="studies.restitution.study",
     help="""What each engine makes of a coefficient of restitution, and what setting gives which.
 
-A sphere is dropped on a base: the speed after over before, for coefficients from 0 to 1, over
-steps, speeds, sizes and where in a step the impact falls. And a block that turns about a corner
-strikes with the other: what it keeps of its angular rate, beside 1 - 3/2 (1 + e) sin^2(alpha).
-Writes restitution.csv, kept.csv, strikes.csv, struck.csv, two pictures and findings.txt; a
-minute.""",
+A block that turns about a corner strikes its base with the other: the speed of that corner after
+over before, for coefficients from 0 to 1, over steps, rates, sizes, slenderness and where in a step
+the impact falls; and what the block keeps of its angular rate, beside
+1 - 3/2 (1 + e) sin^2(alpha). Writes restitution.csv, corners.csv, rates.csv, two pictures and
+findings.txt; a minute.""",
     table="restitution.csv",
     products=(
-        *("restitution.csv", "kept.csv", "strikes.csv", "struck.csv"),
-        *("restitution.png", "strikes.png", "findings.txt"),
+        *("restitution.csv", "corners.csv", "rates.csv"),
+        *("corners.png", "rates.png", "findings.txt"),
     ),
     captions={
-        "restitution": (
-            "The speed of a dropped sphere after its impact over that before, against the "
-            'coefficient of restitution that was asked for, a panel for each way to ask: "and" '
-            "adds to the one before. The band is wherever in a step the impact falls; crosses are "
-            "drops that broke."
+        "corners": (
+            "The speed upwards of a corner that strikes the base, over that of its approach, "
+            'against the coefficient of restitution that was asked for, a panel for each way: "and"'
+            " adds to the one before. The band is wherever in a step the impact falls; crosses are "
+            "strikes that broke."
         ),
-        "strikes": (
+        "rates": (
             "The angular rate of a block after an impact of its corner over that before, against "
             "the coefficient of restitution that was asked for; the thin line is 1 - 3/2 (1 + e) "
             "sin² α, from the moment of momentum about a corner that bounces and does not slide. "
@@ -35,7 +35,7 @@ minute.""",
         Chapter(
             folder="restitution",
             question="Which setting gives which coefficient of restitution?",
-            tables=("kept.csv", "struck.csv"),
+            tables=("corners.csv", "rates.csv"),
             quick=(),
             minutes=(0.4, 0.2),
         ),

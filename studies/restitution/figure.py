@@ -1,7 +1,6 @@
 """What comes out of a coefficient of restitution against what is wanted."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from textwrap import wrap
 
@@ -11,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.styles import engine_style
+from studies.restitution.strikes import BASE, CORNER, RATE, Measure
 
 ACROSS = 4
 """Panels in a row."""
@@ -24,43 +24,30 @@ class Shown:
 
     Attributes
     ----------
-    found, right : str
-        Columns: what is found, and what it should be.
-    label, base : str
-        Of the ordinate, and of what is varied.
-    varied : mapping
-        Column -> what its value is written with, and the line it is drawn with.
+    measure : Measure
+    label : str
+        Of the ordinate.
     low, top : float
         Ends of the scale; what is above, or broken, stands at the top as a cross.
     """
 
-    found: str
-    right: str
+    measure: Measure
     label: str
-    base: str
-    varied: Mapping[str, tuple[str, str]]
     low: float
     top: float
 
 
-SPHERE = Shown(
-    found="speed_ratio",
-    right="wanted",
-    label="speed after over before",
-    base="1 ms, 1 m/s, in the engine's colour",
-    varied={"dt_s": ("{:.2g} s", "--"), "speed_m_s": ("{:.2g} m/s", ":")},
-    low=-0.05,
-    top=1.35,
-)
-BLOCK = Shown(
-    found="rate_ratio",
-    right="kept_ratio",
-    label="rate after over before",
-    base="p dt 1e-3, 0.5 α p, in the engine's colour",
-    varied={"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":")},
-    low=-0.75,
-    top=1.15,
-)
+SHOWN = {
+    "corners": Shown(
+        measure=CORNER, label="speed of the corner after over before", low=-0.05, top=1.35
+    ),
+    "rates": Shown(measure=RATE, label="angular rate after over before", low=-0.75, top=1.15),
+}
+"""Name of a picture -> what it shows."""
+
+USUAL = f"p dt {BASE.step:.0e}, {BASE.rate:g} α p, in the engine's colour"
+VARIED = {"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":")}
+"""What is varied, column -> what its value is written with, and the line it is drawn with."""
 
 
 def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
@@ -69,7 +56,7 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     Parameters
     ----------
     rows : DataFrame
-        The columns of restitution.csv or strikes.csv.
+        The columns of restitution.csv.
     shown : Shown
     """
     ways = list(rows.groupby(["engine", "way"], sort=False))
@@ -93,16 +80,16 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
 def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:
     """Draw the band over where an impact falls in a step, and lines of what is varied."""
     usual = group[group["varied"] == ""].groupby("wanted")
-    right, base = usual[shown.right].first(), usual[shown.found]
+    right, base = usual[shown.measure.right].first(), usual[shown.measure.found]
     axes.plot(right.index, right, color="#777777", linewidth=0.8, label="as it should be")
     low, middle, high = base.min(), base.median(), base.max()
     axes.fill_between(low.index, low, high, color=colour, alpha=0.35, linewidth=0.0)
-    axes.plot(middle.index, middle, color=colour, linewidth=1.1, label=shown.base)
+    axes.plot(middle.index, middle, color=colour, linewidth=1.1, label=USUAL)
     shades = colormaps["Greys"]
-    for column, (words, line) in shown.varied.items():
+    for column, (words, line) in VARIED.items():
         mine = group[(group["varied"] != "") & group["varied"].map(column.startswith)]
         for place, (value, rows) in enumerate(mine.groupby(column)):
-            found = rows.groupby("wanted")[shown.found].median()
+            found = rows.groupby("wanted")[shown.measure.found].median()
             kept, lost = found.where(found < shown.top), found[~(found < shown.top)]
             shade, label = shades(0.55 + 0.35 * place), words.format(float(str(value)))
             axes.plot(kept.index, kept, line, color=shade, linewidth=1.1, label=label)

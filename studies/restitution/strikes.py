@@ -1,14 +1,24 @@
-"""Blocks that strike their base with a corner, one thing varied at a time, and what they keep."""
+"""Blocks that strike their base with a corner, one thing varied at a time, and what comes out."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.run.strike import Strike, strike
 from studies.kit.journal import Row
-from studies.restitution.asked import one_at_a_time
+from studies.measures.formulas import by_step
+from studies.restitution.strike import Strike, strike
+from studies.restitution.ways import SHOWN, WAYS
+
+WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Coefficients of restitution."""
+
+PHASES = (0.1, 0.5, 0.9)
+"""Parts of a step after which the impact falls."""
 
 BASE = Strike(restitution=0.0)
 """From which one thing at a time is varied."""
@@ -24,57 +34,81 @@ VARIED = {
 COLUMNS = {"step": "p_dt", "rate": "rate_over_alpha_p", "height": "height_m", "aspect": "aspect"}
 """Names of what is varied in the table."""
 
+BROKEN = 10.0
+"""A corner that comes off so many times as fast was thrown by a contact that is unstable."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """What a strike is asked: the columns of what is found and of what is right."""
+
+    found: str
+    right: str
+
+
+CORNER = Measure("corner_ratio", "wanted")
+"""The speed of the corner after over before: the coefficient itself."""
+RATE = Measure("rate_ratio", "kept_ratio")
+"""The angular rate of the block after over before, which follows from it."""
+
+
+def all_strikes() -> Iterator[tuple[str, Strike]]:
+    """Yield what is varied, "" for nothing, and what is asked."""
+    others: list[tuple[str, dict[str, float]]] = [("", {})]
+    others += [(name, {name: value}) for name, values in VARIED.items() for value in values]
+    for (name, other), wanted, phase in product(others, WANTED, PHASES):
+        yield name, replace(BASE, restitution=wanted, phase=phase, **other)
+
 
 def measured(engines: Sequence[str]) -> pd.DataFrame:
     """Return a row for each engine, way and strike; nan where the library went wrong."""
     rows: list[Row] = []
     for engine in engines:
-        for way in ENGINES[engine].bouncing:
-            if way.block is None:
-                continue
-            for varied, asked in one_at_a_time(BASE, VARIED):
-                found = strike(ENGINES[engine], asked, way.block(asked.restitution))
-                rows.append(
-                    {
-                        **{"engine": engine, "way": way.name, "varied": COLUMNS.get(varied, "")},
-                        **{"wanted": asked.restitution, "phase": asked.phase},
-                        **{column: getattr(asked, name) for name, column in COLUMNS.items()},
-                        "kept_ratio": asked.kept,
-                        **found._asdict(),
-                    }
-                )
+        for way, (varied, asked) in product(WAYS[engine], all_strikes()):
+            found = strike(ENGINES[engine], asked, way)
+            rows.append(
+                {
+                    **{"engine": engine, "way": way.name, "varied": COLUMNS.get(varied, "")},
+                    **{"wanted": asked.restitution, "phase": asked.phase},
+                    **{column: getattr(asked, name) for name, column in COLUMNS.items()},
+                    **{"kept_ratio": asked.kept, **found._asdict()},
+                }
+            )
     return pd.DataFrame(rows)
 
 
-def struck(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each engine and way: how far off what blocks keep is at most.
+def lines(rows: pd.DataFrame, measure: Measure) -> pd.DataFrame:
+    """Return a line for each engine and way: how far off a measure is at most.
 
     Parameters
     ----------
     rows : DataFrame
         From `measured`.
+    measure : Measure
 
     Returns
     -------
     DataFrame
-        engine, way; off: the largest difference of the ratio of rates from that of the theory,
-        wherever in a step the impact falls; off_p_dt, ...: the same over what is varied;
-        off_over_all: the largest of these; corner:
-        the largest difference of the corner's ratio of speeds from what is wanted; slide: the
-        largest speed of the corner along the base, over that of its approach.
+        engine, way; off: the largest difference of what is found from what is right, wherever in a
+        step the impact falls; off_p_dt, ...: the same over what is varied; off_over_all: the
+        largest of these; broken: strikes that the library did not survive; slide: the largest speed
+        of the corner along the base, over that of its approach; literal: what is set for 0.6, what
+        follows the step being a formula of DT, the step [s].
     """
     table = []
-    for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
-        off = (group["rate_ratio"] - group["kept_ratio"]).abs().fillna(math.inf)
-        corner = (group["corner_ratio"] - group["wanted"]).abs().fillna(math.inf)
+    for (engine, name), group in rows.groupby(["engine", "way"], sort=False):
+        off = (group[measure.found] - group[measure.right]).abs()
+        off = off.where(group["corner_ratio"] < BROKEN, math.inf)
         usual = group["varied"] == ""
-        names = {"": "off", **{name: f"off_{name}" for name in COLUMNS.values()}}
-        mine = {column: off[group["varied"] == name].max() for name, column in names.items()}
-        slide = group["slide_ratio"].abs()[usual].max()
+        names = {"": "off"} | {column: f"off_{column}" for column in COLUMNS.values()}
+        mine = {column: off[group["varied"] == varied].max() for varied, column in names.items()}
+        literal = next(way.literal for way in WAYS[str(engine)] if way.name == name)
         table.append(
             {
-                **{"engine": engine, "way": way, **mine, "off_over_all": off.max()},
-                **{"corner": corner[usual].max(), "slide": slide},
+                **{"engine": engine, "way": name, **mine, "off_over_all": off.max()},
+                "broken": int((off == math.inf).sum()),
+                "slide": group["slide_ratio"].abs()[usual].max(),
+                "literal": by_step(partial(literal, SHOWN)),
             }
         )
     return pd.DataFrame(table)

@@ -1,37 +1,37 @@
-"""A dropped sphere, and a block that strikes: what comes out of a coefficient of restitution."""
+"""A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
-from engines import ENGINES, installed_engines
+from engines import installed_engines
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.restitution import STUDY, drops, strikes
+from studies.restitution import STUDY, strikes
 from studies.restitution.report import (
     LOST,
-    block_claim,
     findings_text,
     first_claim,
+    rate_claim,
     settings_claim,
     told,
 )
+from studies.restitution.ways import WAYS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-ASKED = tuple(name for name in installed_engines() if ENGINES[name].bouncing)
+ASKED = tuple(name for name in installed_engines() if name in WAYS)
 
 
 def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
-    """Hold what a dropped sphere, and a rocking block, keep at an impact against what was asked.
+    """Hold what a rocking block keeps at an impact against what was asked.
 
-    Coefficients from 0 to 1, wherever in a step the impact falls: a sphere at a step of 1 ms, 1 m/s
-    and a radius of 0.1 m, and with another step, speed or radius; a block of 0.5 by 1 m in the
+    Coefficients from 0 to 1, wherever in a step the impact falls: a block of 0.5 by 1 m in the
     preset "fixed" that turns about a corner at half of alpha p and strikes with the other, in steps
     of 1e-3/p, and at another step, rate, height or slenderness.
 
@@ -43,18 +43,17 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED)
         Names of engines, without a preset.
     """
     check_engines(engines)
-    mute = [name for name in engines if not ENGINES[name].bouncing]
+    mute = [name for name in engines if name not in WAYS]
     if mute:
-        able = ", ".join(name for name, engine in ENGINES.items() if engine.bouncing)
+        able = ", ".join(WAYS)
         raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
 
     def tabulate(_: object) -> Tables:
-        dropped, struck = drops.measured(engines), strikes.measured(engines)
+        struck = strikes.measured(engines)
         return {
-            "restitution": dropped,
-            "kept": drops.kept(dropped),
-            "strikes": struck,
-            "struck": strikes.struck(struck),
+            "restitution": struck,
+            "corners": strikes.lines(struck, strikes.CORNER),
+            "rates": strikes.lines(struck, strikes.RATE),
         }
 
     plan = Plan(settings={"engines": engines}, tabulate=tabulate)
@@ -66,7 +65,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
-    text = findings_text(_read(folder, "kept"), _read(folder, "struck"))
+    text = findings_text(_read(folder, "corners"), _read(folder, "rates"))
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -81,22 +80,19 @@ def _read(folder: Path, name: str) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say how well engines keep a coefficient."""
-    return first_claim(_read(folder, "kept"))
+    return first_claim(_read(folder, "corners"))
 
 
 def paragraph(folder: Path) -> str:
     """Say which setting keeps a coefficient, what a block makes of it, and which ways hold."""
-    first = [settings_claim(_read(folder, "kept")), block_claim(_read(folder, "struck"))]
-    tables = {"a sphere": "kept", "a block's rate": "struck"}
-    held = [told(_read(folder, table), asked) for asked, table in tables.items()]
-    return " ".join([*first, *held, LOST])
+    corners, rates = _read(folder, "corners"), _read(folder, "rates")
+    held = [told(corners, "the coefficient"), told(rates, "the rate")]
+    return " ".join([settings_claim(corners), rate_claim(corners, rates), *held, LOST])
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":
-    """Draw what is found against what is wanted, from a folder's tables of rows alone."""
-    from studies.restitution.figure import BLOCK, SPHERE, draw_restitution
+    """Draw what is found against what is wanted, from a folder's table of rows alone."""
+    from studies.restitution.figure import SHOWN, draw_restitution
 
-    return {
-        "restitution": draw_restitution(_read(folder, "restitution"), SPHERE),
-        "strikes": draw_restitution(_read(folder, "strikes"), BLOCK),
-    }
+    rows = _read(folder, "restitution")
+    return {name: draw_restitution(rows, shown) for name, shown in SHOWN.items()}

@@ -9,10 +9,9 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.parts.drop import SHOWN, Drop
 from engines.parts.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from studies.kit.journal import Row
-from studies.measures.formulas import by_step
+from studies.measures.formulas import at_step, by_step
 from studies.symptoms.patch import own_step_s, patch
 from studies.symptoms.seen import (
     BOUNCE,
@@ -26,9 +25,12 @@ from studies.symptoms.seen import (
 )
 
 VARIANTS, OWN = "contact/variants.csv", "contact/own-steps.csv"
-LADDER, BOUNCES = "precision/work-precision.csv", "restitution/kept.csv"
+LADDER, BOUNCES = "precision/work-precision.csv", "restitution/corners.csv"
 TABLES = (VARIANTS, OWN, LADDER, BOUNCES)
 """The tables that are read."""
+
+QUOTED_E = 0.6
+"""The coefficient of restitution for which that table quotes settings."""
 
 HELPS = 0.5
 """A setting helps if it leaves no more than this part of what there is by default, both at the
@@ -213,12 +215,10 @@ def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
 
 
 def _bouncing(bounces: pd.DataFrame, engine: str, dt_s: float) -> Iterator[Row]:
-    """Yield how far off a dropped sphere is, asked in the first way and in the best."""
+    """Yield how far off a coefficient comes out, asked in the first way and in the best."""
     mine = bounces[bounces["engine"] == engine]
     if len(mine):
         first, best = mine.iloc[0], mine.iloc[int(mine["off_over_all"].argmin())]
-        way = next(way for way in ENGINES[engine].bouncing if way.name == best["way"])
-        asked = Drop(restitution=SHOWN, dt_s=dt_s)
         yield _row(
             BOUNCE,
             engine,
@@ -226,8 +226,8 @@ def _bouncing(bounces: pd.DataFrame, engine: str, dt_s: float) -> Iterator[Row]:
             shown_by=f'"{first["way"]}"',
             before=float(first["off_over_all"]),
             setting=f'"{best["way"]}"',
-            formula=f"for {SHOWN:g}: {best['literal']}",
+            formula=f"for {QUOTED_E:g}: {best['literal']}",
             dt_s=dt_s,
-            literal=f"for {SHOWN:g}: {way.setting(asked)}",
+            literal=f"for {QUOTED_E:g}: {at_step(best['literal'], dt_s)}",
             after=float(best["off_over_all"]),
         )

@@ -90,7 +90,7 @@ EDITS = {
     ),
     "the registry": ("engines/registry.py", "return own | ", "return own | own | ", set()),
     "a script": ("engines/mujoco/script.py", "return ", "return 1 + ", set()),
-    "a drop": ("engines/mujoco/drop.py", "return ", "return 1 + ", set()),
+    "another study": ("studies/restitution/strike.py", "return ", "return 1 + ", set()),
     "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),

@@ -12,18 +12,20 @@ that there is no impulse on it.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 from analytic.block import RigidBlock
 from analytic.checks import positive
 from analytic.motion import SinePulse
 from engines.declaration import Engine
-from engines.parts.drop import AHEAD
 from engines.run.drive import build
 from engines.scene import Scene
 from engines.world import Grip, Pose, Step, SteppedWorld
+from studies.restitution.ways import Way
+
+AHEAD = 20
+"""Whole steps from the start to the step of the impact."""
 
 PATIENCE = 40
 """Steps after the impact within which the corner must come off the base again; else it stays."""
@@ -80,6 +82,11 @@ class Strike:
         return RigidBlock(width=self.height / self.aspect, height=self.height)
 
     @property
+    def dt_s(self) -> float:
+        """Step [s]."""
+        return self.step / self.block.p
+
+    @property
     def omega(self) -> float:
         """Angular rate at the impact [rad/s]."""
         return self.rate * self.block.p * self.block.alpha
@@ -94,8 +101,8 @@ class Strike:
         """Angular rate after over before the impact, by the moment of momentum."""
         return 1.0 - 1.5 * (1.0 + self.restitution) * math.sin(self.block.alpha) ** 2
 
-    def scene(self, settings: Mapping[str, Any]) -> Scene:
-        """Return the scene at the start; settings replace those of the engine's preset "fixed"."""
+    def scene(self, way: Way) -> Scene:
+        """Return the scene at the start, in the preset "fixed" but for what the way sets."""
         tilt = self.start_tilt
         return Scene(
             block=self.block,
@@ -103,7 +110,7 @@ class Strike:
             start=(-tilt, math.sqrt(self._rate_squared(tilt))),
             preset="fixed",
             step=self.step,
-            settings=settings,
+            settings=way.settings(self.restitution, self.dt_s),
         )
 
     def at_level(self, pose: Pose) -> float:
@@ -131,7 +138,7 @@ class Struck(NamedTuple):
     slide_ratio: float
 
 
-def strike(engine: Engine, asked: Strike, settings: Mapping[str, Any]) -> Struck:
+def strike(engine: Engine, asked: Strike, way: Way) -> Struck:
     """Let a block strike its base in an engine's preset "fixed".
 
     Where the corner comes off, the block flies, and its rate is read there; where it stays, the
@@ -141,15 +148,15 @@ def strike(engine: Engine, asked: Strike, settings: Mapping[str, Any]) -> Struck
     ----------
     engine : Engine
     asked : Strike
-    settings : mapping
-        Settings of the engine in place of the preset's.
+    way : Way
+        How its coefficient is asked for.
 
     Raises
     ------
     NotAvailableError
         If the library is not installed.
     """
-    scene = asked.scene(settings)
+    scene = asked.scene(way)
     world = cast(SteppedWorld, build(engine, scene))
     try:
         found = _watched(world, asked, scene)
@@ -160,7 +167,7 @@ def strike(engine: Engine, asked: Strike, settings: Mapping[str, Any]) -> Struck
 
 def _watched(world: SteppedWorld, asked: Strike, scene: Scene) -> Struck:
     half_width, half_height = 0.5 * scene.block.width, 0.5 * scene.block.height
-    dt = asked.step / scene.block.p
+    dt = asked.dt_s
     approach = 2.0 * half_width * asked.omega
 
     def corner(pose: Pose) -> tuple[float, float]:
