@@ -10,16 +10,10 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.advise.evidence import in_words
 from studies.drawing.labels import Name, around, beyond
-from studies.drawing.styles import engine_style, preset_line
+from studies.drawing.styles import engine_style
+from studies.measures.presets import told
 from studies.measures.words import listed, per_cent
 
-WORDS = {
-    "naive": "the libraries' defaults",
-    "fixed": "equal steps",
-    "landing": "landing steps",
-    "error-controlled": "an engine's own steps",
-}
-"""Preset -> what it is called in the title."""
 LETTERS = 88
 """In a line of the title."""
 BEFORE, AFTER, EDGE = 0.9, 1.3, 0.25
@@ -92,7 +86,7 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Nam
         errors,
         times,
         color=style.colour,
-        linestyle=preset_line(preset),
+        linestyle=told(preset).line,
         marker=style.marker,
         fillstyle=style.fill,
         markersize=6,
@@ -117,15 +111,15 @@ def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
     kept, asked = lines[lines["message"] == ""], list(lines["preset"].unique())
     best = list(kept.loc[kept["target"] == targets[-1], "preset"].unique())
     none = [name for name in asked if name not in set(kept["preset"])]
-    words = f"{per_cent(targets[-1])} is kept by {_named(best) if best else 'none of them'}"
+    words = f"{per_cent(targets[-1])} is kept {_named(best) if best else 'by none of them'}"
     if 0 < len(best) < len(asked):
         words += " alone"
     if none and len(targets) > 1:
-        words += f", and {per_cent(targets[0])} not even by {_named(none)}"
+        words += f", and {per_cent(targets[0])} not even {_named(none)}"
     return "\n".join(
         [*wrap(words, LETTERS), "(numbers: p dt, or the accuracy of an engine's own steps)"]
     )
 
 
 def _named(presets: Sequence[str]) -> str:
-    return listed([WORDS.get(name, name) for name in presets], "or")
+    return listed([told(name).words for name in presets], "or")

@@ -7,17 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from engines.parts.factors import BEST, DEFAULT
-from studies.drawing.styles import PRESET_COLOURS
+from studies.measures.presets import in_order, told
 from studies.measures.words import part
 
-TITLES = {
-    "landing": "one help of landing left out",
-    "error-controlled": "one help of the engine's own steps",
-    BEST: "one change from the best fixed-step setting",
-    DEFAULT: "one from the defaults",
-}
-"""Preset -> what is changed of it, in the order in which they stand."""
 MATTER = 10
 """How many variants of an engine are drawn one by one."""
 ROW, HEAD, FOOT = 0.148, 0.3, 1.15
@@ -58,11 +50,11 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame, others: pd.DataFrame) -> None
     axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
     for place, (_, line) in enumerate(ordered.iterrows()):
         _one_variant(axes, place, line)
-    for preset in TITLES:
+    for preset in ordered["preset"].unique():
         _baseline(axes, ordered, preset)
     axes.set_yticks(range(len(ordered)), [_label(line) for _, line in ordered.iterrows()])
     for text, (_, line) in zip(axes.get_yticklabels(), ordered.iterrows(), strict=True):
-        text.set(fontsize=8, color=PRESET_COLOURS[str(line["preset"])])
+        text.set(fontsize=8, color=told(str(line["preset"])).colour)
         if not line["factor"]:
             text.set_fontweight("bold")
     axes.axhline(len(ordered) - 0.5, color="#999999", linewidth=0.8)
@@ -94,7 +86,7 @@ def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
 
 def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
     keyed = lines.assign(
-        first=lines["preset"].map({name: place for place, name in enumerate(TITLES)}),
+        first=-lines["preset"].map(in_order(lines["preset"]).index),
         own=lines["factor"] != "",
         worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
     )
@@ -114,7 +106,7 @@ def _summed(others: pd.DataFrame) -> str:
 
 
 def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
-    colour = PRESET_COLOURS[str(line["preset"])]
+    colour = told(str(line["preset"])).colour
     error = max(float(line["max_error"]), LOWEST)
     if line["max_error"] == line["max_error"]:
         median = max(float(line["median_error"]), LOWEST)
@@ -135,7 +127,7 @@ def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
     if base.empty:
         return
     places = own.nonzero()[0]
-    axes.plot([base.iloc[0]] * 2, [places[0] - 0.5, places[-1] + 0.5], color=PRESET_COLOURS[preset],
+    axes.plot([base.iloc[0]] * 2, [places[0] - 0.5, places[-1] + 0.5], color=told(preset).colour,
               linewidth=1.0, linestyle="--", zorder=0)  # fmt: skip
     axes.axhline(places[0] - 0.5, color="#999999", linewidth=0.8)
 
@@ -148,8 +140,8 @@ def _label(line: "pd.Series[Any]") -> str:
 def _handles(presets: set[str]) -> list[Line2D]:
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o"}
     return [
-        *(Line2D([], [], color=PRESET_COLOURS[key], label=name, **plain)
-          for key, name in TITLES.items() if key in presets),
+        *(Line2D([], [], color=told(name).colour, label=told(name).varied, **plain)
+          for name in reversed(in_order(presets))),
         Line2D([], [], color="#666666", linestyle="--", label="the preset as it is"),
         Line2D([], [], color="#666666", marker="o", label="peak, median to largest error"),
         Line2D([], [], color="#444444", linestyle="none", marker="D", markersize=4,

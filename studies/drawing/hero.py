@@ -12,17 +12,12 @@ from matplotlib.patches import Polygon, Rectangle
 from analytic.block import RigidBlock
 from studies.drawing.block import GROUND, INK, SOFT, outline
 from studies.drawing.styles import style_of
+from studies.measures.presets import engine_of, is_engine, preset_of, told
 
 MAGNIFIED = 2.5
 """How many times their size the rotations of the outlines are drawn."""
 
 GHOST = "#c9c9c9"
-TITLES = {
-    "naive": "{}, defaults",
-    "fixed": "{}, fixed step",
-    "": "{}, landing steps",
-}
-"""Preset of an engine -> the title of its outline."""
 
 
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:
@@ -61,9 +56,10 @@ def _at(samples: pd.DataFrame, source: str, instant: float) -> float:
 
 
 def _title(line: "pd.Series[Any]") -> str:
-    engine, colon, preset = str(line["source"]).partition(":")
-    is_model = not colon and engine == "housner"
-    return "Housner's linearization" if is_model else TITLES[preset].format(engine)
+    source = str(line["source"])
+    if not is_engine(source):
+        return "Housner's linearization" if source == "housner" else source
+    return f"{engine_of(source)}, {told(preset_of(source)).short}"
 
 
 def _verdict(line: "pd.Series[Any]") -> str:

@@ -1,14 +1,13 @@
 """How each source is drawn, in one place: colour, line and marker of models, solvers, engines."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from engines import ENGINES
+from studies.measures.presets import Fill, told
 
 LOWEST = 1e-16
 """Errors below are drawn here, on the floor of double precision."""
-
-Fill = Literal["none", "left", "bottom", "full"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,41 +54,33 @@ STYLES = {
 }
 
 # from Tol's muted palette, but for the first two; an engine has a marker of its own besides,
-# because no eight colours stay apart for every reader
+# because no eight colours stay apart for every reader, and 8 colours with 9 markers make 72 looks
 ENGINE_COLOURS = (
     *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
 )
-ENGINE_MARKERS = "o^sDvPXp"
-FILLS: dict[str, Fill] = {"naive": "full", "fixed": "left", "error-controlled": "bottom"}
-"""Preset -> how much of an engine's marker is filled; open is the best there is."""
-PRESET_LINES = {"naive": ":", "fixed": "--", "error-controlled": "-."}
-"""Preset -> line, where an engine is drawn as one; the best there is has a full line."""
-PRESET_COLOURS = {
-    "naive": "#D55E00",
-    "fixed": "#0072B2",
-    "error-controlled": "#CC79A7",
-    "landing": "#009E73",
-}
-"""Preset -> colour where presets are compared, and the engines are named."""
+ENGINE_MARKERS = "o^sDvPXph"
 
 OTHER = Style("#777777", marker="D")
 """Of a source without a style of its own."""
 
 
+def look_at(place: int) -> tuple[str, str]:
+    """Return the colour and the marker of the engine at a place among all."""
+    return (
+        ENGINE_COLOURS[place % len(ENGINE_COLOURS)],
+        ENGINE_MARKERS[place % len(ENGINE_MARKERS)],
+    )
+
+
 def engine_style(engine: str, preset: str) -> Style:
     """Return colour and marker of an engine, by its place among all, and the preset's fill."""
-    place = list(ENGINES).index(engine)
-    return Style(
-        ENGINE_COLOURS[place % len(ENGINE_COLOURS)],
-        marker=ENGINE_MARKERS[place % len(ENGINE_MARKERS)],
-        fill=FILLS.get(preset, "none"),
-    )
+    colour, marker = look_at(list(ENGINES).index(engine))
+    return Style(colour, marker=marker, fill=told(preset).fill)
 
 
 def preset_style(preset: str) -> Style:
     """Return how the engines with a preset are drawn where they are named beside their points."""
-    colour = PRESET_COLOURS.get(preset, OTHER.colour)
-    return Style(colour, marker="o", fill=FILLS.get(preset, "none"))
+    return Style(told(preset).colour, marker="o", fill=told(preset).fill)
 
 
 def style_of(source: str) -> Style:
@@ -102,9 +93,4 @@ def style_of(source: str) -> Style:
 
 def line_of(source: str) -> str:
     """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
-    return style_of(source).line or preset_line(source.partition(":")[2])
-
-
-def preset_line(preset: str) -> str:
-    """Return the line of an engine with a preset."""
-    return PRESET_LINES.get(preset, "-")
+    return style_of(source).line or told(source.partition(":")[2]).line

@@ -1,17 +1,80 @@
-"""The presets of the engines: their order, and their names in a sentence."""
+"""The presets of the engines: their order, their names in a sentence, and how they are drawn."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
 
-from engines import ENGINES
 from studies.sources.registry import resolve
 
-WORDS = {
-    "naive": "with the libraries' defaults",
-    "fixed": "with a tuned contact and a fixed step",
-    "error-controlled": "with the engine's own error-controlled steps",
-    "landing": "with steps that land on impacts",
+Fill = Literal["none", "left", "bottom", "full"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Told:
+    """How a preset is told of.
+
+    Attributes
+    ----------
+    words : str
+        What it is, as part of a sentence about engines that have it.
+    short : str
+        After the name of an engine.
+    varied : str
+        What a study of contacts changes of it.
+    colour : str
+        Where presets are compared, and the engines are named.
+    line, fill : str
+        Where an engine is drawn as a line, and how much of its marker is filled.
+    """
+
+    words: str
+    short: str
+    varied: str
+    colour: str = "#777777"
+    line: str = "-"
+    fill: Fill = "none"
+
+
+PRESETS = {
+    "naive": Told(
+        words="with the libraries' defaults",
+        short="defaults",
+        varied="one from the defaults",
+        colour="#D55E00",
+        line=":",
+        fill="full",
+    ),
+    "fixed": Told(
+        words="with a tuned contact and a fixed step",
+        short="fixed step",
+        varied="one change from the best fixed-step setting",
+        colour="#0072B2",
+        line="--",
+        fill="left",
+    ),
+    "error-controlled": Told(
+        words="with the engine's own error-controlled steps",
+        short="its own steps",
+        varied="one help of the engine's own steps",
+        colour="#CC79A7",
+        line="-.",
+        fill="bottom",
+    ),
+    "landing": Told(
+        words="with steps that land on impacts",
+        short="landing steps",
+        varied="one help of landing left out",
+        colour="#009E73",
+    ),
 }
-"""Preset -> what it is, as part of a sentence about engines that have it."""
+"""Preset -> how it is told of, from the libraries' own to the best there is."""
+
+
+def told(preset: str) -> Told:
+    """Return how a preset is told of; one of another package by its name, in grey."""
+    if preset in PRESETS:
+        return PRESETS[preset]
+    return Told(words=f"with the preset {preset}", short=preset, varied=f"one change from {preset}")
 
 
 def is_engine(source: str) -> bool:
@@ -31,12 +94,11 @@ def engine_of(source: str) -> str:
 
 def in_words(preset: str) -> str:
     """Return a preset as part of a sentence."""
-    return WORDS.get(preset, f"with the preset {preset}")
+    return told(preset).words
 
 
 def in_order(names: Iterable[str]) -> list[str]:
-    """Return presets from the libraries' own to the best there is, as the engines declare them."""
-    declared = [preset.name for engine in ENGINES.values() for preset in engine.presets]
-    places = {name: place for place, name in reversed(list(enumerate(declared)))}
-    last = "landing"  # what the plain names stand for, whatever stands between in some engine
-    return sorted(set(names), key=lambda name: (name == last, places[name]))
+    """Return presets from the libraries' own to the best there is, others before the last."""
+    *first, last = PRESETS
+    places = {**{name: place for place, name in enumerate(first)}, last: len(PRESETS)}
+    return sorted(set(names), key=lambda name: (places.get(name, len(first)), name))

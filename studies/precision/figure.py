@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.drawing.labels import Name, around, beside, beyond
-from studies.drawing.styles import LOWEST, PRESET_LINES, Style, engine_style, preset_line
+from studies.drawing.styles import LOWEST, Style, engine_style
+from studies.measures.presets import told
 
 STYLES = {
     "Taylor series": Style("#000000", "-", "o", 2.2),
@@ -49,8 +50,9 @@ def style_of(method: str) -> Style:
     look = engine_style(engine, preset)
     if dial:
         return Style(look.colour, "-.", "+", 0.8)
-    width = 1.4 if preset in PRESET_LINES else 2.0
-    return Style(look.colour, preset_line(preset), look.marker, width, look.fill)
+    line = told(preset).line
+    width = 2.0 if line == "-" else 1.4
+    return Style(look.colour, line, look.marker, width, look.fill)
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:

@@ -5,8 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.styles import preset_line, preset_style
-from studies.measures.presets import in_words
+from studies.drawing.styles import preset_style
+from studies.measures.presets import in_words, told
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
@@ -61,7 +61,7 @@ def _presets(lines: pd.DataFrame) -> "pd.Series[str]":
 
 def _handle(preset: str) -> Line2D:
     """Return what stands for a preset, whatever its engine."""
-    look = {**preset_style(preset).points(6.0), "linestyle": preset_line(preset)}
+    look = {**preset_style(preset).points(6.0), "linestyle": told(preset).line}
     return Line2D([], [], **look, label=in_words(preset))
 
 
@@ -91,7 +91,7 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
             [x[0] - ALONE, x[0] + ALONE] if alone else x,
             [*median] * (1 + alone),
             color=style.colour,
-            linestyle=preset_line(preset),
+            linestyle=told(preset).line,
             linewidth=1.3,
         )
         aside = APART * len(releases) * (number - (len(names) - 1) / 2)

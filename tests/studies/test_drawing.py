@@ -17,10 +17,11 @@ from studies.drawing.labels import Name, around, spread
 from studies.drawing.styles import (
     ENGINE_COLOURS,
     ENGINE_MARKERS,
-    PRESET_COLOURS,
     STYLES,
+    look_at,
     preset_style,
 )
+from studies.measures.presets import PRESETS, in_order, told
 from studies.overturning.figure import DIFFERENCE_COLOURS
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
@@ -77,10 +78,7 @@ def test_white_is_far_from_black_and_red_is_near_green_without_a_cone():
 @pytest.mark.parametrize("vision", VISIONS)
 def test_sources_are_told_apart_by_colour_line_or_marker(vision):
     looks = {name: (style.colour, style.line) for name, style in STYLES.items()}
-    looks |= {
-        f"engine {i}": pair
-        for i, pair in enumerate(zip(ENGINE_COLOURS, ENGINE_MARKERS, strict=True))
-    }
+    looks |= {f"engine {i}": look_at(i) for i in range(12)}
     alike = [
         (first, second)
         for first, second in itertools.combinations(looks, 2)
@@ -97,8 +95,21 @@ def test_filled_areas_and_families_of_lines_are_told_apart(vision):
         assert min(distance(*pair, vision) for pair in itertools.combinations(colours, 2)) > APART
 
 
-def test_eight_engines_have_eight_looks():
-    assert len(set(ENGINE_COLOURS)) == len(set(ENGINE_MARKERS)) == 8
+def test_no_engine_takes_the_look_of_another():
+    most = len(ENGINE_COLOURS) * len(ENGINE_MARKERS)
+    assert len({look_at(place) for place in range(most)}) == most > 70
+    assert len({look_at(place)[0] for place in range(8)}) == 8
+
+
+def test_a_preset_of_another_package_is_told_of_by_its_name():
+    lines = pd.read_csv(
+        PUBLISHED / "contact" / "variants.csv", keep_default_na=False, na_values="nan"
+    )
+    lines = lines[lines["engine"] == "dart"].replace({"preset": {"landing": "gentle"}})
+    drawn = draw_contact(lines)
+    words = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert words[:3] == [told(name).varied for name in ("gentle", "fixed", "naive")]
+    assert in_order(["gentle", "landing", "naive"]) == ["naive", "gentle", "landing"]
 
 
 def test_names_stay_where_there_is_room():
@@ -133,7 +144,7 @@ def test_names_keep_clear_of_each_other_of_lines_and_of_words():
 @pytest.mark.parametrize("preset", ["naive", "fixed", "landing", "error-controlled"])
 def test_every_preset_has_a_look_of_its_own(preset):
     declared = {each.name for engine in ENGINES.values() for each in engine.presets}
-    assert set(PRESET_COLOURS) == declared
+    assert set(PRESETS) == declared
     others = [preset_style(name) for name in declared - {preset}]
     assert preset_style(preset) not in others
     assert preset_style(preset).colour not in [style.colour for style in others]
@@ -149,7 +160,7 @@ def test_a_contact_of_an_engine_with_steps_of_its_own_is_drawn():
     assert "one help of the engine's own steps" in told
     assert "one help of landing left out" not in told
     colours = {label.get_color() for label in drawn.axes[0].get_yticklabels()}
-    assert colours == {PRESET_COLOURS["error-controlled"]}
+    assert colours == {PRESETS["error-controlled"].colour}
 
 
 def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
@@ -165,8 +176,8 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     assert rest.startswith(f"{len(mine) - MATTER} others")
     broken = mine[mine["failed"] == mine["cases"]]
     assert all(any(level in word for word in words) for level in broken["level"])
-    turns = [sum(label.get_color() == colour for label in axes.get_yticklabels())
-             for colour in PRESET_COLOURS.values()]  # fmt: skip
+    turns = [sum(label.get_color() == preset.colour for label in axes.get_yticklabels())
+             for preset in PRESETS.values()]  # fmt: skip
     assert sorted(turn for turn in turns if turn) == [4, 4, 5]  # each preset, and in turn its own
     width, height = drawn.get_size_inches()
     assert height < width * lines["engine"].nunique() / 3.0
