@@ -23,7 +23,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
     "sweep": ("--figure", "6", "--sources", "exact", "modified"),
     "defaults": ("--quick", "--sources", "pybullet:naive"),
-    "histories": ("--figure", "4"),
+    "histories": ("--figure", "4", "--sources", "exact", "moreau"),
 }
 """Chapters that are quickly made, and their arguments here."""
 
@@ -71,6 +71,10 @@ class Links(HTMLParser):
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
+
+
+def test_an_engine_of_another_package_is_told_of_on_the_page(made):
+    assert "moreau" in (made / "report.html").read_text()
 
 
 def test_the_page_holds_all_it_shows(made):
