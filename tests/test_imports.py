@@ -52,7 +52,12 @@ FORBIDDEN = {
         "studies/contact/report.py",
         "import studies.validity.report",
     ),
-    "no package of studies imports in a circle": (
+    "no study opens an engine's folder": (
+        "studies/validity/study.py",
+        "import engines.mujoco.settings",
+    ),
+    "no engine knows another": ("engines/dart/build.py", "import engines.rapier.settings"),
+    "no package imports in a circle": (
         "studies/measures/words.py",
         "import studies.sweep.claims",
     ),

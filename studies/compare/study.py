@@ -13,7 +13,7 @@ from analytic.motion import FloatArray, Motion
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
-from studies.drawing.comparison import baseline_note, draw, json_lines, table_text
+from studies.compare.rendering import baseline_note, draw, json_lines, table_text
 from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary

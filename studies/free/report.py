@@ -73,6 +73,6 @@ def paragraph(folder: Path) -> str:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw the errors of a folder from its free.csv alone."""
-    from studies.drawing.diagrams import draw_free
+    from studies.free.figure import draw_free
 
     return {"free": draw_free(read(folder))}

@@ -9,7 +9,6 @@ import pandas as pd
 
 from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
-from studies.drawing.comparison import samples
 from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
@@ -29,6 +28,7 @@ from studies.measures.claims import (
     tally,
     write_findings,
 )
+from studies.measures.samples import samples
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -209,7 +209,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
-    from studies.drawing.diagrams import draw_distributions
+    from studies.linearizations.figure import draw_distributions
 
     titles = {"".join(map(str, changed)): model.title for changed, model in VARIANTS.items()}
     return {"linearizations": draw_distributions(read(folder, "quantiles"), titles)}

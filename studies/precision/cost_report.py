@@ -39,7 +39,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw a folder's scenes.csv: time and error of each thing put back."""
-    from studies.drawing.diagrams import draw_scenes
+    from studies.precision.cost_figure import draw_scenes
 
     return {"cost": draw_scenes(read(folder, "scenes"))}
 

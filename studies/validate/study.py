@@ -196,7 +196,7 @@ def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
 
 def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
-    from studies.drawing.diagrams import draw_conditioning
+    from studies.validate.figure import draw_conditioning
 
     return {"validate": draw_conditioning(pd.read_csv(folder / "errors.csv"))}
 

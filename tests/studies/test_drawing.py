@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.__main__ import run
 from studies.contact.figure import MATTER, draw_contact
-from studies.drawing.diagrams import ONSETS
 from studies.drawing.labels import Name, around, spread
 from studies.drawing.styles import (
     ENGINE_COLOURS,
@@ -21,6 +20,7 @@ from studies.drawing.styles import (
     look_at,
     preset_style,
 )
+from studies.linearizations.figure import ONSETS
 from studies.measures.presets import PRESETS, in_order, told
 from studies.overturning.figure import DIFFERENCE_COLOURS
 

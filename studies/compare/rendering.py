@@ -18,6 +18,7 @@ from studies.kit.journal import Row
 from studies.kit.posing import Posed
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
+from studies.measures.samples import samples
 
 DRIFT = 1e-6
 """Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
@@ -224,28 +225,3 @@ def draw(rows: list[Row], block: RigidBlock, motion: Motion, path: Path) -> None
     ]
     if parts:
         save(draw_histories(pd.concat(parts), "The same block, the same motion of the base"), path)
-
-
-def samples(
-    response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
-) -> pd.DataFrame:
-    """Return the history of a response as a tidy table, with the ground acceleration.
-
-    Raises
-    ------
-    ValueError
-        If no history was asked for, or the response failed before it had one.
-    """
-    history = response.history
-    if history is None:
-        raise ValueError("the response has no history")
-    return pd.DataFrame(
-        {
-            **labels,
-            "outcome": response.outcome.value,
-            "time_s": history.time,
-            "ground_g": motion.acceleration(history.time) / block.gravity,
-            "theta_ratio": history.theta / block.alpha,
-            "velocity_rad_s": history.velocity,
-        }
-    )

@@ -1,0 +1,34 @@
+"""A history as a table."""
+
+from typing import Any
+
+import pandas as pd
+
+from analytic.block import RigidBlock
+from analytic.motion import Motion
+from analytic.response import Response
+
+
+def samples(
+    response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
+) -> pd.DataFrame:
+    """Return the history of a response as a tidy table, with the ground acceleration.
+
+    Raises
+    ------
+    ValueError
+        If no history was asked for, or the response failed before it had one.
+    """
+    history = response.history
+    if history is None:
+        raise ValueError("the response has no history")
+    return pd.DataFrame(
+        {
+            **labels,
+            "outcome": response.outcome.value,
+            "time_s": history.time,
+            "ground_g": motion.acceleration(history.time) / block.gravity,
+            "theta_ratio": history.theta / block.alpha,
+            "velocity_rad_s": history.velocity,
+        }
+    )
