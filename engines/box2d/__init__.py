@@ -1,7 +1,6 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
-from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld
-from engines.box2d.script import script
+from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld, script
 from engines.box2d.settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 

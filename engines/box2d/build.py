@@ -6,12 +6,14 @@ halfway between the surfaces of two shapes, so that half of the pivot's margin i
 radius, and half is the height by which its floor is raised.
 """
 
+from types import SimpleNamespace
 from typing import Any
 
 from engines.box2d.settings import Box2DSettings
 from engines.declaration import Precision
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
+from engines.parts.script import Script, filled, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
@@ -23,6 +25,74 @@ LIBRARY_STEP_S = 1.0 / 60.0
 MANUAL = "the library's own hello world, 1/60 s with 6 and 2 iterations"
 
 
+def numbers(scene: Scene, s: Box2DSettings, dt_s: float) -> SimpleNamespace:
+    """Return the numbers of a scene in the settings' unit of length."""
+    at, block, unit, sunk = scene.beginning, scene.block, s.unit_of(scene), s.sunk_of(scene)
+    reach = s.reach_of(scene, dt_s)
+    return SimpleNamespace(
+        **{"unit": unit, "sunk": sunk, "reach": reach, "high": reach - sunk},
+        **{"x": 0.5 * block.width * unit, "z": 0.5 * block.height * unit},
+        **{"far": FLOOR_HEIGHTS * block.height * unit},
+        **{"mass": scene.mass, "inertia": scene.inertia[1] * unit**2},
+        **{"place": (at.x * unit, at.z * unit - sunk), "angle": -at.theta, "at_rest": at.at_rest},
+        **{"velocity": (at.velocity_x * unit, at.velocity_z * unit), "rate": -at.rate},
+    )
+
+
+def values(scene: Scene, s: Box2DSettings) -> SimpleNamespace:
+    """Return settings as the library is given them."""
+    pairs = 2 if s.geometry == "corners" else 1
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "pairs": pairs, "skins": s.skins_below * 2.0 / pairs},
+        **{"friction": float(s.friction), "restitution": s.restitution},
+        **{"iterations": s.iterations_of(scene), "position_iterations": s.position_iterations},
+        **{"continuous": s.continuous, "sleeping": s.sleeping},
+    )
+
+
+def build(Box2D: Any, n: Any, s: Any) -> Any:
+    """Build a block on one kinematic body, or on one for each corner."""
+    world = Box2D.b2World(gravity=(0.0, 0.0))
+    world.continuousPhysics = s.continuous
+    block = world.CreateDynamicBody(position=n.place, angle=n.angle)
+    if s.geometry == "corners":
+        for k, x in enumerate((-n.x, n.x)):
+            shape = Box2D.b2CircleShape(pos=(x, -n.z), radius=n.reach)
+            meets = Box2D.b2Filter(categoryBits=1 << k, maskBits=4 << k)
+            corner = block.CreateFixture(shape=shape, friction=s.friction, filter=meets)
+            corner.restitution = s.restitution
+    else:
+        shape = Box2D.b2PolygonShape(box=(n.x, n.z))
+        block.CreateFixture(shape=shape, friction=s.friction, restitution=s.restitution)
+    block.massData = Box2D.b2MassData(mass=n.mass, center=(0.0, 0.0), I=n.inertia)
+    if not n.at_rest:
+        block.linearVelocity, block.angularVelocity = n.velocity, n.rate
+    block.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
+    top = -s.skins * Box2D.b2_polygonRadius  # a polygon acts from its skin on
+    ground = [(-n.far, -n.far), (n.far, -n.far), (n.far, top), (-n.far, top)]
+    floors = [world.CreateKinematicBody(position=(0.0, n.high)) for _ in range(s.pairs)]
+    for k, floor in enumerate(floors):
+        shape = Box2D.b2PolygonShape(vertices=ground)
+        fixture = floor.CreateFixture(shape=shape, friction=s.friction)
+        if s.geometry == "corners":
+            fixture.filterData = Box2D.b2Filter(categoryBits=4 << k, maskBits=1 << k)
+    return world, block, floors
+
+
+def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of Box2D; see `engines.parts.script`."""
+    n, s = numbers(scene, settings, dt_s), values(scene, settings)
+    lines = filled(build, n=n, s=s)
+    step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"
+    return Script(
+        imports=("import Box2D",),
+        settings=(step.format(repr(dt_s)), *settings_of(lines)),
+        build=tuple(line.text for line in lines),
+        step=(f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}", step.format("DT")),
+        pose=("theta, rate = -block.angle, -block.angularVelocity",),
+    )
+
+
 class Box2DWorld:
     """A block on one kinematic body, or on one for each corner."""
 
@@ -30,19 +100,11 @@ class Box2DWorld:
 
     def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
         self.settings = settings
-        block, self._box2d = scene.block, imported("Box2D")
-        self._unit = settings.unit_of(scene)
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
-        self._half = (0.5 * block.width * self._unit, 0.5 * block.height * self._unit)
-        self._sunk = settings.sunk_of(scene)
-        self._reach = settings.reach_of(scene, dt_s)
-        self._iterations = settings.iterations_of(scene)
-        self._world = self._box2d.b2World(gravity=(0.0, 0.0))
-        self._world.continuousPhysics = settings.continuous
-        self._far = FLOOR_HEIGHTS * block.height * self._unit
-        self._body = self._built(scene)
-        self._floors = [self._floor(number) for number in range(self._pairs)]
+        n, self._values = numbers(scene, settings, dt_s), values(scene, settings)
+        self._unit, self._half, self._sunk, self._reach = n.unit, (n.x, n.z), n.sunk, n.reach
+        self._world, self._body, self._floors = build(imported("Box2D"), n, self._values)
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -64,7 +126,8 @@ class Box2DWorld:
                 )
                 velocity = (felt - back * (x - self._speed), -back * z)
             floor.linearVelocity = velocity
-        self._world.Step(step.dt_s, self._iterations, self.settings.position_iterations)
+        s = self._values
+        self._world.Step(step.dt_s, s.iterations, s.position_iterations)
         self._speed, self._place = felt, step.base_x if self._moving else 0.0
 
     def pose(self) -> Pose:
@@ -85,57 +148,6 @@ class Box2DWorld:
         """Release the engine's memory."""
         for body in (self._body, *self._floors):
             self._world.DestroyBody(body)
-
-    @property
-    def _pairs(self) -> int:
-        return 2 if self.settings.geometry == "corners" else 1
-
-    def _built(self, scene: Scene) -> Any:
-        b2, s, begin, unit = self._box2d, self.settings, scene.beginning, self._unit
-        body = self._world.CreateDynamicBody(
-            position=(begin.x * unit, begin.z * unit - self._sunk), angle=-begin.theta
-        )
-        if s.geometry == "box":
-            body.CreateFixture(
-                shape=b2.b2PolygonShape(box=self._half),
-                friction=s.friction,
-                restitution=s.restitution,
-            )
-        else:
-            for number, side in enumerate((-1.0, 1.0)):
-                body.CreateFixture(
-                    shape=b2.b2CircleShape(
-                        pos=(side * self._half[0], -self._half[1]), radius=self._reach
-                    ),
-                    friction=s.friction,
-                    restitution=s.restitution,
-                    filter=b2.b2Filter(categoryBits=1 << number, maskBits=4 << number),
-                )
-        body.massData = b2.b2MassData(
-            mass=scene.mass, center=(0.0, 0.0), I=scene.inertia[1] * unit**2
-        )
-        body.linearVelocity = (begin.velocity_x * unit, begin.velocity_z * unit)
-        body.angularVelocity = -begin.rate
-        body.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
-        return body
-
-    def _floor(self, number: int) -> Any:
-        """Make a floor; a polygon acts from its skin on, and a box has one of its own."""
-        b2, far = self._box2d, self._far
-        if self.settings.geometry == "box":
-            skins, meets = 2.0, b2.b2Filter()
-        else:
-            skins = 1.0
-            meets = b2.b2Filter(categoryBits=4 << number, maskBits=1 << number)
-        top = -skins * b2.b2_polygonRadius if self.settings.skins_below else 0.0
-        floor = self._world.CreateKinematicBody(position=(0.0, 0.0))
-        corners = [(-far, -far), (far, -far), (far, top), (-far, top)]
-        floor.CreateFixture(
-            shape=b2.b2PolygonShape(vertices=corners),
-            friction=self.settings.friction,
-            filter=meets,
-        )
-        return floor
 
     def _read_back(self, scene: Scene) -> str:
         body, s = self._body, self.settings

@@ -1,7 +1,6 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
-from engines.dart.build import DartWorld
-from engines.dart.script import script
+from engines.dart.build import DartWorld, script
 from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
 from engines.declaration import Engine, Help, Preset, Stepping
 

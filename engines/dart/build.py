@@ -5,6 +5,7 @@ in Python sets that: a tuned preset counts in hundredths of a millimetre, so tha
 left where they are.
 """
 
+from types import SimpleNamespace
 from typing import Any
 
 from engines.dart.settings import (
@@ -17,9 +18,117 @@ from engines.dart.settings import (
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.shapes import Point, corner_spheres, fall, floor_half_size, half_size
+from engines.parts.script import Script, defined, filled, settings_of
+from engines.parts.shapes import corner_spheres, fall, floor_half_size, half_size
+from engines.parts.units import counted
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
+
+
+def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
+    """Return the numbers of a scene in the settings' unit of length."""
+    at, unit = scene.beginning, s.unit
+    half, floor = counted(half_size(scene), unit), counted(floor_half_size(scene), unit)
+    radius = s.corner_radius * scene.block.width
+    return SimpleNamespace(
+        **{"half": half, "size": [2.0 * x for x in half], "floor": [2.0 * x for x in floor]},
+        **{"beneath": (0.0, 0.0, -floor[2]), "radius": radius * unit},
+        corners=[counted(each, unit) for each in corner_spheres(scene, radius, planar=s.planar)],
+        **{"mass": scene.mass, "inertia": tuple(unit * unit * moment for moment in scene.inertia)},
+        coordinates=IN_PLANE if s.planar else IN_SPACE,
+        places=(at.x * unit, at.z * unit, at.theta),
+        speeds=(at.velocity_x * unit, at.velocity_z * unit, at.rate),
+    )
+
+
+def values(s: DartSettings) -> SimpleNamespace:
+    """Return settings as the library is given them."""
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "planar": s.planar, "aside": s.aside},
+        **{"friction": float(s.friction), "exact_inertia": s.exact_inertia},
+        **{"restitution": s.restitution, "base_restitution": s.base_restitution},
+        **{"detector": s.collision and DETECTORS[s.collision], "sleeping": s.sleeping},
+        **{"solver": s.solver and SOLVERS[s.solver], "split_impulse": s.split_impulse},
+    )
+
+
+def touching(body: Any, shape: Any, at: Any, friction: float) -> Any:
+    """Give a body a shape."""
+    node = body.createShapeNode(shape)
+    node.createCollisionAspect()
+    node.createDynamicsAspect().setFrictionCoeff(friction)  # the smaller one counts
+    node.setRelativeTranslation(at)
+    return node
+
+
+def build(dart: Any, n: Any, s: Any) -> Any:
+    """Build a block on a box whose joint is driven by its velocity."""
+    world = dart.simulation.World()
+    solver = world.getConstraintSolver()
+    if s.detector is not None:
+        solver.setCollisionDetector(getattr(dart.collision, s.detector)())
+    if s.sleeping is not None:  # noqa: SIM102 (decided before, in a script)
+        if hasattr(world, "setDeactivationOptions"):  # what a release does not have is off in it
+            options = world.getDeactivationOptions()
+            options.mEnabled = s.sleeping
+            world.setDeactivationOptions(options)
+    if s.solver is not None:
+        solver.setBoxedLcpSolver(getattr(dart.constraint, s.solver)())
+    if s.split_impulse is not None:  # noqa: SIM102
+        if hasattr(solver, "setSplitImpulseEnabled"):
+            solver.setSplitImpulseEnabled(s.split_impulse)
+    base, skeleton = dart.dynamics.Skeleton("base"), dart.dynamics.Skeleton("block")
+    drive, floor = base.createTranslationalJointAndBodyNodePair()
+    drive.setActuatorType(dart.dynamics.ActuatorType.VELOCITY)
+    if s.aside:
+        aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # free out of the plane
+        aside.setAxis((0.0, 1.0, 0.0))
+    ground = touching(floor, dart.dynamics.BoxShape(n.floor), n.beneath, s.friction)
+    if s.planar:
+        joint, block = skeleton.createPlanarJointAndBodyNodePair()
+        joint.setZXPlane()
+    else:
+        joint, block = skeleton.createFreeJointAndBodyNodePair()
+    block.setMass(n.mass)
+    if s.exact_inertia:
+        block.setMomentOfInertia(*n.inertia)
+    if s.geometry == "box":
+        shapes = [touching(block, dart.dynamics.BoxShape(n.size), (0.0, 0.0, 0.0), s.friction)]
+    else:
+        ball = dart.dynamics.SphereShape(n.radius)
+        shapes = [touching(block, ball, at, s.friction) for at in n.corners]
+    if s.restitution is not None:
+        ground.getDynamicsAspect().setRestitutionCoeff(s.base_restitution)  # the product counts
+        for shape in shapes:
+            shape.getDynamicsAspect().setRestitutionCoeff(s.restitution)
+    for number, place, speed in zip(n.coordinates, n.places, n.speeds, strict=True):
+        joint.setPosition(number, place)
+        joint.setVelocity(number, speed)
+    world.addSkeleton(base)
+    world.addSkeleton(skeleton)
+    return world, drive, floor, joint, block, shapes
+
+
+def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of DART; see `engines.parts.script`."""
+    n, lines = (
+        numbers(scene, settings),
+        filled(build, n=numbers(scene, settings), s=values(settings)),
+    )
+    unit, theta = settings.unit, n.coordinates[2]
+    return Script(
+        imports=("import dartpy as dart",),
+        settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
+        build=(
+            *(line.text for line in (*defined(touching), *lines)),
+            "world.setTimeStep(DT)",
+        ),
+        step=(
+            f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
+            "world.step(False)",
+        ),
+        pose=(f"theta, rate = joint.getPosition({theta}), joint.getVelocity({theta})",),
+    )
 
 
 class DartWorld:
@@ -29,18 +138,18 @@ class DartWorld:
 
     def __init__(self, scene: Scene, settings: DartSettings, dt_s: float) -> None:
         self._s, self._unit = settings, settings.unit
-        self._dart = imported("dartpy")
         self._moving = scene.frame == "world"
         self._driven = self._moving or settings.reflection
         self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         self._dt = self._speed = self._place = 0.0
         self._pivot: float | None = None
-        self._corners: list[tuple[Any, Point]] = []
-        self._world = self._dart.simulation.World()
-        self._set_world()
+        n = numbers(scene, settings)
+        self._half, self._at = n.half, n.coordinates
         # a body lives as long as its skeleton, which only the world keeps
-        self._ground, self._floor = self._add_base(scene)
-        self._joint, self._block = self._add_block(scene)
+        built = build(imported("dartpy"), n, values(settings))
+        self._world, self._ground, self._floor, self._joint, self._block, shapes = built
+        paired = settings.geometry == "corners"
+        self._corners = list(zip(shapes, n.corners, strict=True)) if paired else []
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -97,83 +206,6 @@ class DartWorld:
             along, up = speed - back * (x - self._speed), -back * z
         self._ground.setCommands((along, 0.0, up))
         self._speed = speed
-
-    def _set_world(self) -> None:
-        s, world, dart = self._s, self._world, self._dart
-        solver = world.getConstraintSolver()
-        if s.collision is not None:
-            solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
-        # what a release does not have is off in it, and reads so
-        if s.sleeping is not None and hasattr(world, "setDeactivationOptions"):
-            options = world.getDeactivationOptions()
-            options.mEnabled = s.sleeping
-            world.setDeactivationOptions(options)
-        if s.solver is not None:
-            solver.setBoxedLcpSolver(getattr(dart.constraint, SOLVERS[s.solver])())
-        if s.split_impulse is not None and hasattr(solver, "setSplitImpulseEnabled"):
-            solver.setSplitImpulseEnabled(s.split_impulse)
-
-    def _add_base(self, scene: Scene) -> tuple[Any, Any]:
-        dart, skeleton = self._dart, self._dart.dynamics.Skeleton("base")
-        joint, body = skeleton.createTranslationalJointAndBodyNodePair()
-        joint.setActuatorType(dart.dynamics.ActuatorType.VELOCITY)
-        if self._s.aside:
-            slide, body = skeleton.createPrismaticJointAndBodyNodePair(body)
-            slide.setAxis((0.0, 1.0, 0.0))
-        x, y, z = (2.0 * size * self._unit for size in floor_half_size(scene))
-        top = self._shape(body, dart.dynamics.BoxShape((x, y, z)), (0.0, 0.0, -0.5 * z))
-        if self._s.restitution is not None:
-            top.getDynamicsAspect().setRestitutionCoeff(self._s.base_restitution)
-        self._world.addSkeleton(skeleton)
-        return joint, body
-
-    def _add_block(self, scene: Scene) -> tuple[Any, Any]:
-        s, dart, unit = self._s, self._dart, self._unit
-        skeleton = dart.dynamics.Skeleton("block")
-        if s.planar:
-            joint, body = skeleton.createPlanarJointAndBodyNodePair()
-            joint.setZXPlane()
-        else:
-            joint, body = skeleton.createFreeJointAndBodyNodePair()
-        self._at = IN_PLANE if s.planar else IN_SPACE
-        body.setMass(scene.mass)
-        if s.exact_inertia:
-            body.setMomentOfInertia(*(unit * unit * moment for moment in scene.inertia))
-        self._half = tuple(unit * size for size in half_size(scene))
-        if s.geometry == "box":
-            box = dart.dynamics.BoxShape([2.0 * size for size in self._half])
-            self._shape(body, box, (0.0, 0.0, 0.0))
-        else:
-            self._add_corners(scene, body)
-        self._put(scene, joint)
-        self._world.addSkeleton(skeleton)
-        return joint, body
-
-    def _add_corners(self, scene: Scene, body: Any) -> None:
-        radius = self._s.corner_radius * scene.block.width
-        ball = self._dart.dynamics.SphereShape(radius * self._unit)
-        for x, y, z in corner_spheres(scene, radius, planar=self._s.planar):
-            at = (x * self._unit, y * self._unit, z * self._unit)
-            self._corners.append((self._shape(body, ball, at), at))
-
-    def _shape(self, body: Any, shape: Any, at: Point) -> Any:
-        node = body.createShapeNode(shape)
-        node.createCollisionAspect()
-        # of a pair the library takes the smaller one
-        node.createDynamicsAspect().setFrictionCoeff(self._s.friction)
-        if self._s.restitution is not None:
-            node.getDynamicsAspect().setRestitutionCoeff(self._s.restitution)
-        node.setRelativeTranslation(at)
-        return node
-
-    def _put(self, scene: Scene, joint: Any) -> None:
-        """Let the block set out from where the scene begins."""
-        start, unit = scene.beginning, self._unit
-        places = (start.x * unit, start.z * unit, start.theta)
-        speeds = (start.velocity_x * unit, start.velocity_z * unit, start.rate)
-        for index, place, speed in zip(self._at, places, speeds, strict=True):
-            joint.setPosition(index, place)
-            joint.setVelocity(index, speed)
 
     def _read_back(self, scene: Scene) -> str:
         s, world, solver = self._s, self._world, self._world.getConstraintSolver()

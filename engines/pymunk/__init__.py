@@ -1,8 +1,7 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
-from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld
-from engines.pymunk.script import script
+from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld, script
 from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
 
 ENGINE = Engine(

@@ -7,10 +7,12 @@ positions itself, by the library's own function, from the library's own velociti
 """
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
+from engines.parts.script import Script, defined, filled, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.pymunk.settings import LEVEL, PymunkSettings
 from engines.scene import Scene
@@ -26,6 +28,80 @@ LIBRARY_STEP_S = 0.02
 README = "the library's own first example, space.step(0.02)"
 
 
+def numbers(scene: Scene) -> SimpleNamespace:
+    """Return the numbers of a scene."""
+    at, block = scene.beginning, scene.block
+    return SimpleNamespace(
+        **{"x": 0.5 * block.width, "z": 0.5 * block.height, "far": FLOOR_HEIGHTS * block.height},
+        **{"mass": scene.mass, "inertia": scene.inertia[1]},
+        **{"place": (at.x, at.z), "angle": -at.theta, "at_rest": at.at_rest},
+        **{"velocity": (at.velocity_x, at.velocity_z), "rate": -at.rate},
+    )
+
+
+def values(scene: Scene, s: PymunkSettings, dt_s: float) -> SimpleNamespace:
+    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "friction": float(s.friction), "bias": s.bias, "level": -LEVEL},
+        **{"iterations": s.iterations_of(scene), "slop": s.slop_of(scene, dt_s)},
+        margin=s.margin_of(scene, dt_s),
+    )
+
+
+def build(pymunk: Any, n: Any, s: Any) -> Any:
+    """Build a block on a body that does not move by itself; see `engines.parts.script`."""
+    space = pymunk.Space()
+    if s.iterations is not None:
+        space.iterations = s.iterations
+    if s.slop is not None:
+        space.collision_slop = s.slop
+    if s.bias is not None:
+        space.collision_bias = s.bias
+    base = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    block = pymunk.Body(n.mass, n.inertia)
+    block.position, block.angle = n.place, n.angle
+    if not n.at_rest:
+        block.velocity, block.angular_velocity = n.velocity, n.rate
+    if s.geometry == "box":
+        corners = [pymunk.Poly(block, [(-n.x, -n.z), (n.x, -n.z), (n.x, n.z), (-n.x, n.z)])]
+        floors = [pymunk.Segment(base, (-n.far, 0.0), (n.far, 0.0), 0.0)]
+    else:
+        corners = [pymunk.Circle(block, 0.0, (x, -n.z)) for x in (-n.x, n.x)]
+        deep = [(-n.far, -n.far), (n.far, -n.far), (n.far, 0.0), (-n.far, 0.0)]
+        # the radius that a floor is made with bounds the ones that it is given later
+        floors = [pymunk.Poly(base, deep, radius=s.margin) for _ in corners]
+    for number, pair in enumerate(zip(corners, floors, strict=True)):
+        for shape in pair:  # a corner meets its own floor alone
+            shape.friction = math.sqrt(s.friction)  # the product counts
+            shape.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
+    space.add(base, block, *corners, *floors)
+    return space, base, block, corners, floors
+
+
+def hold(floors: Any, about: float, s: Any) -> None:
+    """Keep the corner in contact about which the block turns, both where it turns about neither."""
+    for side, floor in zip((-1.0, 1.0), floors, strict=True):
+        floor.unsafe_set_radius(s.margin if side * about >= s.level else 0.0)
+
+
+def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of pymunk; see `engines.parts.script`."""
+    s = values(scene, settings, dt_s)
+    lines = filled(build, n=numbers(scene), s=s)
+    held = defined(hold, s=s) if s.margin else ()
+    return Script(
+        imports=("import pymunk",),
+        settings=(f"space.step({dt_s!r})", *settings_of(lines)),
+        build=tuple(line.text for line in (*lines, *held)),
+        step=(
+            *("hold(floors, -block.angle)",) * bool(held),
+            *("space.gravity = pull_x, pull_z", "space.step(DT)"),
+        ),
+        pose=("theta, rate = -block.angle, -block.angular_velocity",),
+        moment=Moment.MIDDLE if settings.positions else Moment.NEXT,
+    )
+
+
 class PymunkWorld:
     """A block on a body that does not move by itself."""
 
@@ -33,14 +109,13 @@ class PymunkWorld:
         self.settings = settings
         self._pm: Any = imported("pymunk")
         self._half = (0.5 * scene.block.width, 0.5 * scene.block.height)
-        self._margin = settings.margin_of(scene, dt_s)
         self._moving, self._dt = scene.frame == "world", 0.0
-        self._iterations = settings.iterations_of(scene)
-        self._space = self._pm.Space()
-        self._base = self._pm.Body(body_type=self._pm.Body.KINEMATIC)
-        self._body = self._pm.Body(scene.mass, scene.inertia[1])
-        self._set(scene, settings.slop_of(scene, dt_s))
-        self._space.add(self._base, self._body, *self._shapes(scene))
+        self._values = values(scene, settings, dt_s)
+        built = build(self._pm, numbers(scene), self._values)
+        self._space, self._base, self._body, self._corners, self._floors = built
+        self._base.position_func = _stay
+        if settings.positions:
+            self._body.position_func = _stay
         self._fault = self._read_back(scene)
 
     @property
@@ -77,43 +152,6 @@ class PymunkWorld:
         """Release the engine's memory."""
         self._space.remove(*self._space.shapes, *self._space.bodies)
 
-    def _set(self, scene: Scene, slop: float | None) -> None:
-        s, begin = self.settings, scene.beginning
-        space, body = self._space, self._body
-        for name, value in {
-            "iterations": self._iterations,
-            "collision_slop": slop,
-            "collision_bias": s.bias,
-        }.items():
-            if value is not None:
-                setattr(space, name, value)
-        body.position, body.angle = (begin.x, begin.z), -begin.theta
-        body.velocity = (begin.velocity_x, begin.velocity_z)
-        body.angular_velocity = -begin.rate
-        self._base.position_func = _stay
-        if s.positions:
-            body.position_func = _stay
-
-    def _shapes(self, scene: Scene) -> list[Any]:
-        """Make what touches what; a corner and the polygon under it meet no other."""
-        pm, s, (x, z) = self._pm, self.settings, self._half
-        far = FLOOR_HEIGHTS * scene.block.height
-        if s.geometry == "box":
-            box = pm.Poly(self._body, [(-x, -z), (x, -z), (x, z), (-x, z)])
-            floor = pm.Segment(self._base, (-far, 0.0), (far, 0.0), 0.0)
-            self._corners, self._floors = [box], [floor]
-        else:
-            deep = [(-far, -far), (far, -far), (far, 0.0), (-far, 0.0)]
-            self._corners = [pm.Circle(self._body, 0.0, (at, -z)) for at in (-x, x)]
-            # the radius that a floor is made with bounds the ones that it is given later
-            self._floors = [pm.Poly(self._base, deep, radius=self._margin) for _ in range(2)]
-        for number, pair in enumerate(zip(self._corners, self._floors, strict=True)):
-            for shape in pair:
-                shape.friction = math.sqrt(s.friction)
-                bit = 1 << number
-                shape.filter = pm.ShapeFilter(categories=bit, mask=bit)
-        return [*self._corners, *self._floors]
-
     def _hold(self, step: Step) -> None:
         """Keep the pivot in contact, and give its velocity back while the block turns about it."""
         back, before, self._dt = 0.0, self._dt, step.dt_s
@@ -121,11 +159,11 @@ class PymunkWorld:
         if self.settings.reflection and before and turning:
             back = min(step.dt_s / before, MOST_REFLECTION)
         bounce = self.settings.restitution * self.settings.base_restitution
-        about = step.side or -self._body.angle  # equal steps do not say
+        # equal steps do not say about which corner
+        about = 0.0 if step.grip is Grip.REST else step.side or -self._body.angle
+        hold(self._floors, about, self._values)
         for side, corner, floor in zip((-1.0, 1.0), self._corners, self._floors, strict=True):
-            pivot = step.grip is Grip.REST or side * about >= -LEVEL
-            floor.unsafe_set_radius(self._margin if pivot else 0.0)
-            returned = back if pivot and step.side else 0.0
+            returned = back if side * about >= -LEVEL and step.side else 0.0
             corner.elasticity, floor.elasticity = 1.0, max(returned, bounce)
             slip = 0.0
             if returned:
@@ -140,7 +178,7 @@ class PymunkWorld:
                 "mass": (scene.mass, self._body.mass),
                 "moment": (scene.inertia[1], self._body.moment),
                 "friction": (s.friction, self._corners[0].friction * self._floors[0].friction),
-                "iterations": (self._iterations, space.iterations),
+                "iterations": (self._values.iterations, space.iterations),
                 "slop": (None if s.margin else s.slop, space.collision_slop),
                 "bias": (s.bias, space.collision_bias),
             }

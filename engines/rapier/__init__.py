@@ -1,8 +1,7 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
-from engines.rapier.build import RapierWorld
-from engines.rapier.script import script
+from engines.rapier.build import RapierWorld, script
 from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
 
 ENGINE = Engine(

@@ -7,23 +7,113 @@ their size, those of 30 m by tenths of the peak.
 """
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 from engines.declaration import Precision
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
+from engines.parts.script import Script, filled, settings_of
 from engines.parts.shapes import corner_spheres, half_size
 from engines.parts.units import counted
-from engines.rapier.settings import (
-    RapierSettings,
-    parameters,
-)
+from engines.rapier.settings import RapierSettings
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
 
 FROZEN = 1e-5
 """A block that sleeps while it leans by more than this part of alpha would do so for ever."""
+
+
+def numbers(scene: Scene, s: RapierSettings) -> SimpleNamespace:
+    """Return the numbers of a scene in the settings' unit of length."""
+    at, unit, sunk = scene.beginning, s.unit_of(scene), s.sunk_of(scene)
+    radius = s.corner_radius * scene.block.height
+    x, y, z = counted(s.base_half_size(scene), unit)
+    return SimpleNamespace(
+        **{"unit": unit, "half": counted(half_size(scene), unit), "radius": radius * unit},
+        corners=[counted(each, unit) for each in corner_spheres(scene, radius, planar=s.planar)],
+        **{"base_half": (x, y, z), "below": (0.0, 0.0, -z), "lowered": (0.0, 0.0, -sunk)},
+        **{"mass": scene.mass, "density": scene.density / unit**3},
+        inertia=tuple(moment * unit**2 for moment in scene.inertia),
+        **{"place": (at.x * unit, 0.0, at.z * unit - sunk), "at_rest": at.at_rest},
+        **{"turn": (0.0, at.theta, 0.0), "spin": (0.0, at.rate, 0.0)},
+        velocity=(at.velocity_x * unit, 0.0, at.velocity_z * unit),
+    )
+
+
+def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
+    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    base = s.restitution if s.base_restitution is None else s.base_restitution
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "planar": s.planar, "aside": not s.locked_aside},
+        **{"friction": float(s.friction), "restitution": s.restitution, "base_restitution": base},
+        **{"substeps": s.substeps, "iterations": s.iterations_of(scene)},
+        **{"stabilization": s.stabilization, "recycling": s.recycling, "coulomb": s.coulomb},
+        **{"warm_starting": s.warm_starting, "sleeping": s.sleeping},
+        spring=s.spring_of(dt_s),
+    )
+
+
+def build(rapier: Any, n: Any, s: Any) -> Any:
+    """Build a block on a kinematic box."""
+    world = rapier.PhysicsWorld()
+    parameters = world.integration_parameters
+    if s.substeps is not None:
+        parameters.num_solver_iterations = s.substeps
+    if s.iterations is not None:
+        parameters.num_internal_pgs_iterations = s.iterations
+    if s.stabilization is not None:
+        parameters.num_internal_stabilization_iterations = s.stabilization
+    if s.recycling is not None:
+        parameters.contact_recycling = s.recycling
+    if s.warm_starting is not None:
+        parameters.warmstart_coefficient = s.warm_starting
+    if s.coulomb is not None:
+        parameters.friction_model = rapier.FrictionModel.COULOMB
+    if s.spring is not None:
+        spring = rapier.SpringCoefficients(*s.spring)
+        parameters.contact_softness = parameters.static_contact_softness = spring
+    floor = rapier.Collider.cuboid(*n.base_half).translation(n.below)
+    floor = floor.friction(s.friction).restitution(s.base_restitution)
+    base = rapier.RigidBody.kinematic_velocity_based().translation(n.lowered)
+    base = world.rigid_bodies[world.add_body(base, [floor])]
+    body = rapier.RigidBody.dynamic().translation(n.place)
+    if not n.at_rest:
+        body = body.rotation(n.turn).linvel(n.velocity).angvel(n.spin)
+    if s.planar:
+        body = body.enabled_rotations((False, True, False))
+        body = body.enabled_translations((True, s.aside, True))
+    if s.sleeping is not None:
+        body = body.can_sleep(s.sleeping)
+    if s.geometry == "box":
+        shapes = [rapier.Collider.cuboid(*n.half).density(n.density)]
+    else:
+        mass = rapier.MassProperties((0.0, 0.0, 0.0), n.mass, n.inertia)
+        body = body.additional_mass_properties(mass)
+        ball = rapier.Collider.ball(n.radius).density(0.0)
+        shapes = [ball.translation(at) for at in n.corners]
+    # the mean of two counts
+    shapes = [shape.friction(s.friction).restitution(s.restitution) for shape in shapes]
+    block = world.rigid_bodies[world.add_body(body, shapes)]
+    block.recompute_mass_properties_from_colliders(world.colliders)  # else with its first step
+    return world, parameters, base, block
+
+
+def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of Rapier; see `engines.parts.script`."""
+    n, s = numbers(scene, settings), values(scene, settings, dt_s)
+    lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
+    return Script(
+        imports=("import rapier3d as rapier",),
+        settings=(f"parameters.dt = {dt_s!r}", *settings_of(lines)),
+        build=(*(line.text for line in lines), "parameters.dt = DT"),
+        step=(f"world.gravity = pull_x{times}, 0.0, pull_z{times}", "world.step()"),
+        pose=(
+            "turn = block.rotation",
+            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), block.angvel.y",
+        ),
+    )
 
 
 class RapierWorld:
@@ -33,17 +123,13 @@ class RapierWorld:
 
     def __init__(self, scene: Scene, settings: RapierSettings, dt_s: float) -> None:
         self._s, self._alpha = settings, scene.block.alpha
-        self._rapier = imported("rapier3d")
         self._moving = scene.frame == "world"
         self._driven = self._moving or settings.reflection
-        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
         self._dt = self._speed = self._place = 0.0
-        self._world = self._rapier.PhysicsWorld()
-        self._parameters = self._world.integration_parameters
-        self._set_parameters(scene, dt_s)
-        self._half = counted(half_size(scene), self._unit)
-        self._base = self._add_base(scene)
-        self._body = self._add_block(scene)
+        n, s = numbers(scene, settings), values(scene, settings, dt_s)
+        self._unit, self._sunk, self._half = n.unit, settings.sunk_of(scene), n.half
+        built = build(imported("rapier3d"), n, s)
+        self._world, self._parameters, self._base, self._body = built
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -92,58 +178,7 @@ class RapierWorld:
         self._base.linvel = (speed - back * slip, 0.0, 0.0)
         self._speed = speed
 
-    def _set_parameters(self, scene: Scene, dt_s: float) -> None:
-        model, spring = self._rapier.FrictionModel, self._s.spring_of(dt_s)
-        for name, value in parameters(self._s, scene).items():
-            chosen = getattr(model, value) if isinstance(value, str) else value
-            setattr(self._parameters, name, chosen)
-        if spring is not None:
-            softness = self._rapier.SpringCoefficients(*spring)
-            self._parameters.contact_softness = softness
-            self._parameters.static_contact_softness = softness
-
-    def _add_base(self, scene: Scene) -> Any:
-        rapier, (x, y, z) = self._rapier, counted(self._s.base_half_size(scene), self._unit)
-        floor = rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
-        body = rapier.RigidBody.kinematic_velocity_based().translation((0.0, 0.0, -self._sunk))
-        bounce = (
-            self._s.restitution if self._s.base_restitution is None else self._s.base_restitution
-        )
-        return self._add(body, [floor], bounce)
-
-    def _add_block(self, scene: Scene) -> Any:
-        rapier, s, start, unit = self._rapier, self._s, scene.beginning, self._unit
-        body = (
-            rapier.RigidBody.dynamic()
-            .translation((start.x * unit, 0.0, start.z * unit - self._sunk))
-            .rotation((0.0, start.theta, 0.0))
-            .linvel((start.velocity_x * unit, 0.0, start.velocity_z * unit))
-            .angvel((0.0, start.rate, 0.0))
-        )
-        if s.planar:
-            body = body.enabled_rotations((False, True, False))
-            body = body.enabled_translations((True, not s.locked_aside, True))
-        if s.sleeping is not None:
-            body = body.can_sleep(s.sleeping)
-        if s.geometry == "box":
-            box = rapier.Collider.cuboid(*self._half).density(scene.density / unit**3)
-            return self._add(body, [box], s.restitution)
-        radius = s.corner_radius * scene.block.height
-        corners = [
-            rapier.Collider.ball(radius * unit).density(0.0).translation(counted(at, unit))
-            for at in corner_spheres(scene, radius, planar=s.planar)
-        ]
-        moments = tuple(moment * unit**2 for moment in scene.inertia)
-        inertia = rapier.MassProperties((0.0, 0.0, 0.0), scene.mass, moments)
-        return self._add(body.additional_mass_properties(inertia), corners, s.restitution)
-
-    def _add(self, body: Any, colliders: list[Any], restitution: float) -> Any:
-        rough = [it.friction(self._s.friction).restitution(restitution) for it in colliders]
-        return self._world.rigid_bodies[self._world.add_body(body, rough)]
-
     def _read_back(self, scene: Scene) -> str:
-        # a body takes its mass with its first step, or when it is told to
-        self._body.recompute_mass_properties_from_colliders(self._world.colliders)
         colliders = [self._world.colliders[it.colliders[0]] for it in (self._base, self._body)]
         friction = 0.5 * sum(collider.friction for collider in colliders)
         pairs = {

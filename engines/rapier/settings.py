@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 from engines.parts.factors import (
     ASLEEP,
@@ -17,7 +16,7 @@ from engines.parts.factors import (
     factor,
     level,
 )
-from engines.parts.settings import check, given, setting
+from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, Point, floor_half_size, iterations_for
 from engines.parts.units import Counted
 from engines.scene import Scene
@@ -132,20 +131,6 @@ class RapierSettings(Counted):
         if self.frequency is None or self.damping_ratio is None:
             return None
         return self.frequency, self.damping_ratio
-
-
-def parameters(s: RapierSettings, scene: Scene) -> dict[str, Any]:
-    """Return the library's parameters that are set, by their own names; a model by its name."""
-    return given(
-        {
-            "num_solver_iterations": s.substeps,
-            "num_internal_pgs_iterations": s.iterations_of(scene),
-            "num_internal_stabilization_iterations": s.stabilization,
-            "contact_recycling": s.recycling,
-            "warmstart_coefficient": s.warm_starting,
-            "friction_model": None if s.coulomb is None else "COULOMB",
-        }
-    )
 
 
 TUNED = RapierSettings(

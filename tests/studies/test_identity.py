@@ -34,10 +34,11 @@ MUJOCO = {"mujoco", "mujoco:naive"}
 
 LOOKUPS = FOUND_BY_NAME | {
     ("engines.registry", "Engines"),
+    ("engines.scene", "one_of"),
     ("studies.kit.jobs", "Job"),
     ("studies.sources.registry", "Source"),
 }
-"""What poses a question, and finds by its name whom it is put to."""
+"""What poses a question or refuses it, and finds by its name whom it is put to."""
 
 
 def job(source):
