@@ -111,18 +111,13 @@ def build(dart: Any, n: Any, s: Any) -> Any:
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of DART; see `engines.parts.script`."""
-    n, lines = (
-        numbers(scene, settings),
-        filled(build, n=numbers(scene, settings), s=values(settings)),
-    )
+    n = numbers(scene, settings)
+    lines = filled(build, n=n, s=values(settings))
     unit, theta = settings.unit, n.coordinates[2]
     return Script(
         imports=("import dartpy as dart",),
         settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
-        build=(
-            *(line.text for line in (*defined(touching), *lines)),
-            "world.setTimeStep(DT)",
-        ),
+        build=(*(line.text for line in (*defined(touching), *lines)), "world.setTimeStep(DT)"),
         step=(
             f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
             "world.step(False)",

@@ -1,8 +1,7 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Miss, Preset, Stepping
-from engines.drake.build import DrakeWorld
-from engines.drake.script import script
+from engines.drake.build import DrakeWorld, script
 from engines.drake.settings import CONTROLLED, FACTORS, RULES, TUNED, DrakeSettings
 
 ENGINE = Engine(

@@ -20,6 +20,7 @@ from engines.drake.settings import (
 )
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
+from engines.parts.script import Script, filled, settings_of
 from engines.parts.settings import given
 from engines.parts.shapes import corner_spheres, half_size
 from engines.run.ground import mean_velocity_of
@@ -47,31 +48,134 @@ IN_SPACE = (4, 6, 8)
 """Where x, z and the rate stand in the state of a free body, which begins with a quaternion."""
 
 
+def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
+    """Return the numbers of a scene."""
+    at, radius = scene.beginning, s.corner_radius * scene.block.width
+    return SimpleNamespace(
+        **{"mass": scene.mass, "size": [2.0 * half for half in half_size(scene)]},
+        **{"plane": [list(row) for row in PLANE], "radius": radius},
+        corners=[list(each) for each in corner_spheres(scene, radius, planar=s.planar)],
+        state=[at.z, at.x, at.theta, at.velocity_z, at.velocity_x, at.rate],
+        **{"theta": at.theta, "place": [at.x, 0.0, at.z]},
+        **{"spin": [0.0, at.rate, 0.0], "velocity": [at.velocity_x, 0.0, at.velocity_z]},
+    )
+
+
+def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
+    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    block, continuous = scene.block, s.solver == CENIC
+    scale = block.p * block.R
+    config = {
+        "time_step": 0.0 if continuous else dt_s,
+        "discrete_contact_approximation": None if continuous else s.solver,
+        "stiction_tolerance": None if s.stiction is None else s.stiction * scale,
+        "sap_near_rigid_threshold": s.near_rigid,
+    }
+    # two shapes of a pair have a half of a contact's stiffness and relaxation each
+    material = {
+        "point_stiffness": None
+        if s.stiffness is None
+        else 2.0 * s.stiffness * scene.mass / dt_s**2,
+        "dissipation": None if s.dissipation is None else s.dissipation / scale,
+    }
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "planar": s.planar, "friction": float(s.friction)},
+        **{"config": given(config), "material": given(material)},
+        relaxation=None if s.relaxation is None else 0.5 * s.relaxation * dt_s,
+        **{"scheme": CENIC if continuous else None, "fixed": s.accuracy is None},
+        # without an estimate of the error each step goes to where it is told
+        longest=LONGEST * dt_s if s.accuracy is None else dt_s,
+        accuracy=None if s.accuracy is None else s.accuracy * block.alpha * max(1.0, block.R),
+    )
+
+
+def build(drake: Any, n: Any, s: Any) -> Any:
+    """Build a block on a half-space that does not move."""
+    builder = drake.DiagramBuilder()
+    config = drake.MultibodyPlantConfig(**s.config)
+    plant, scene_graph = drake.AddMultibodyPlant(config, builder)
+    inertia = drake.SpatialInertia.SolidBoxWithMass(n.mass, *n.size)
+    block = plant.AddRigidBody("block", inertia)
+    if s.planar:
+        turned = drake.RigidTransform(drake.RotationMatrix(n.plane))
+        base_plane = drake.FixedOffsetFrame("base plane", plant.world_body().body_frame(), turned)
+        block_plane = drake.FixedOffsetFrame("block plane", block.body_frame(), turned)
+        frames = [plant.AddFrame(frame) for frame in (base_plane, block_plane)]
+        plant.AddJoint(drake.PlanarJoint("plane", *frames))
+    properties, rough = drake.ProximityProperties(), drake.CoulombFriction(s.friction, s.friction)
+    drake.AddContactMaterial(properties=properties, friction=rough, **s.material)
+    if s.relaxation is not None:
+        properties.AddProperty("material", "relaxation_time", s.relaxation)
+    ground, here = plant.world_body(), drake.RigidTransform()
+    plant.RegisterCollisionGeometry(ground, here, drake.HalfSpace(), "base", properties)
+    if s.geometry == "box":
+        plant.RegisterCollisionGeometry(block, here, drake.Box(*n.size), "block", properties)
+    else:
+        for number, at in enumerate(n.corners):
+            there, ball = drake.RigidTransform(at), drake.Sphere(n.radius)
+            plant.RegisterCollisionGeometry(block, there, ball, f"corner {number}", properties)
+    plant.Finalize()
+    simulator = drake.Simulator(builder.Build())
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    if s.planar:
+        plant.SetPositionsAndVelocities(context, n.state)
+    else:
+        start = drake.RigidTransform(drake.RotationMatrix.MakeYRotation(n.theta), n.place)
+        plant.SetFreeBodyPose(context, block, start)
+        velocity = drake.SpatialVelocity(w=n.spin, v=n.velocity)
+        plant.SetFreeBodySpatialVelocity(context, block, velocity)
+    if s.scheme is not None:
+        drake.ResetIntegratorFromFlags(simulator, scheme=s.scheme, max_step_size=s.longest)
+        simulator.get_mutable_integrator().set_fixed_step_mode(s.fixed)
+        if s.accuracy is not None:
+            simulator.get_mutable_integrator().set_target_accuracy(s.accuracy)
+    simulator.Initialize()
+    return plant, scene_graph, block, simulator, context
+
+
+POSES = {
+    True: "theta, rate = state[2], state[5]",
+    False: "theta, rate = 2.0 * math.atan2(state[2], state[0]), state[8]",
+}
+"""Whether it is planar -> the line of a script that reads a pose."""
+
+
+def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of Drake; see `engines.parts.script`."""
+    lines = filled(build, n=numbers(scene, settings), s=values(scene, settings, dt_s))
+    return Script(
+        imports=("import pydrake.all as drake",),
+        settings=settings_of(lines),
+        build=(
+            *(line.text for line in lines),
+            # a discrete plant changes at the beginning of a step: half of one later it has, once
+            f"end = {'0.0' if settings.solver == CENIC else '-0.5 * DT'}",
+        ),
+        step=(
+            "global end",
+            "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
+            "end += DT",
+            "simulator.AdvanceTo(end)",
+        ),
+        pose=("state = plant.GetPositionsAndVelocities(context)", POSES[settings.planar]),
+    )
+
+
 class DrakeWorld:
     """A block on a half-space that does not move."""
 
     def __init__(self, scene: Scene, settings: DrakeSettings, dt_s: float) -> None:
         self._s, self._dt = settings, dt_s
-        self._scale = scene.block.p * scene.block.R
-        self._pydrake = library()
         self._continuous = settings.solver == CENIC
         self._count, self._time, self._problem = 0, 0.0, ""
         self._gravity = scene.block.gravity
         self._velocity_of = mean_velocity_of(scene.motion.segments())
-        builder = self._pydrake.DiagramBuilder()
-        self._plant, scene_graph = self._pydrake.AddMultibodyPlant(self._config(), builder)
-        self._block = self._add_block(scene)
-        self._plant.Finalize()
+        built = build(library(), numbers(scene, settings), values(scene, settings, dt_s))
+        self._plant, scene_graph, self._block, self._simulator, self._context = built
         self._field = self._plant.mutable_gravity_field()
-        self._simulator = self._pydrake.Simulator(builder.Build())
-        self._context = self._plant.GetMyMutableContextFromRoot(
-            self._simulator.get_mutable_context()
-        )
-        self._put(scene)
-        self._fault = self._read_back(scene, scene_graph)
         if self._continuous:
-            self._integrator = self._integrate(scene)
-        self._simulator.Initialize()
+            self._integrator = self._simulator.get_mutable_integrator()
+        self._fault = self._read_back(scene, scene_graph)
 
     @property
     def moment(self) -> Moment:
@@ -123,93 +227,6 @@ class DrakeWorld:
     def close(self) -> None:
         """Release the engine's memory."""
         self._simulator = None
-
-    def _config(self) -> Any:
-        s = self._s
-        wanted = {
-            "discrete_contact_approximation": None if self._continuous else s.solver,
-            "stiction_tolerance": None if s.stiction is None else s.stiction * self._scale,
-            "sap_near_rigid_threshold": s.near_rigid,
-            "time_step": 0.0 if self._continuous else self._dt,
-        }
-        return self._pydrake.MultibodyPlantConfig(**given(wanted))
-
-    def _add_block(self, scene: Scene) -> Any:
-        drake, plant, s = self._pydrake, self._plant, self._s
-        size = [2.0 * half for half in half_size(scene)]
-        inertia = drake.SpatialInertia.SolidBoxWithMass(scene.mass, *size)
-        block = plant.AddRigidBody("block", inertia)
-        if s.planar:
-            turned = drake.RigidTransform(drake.RotationMatrix([list(row) for row in PLANE]))
-            frames = [
-                plant.AddFrame(drake.FixedOffsetFrame(name, body.body_frame(), turned))
-                for name, body in (("base plane", plant.world_body()), ("block plane", block))
-            ]
-            self._joint = plant.AddJoint(drake.PlanarJoint("plane", *frames))
-        properties = self._properties(scene)
-        nowhere = drake.RigidTransform()
-        plant.RegisterCollisionGeometry(
-            plant.world_body(), nowhere, drake.HalfSpace(), "base", properties
-        )
-        if s.geometry == "box":
-            box = drake.Box(*size)
-            plant.RegisterCollisionGeometry(block, nowhere, box, "block", properties)
-            return block
-        radius = s.corner_radius * scene.block.width
-        for number, at in enumerate(corner_spheres(scene, radius, planar=s.planar)):
-            plant.RegisterCollisionGeometry(
-                block,
-                drake.RigidTransform(list(at)),
-                drake.Sphere(radius),
-                f"corner {number}",
-                properties,
-            )
-        return block
-
-    def _properties(self, scene: Scene) -> Any:
-        """Return what a contact is made of; two shapes of a pair have a half of it each."""
-        s, drake = self._s, self._pydrake
-        properties = drake.ProximityProperties()
-        wanted = {
-            "point_stiffness": None
-            if s.stiffness is None
-            else 2.0 * s.stiffness * scene.mass / self._dt**2,
-            "dissipation": None if s.dissipation is None else s.dissipation / self._scale,
-            "friction": drake.CoulombFriction(s.friction, s.friction),
-        }
-        drake.AddContactMaterial(**given(wanted), properties=properties)
-        if s.relaxation is not None:
-            properties.AddProperty("material", "relaxation_time", 0.5 * s.relaxation * self._dt)
-        return properties
-
-    def _put(self, scene: Scene) -> None:
-        """Let the block set out from where the scene begins."""
-        drake, start = self._pydrake, scene.beginning
-        if self._s.planar:
-            places = [start.z, start.x, start.theta]
-            speeds = [start.velocity_z, start.velocity_x, start.rate]
-            self._plant.SetPositionsAndVelocities(self._context, [*places, *speeds])
-            return
-        turn = drake.RotationMatrix.MakeYRotation(start.theta)
-        pose = drake.RigidTransform(turn, [start.x, 0.0, start.z])
-        self._plant.SetFreeBodyPose(self._context, self._block, pose)
-        velocity = drake.SpatialVelocity(
-            w=[0.0, start.rate, 0.0], v=[start.velocity_x, 0.0, start.velocity_z]
-        )
-        self._plant.SetFreeBodySpatialVelocity(self._context, self._block, velocity)
-
-    def _integrate(self, scene: Scene) -> Any:
-        """Put CENIC in charge of the continuous plant."""
-        drake, s, simulator = self._pydrake, self._s, self._simulator
-        # without an estimate of the error each step goes to where it is told
-        longest = LONGEST * self._dt if s.accuracy is None else self._dt
-        drake.ResetIntegratorFromFlags(simulator=simulator, scheme=CENIC, max_step_size=longest)
-        integrator = simulator.get_mutable_integrator()
-        integrator.set_fixed_step_mode(s.accuracy is None)
-        if s.accuracy is not None:
-            block = scene.block
-            integrator.set_target_accuracy(s.accuracy * block.alpha * max(1.0, block.R))
-        return integrator
 
     def _read_back(self, scene: Scene, scene_graph: Any) -> str:
         s, plant = self._s, self._plant

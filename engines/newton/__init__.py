@@ -1,8 +1,7 @@
 """Newton: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Precision, Preset
-from engines.newton.build import NewtonWorld
-from engines.newton.script import script
+from engines.newton.build import NewtonWorld, script
 from engines.newton.settings import FACTORS, RULES, TUNED, NewtonSettings
 
 ENGINE = Engine(

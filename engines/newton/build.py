@@ -7,10 +7,11 @@ The library compiles them when they are first used on a machine, for minutes, an
 import math
 
 from engines.declaration import Precision
-from engines.newton.models import given_back, taken
+from engines.newton.models import build, given_back, numbers, taken, values
 from engines.newton.settings import NewtonSettings
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
+from engines.parts.script import Script, filled, settings_of
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
 
@@ -69,3 +70,29 @@ class NewtonWorld:
             "friction": (self._s.friction, min(model.shape_material_mu.numpy().tolist())),
         }
         return disagreement(pairs, Precision.SINGLE.value)
+
+
+def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
+    """Return a scene on a base at rest as calls of Newton; see `engines.parts.script`."""
+    n, at = numbers(scene, settings), scene.beginning
+    lines = filled(build, n=n, s=values(scene, settings, dt_s))
+    return Script(
+        imports=("import newton", "import warp as wp"),
+        settings=settings_of(lines),
+        build=(
+            *(line.text for line in lines),
+            "solver.reset(now)",
+            f"half = 0.5 * {at.theta!r}",
+            f"place[0] = ({at.x!r}, 0.0, {at.z!r}, 0.0, math.sin(half), 0.0, math.cos(half))",
+            f"velocity[0] = ({at.velocity_x!r}, 0.0, {at.velocity_z!r}, 0.0, {at.rate!r}, 0.0)",
+        ),
+        step=(
+            f"force[0, 0] = {n.mass!r} * pull_x",
+            f"force[0, 2] = {n.mass!r} * (pull_z + GRAVITY)",
+            "wp.capture_launch(recorded.graph)",
+        ),
+        pose=(
+            "theta = 2.0 * math.atan2(float(place[0, 4]), float(place[0, 6]))",
+            "rate = float(velocity[0, 4])",
+        ),
+    )

@@ -5,9 +5,10 @@ which sets out from where its own scene begins.
 """
 
 from collections import OrderedDict
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-from engines.newton.settings import XPBD, NewtonSettings
+from engines.newton.settings import NewtonSettings
 from engines.parts.shapes import corner_spheres, half_size
 from engines.scene import Scene
 
@@ -29,6 +30,81 @@ class Made(NamedTuple):
     gravity: float
 
 
+def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
+    """Return the numbers of a block, wherever it begins."""
+    (x, y, z), radius = half_size(scene), s.corner_radius * scene.block.width
+    first, second, third = scene.inertia
+    return SimpleNamespace(
+        **{"x": x, "y": y, "z": z, "radius": radius, "most": MOST_CONTACTS},
+        **{"mass": scene.mass, "density": scene.density, "weight": -scene.block.gravity},
+        inertia=(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third),
+        corners=corner_spheres(scene, radius, planar=False),
+    )
+
+
+def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
+    """Return settings as the library is given them, for steps of dt_s [s]."""
+    return SimpleNamespace(
+        **{"geometry": s.geometry, "friction": float(s.friction), "dt": dt_s},
+        **{"solver": s.solver, "xpbd": s.of_xpbd(), "gamma": s.baumgarte},
+        delta=None if s.depth is None else s.depth * scene.block.width,
+        **{"iterations": s.iterations, "tolerance": s.tolerance},
+    )
+
+
+def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
+    """Build a block in space, on a plane that does not move, and record a step."""
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, n.weight))
+    if s.solver != "xpbd":
+        newton.solvers.SolverKamino.register_custom_attributes(builder)
+    builder.default_shape_cfg.mu = s.friction
+    builder.add_ground_plane()
+    shape = builder.default_shape_cfg.copy()
+    at = wp.transform((0.0, 0.0, n.z), (0.0, 0.0, 0.0, 1.0))
+    if s.geometry == "box":
+        shape.density = n.density
+        builder.add_shape_box(builder.add_body(xform=at), hx=n.x, hy=n.y, hz=n.z, cfg=shape)
+    else:
+        shape.density = 0.0
+        inertia = wp.mat33(*n.inertia)
+        block = builder.add_body(xform=at, mass=n.mass, inertia=inertia, lock_inertia=True)
+        for corner in n.corners:
+            there = wp.transform(corner, (0.0, 0.0, 0.0, 1.0))
+            builder.add_shape_sphere(block, xform=there, radius=n.radius, cfg=shape)
+    model = builder.finalize(device="cpu")
+    model.rigid_contact_max = n.most
+    pipeline = newton.CollisionPipeline(model, rigid_contact_max=n.most)
+    contacts = pipeline.contacts()
+    if s.solver == "xpbd":
+        solver = newton.solvers.SolverXPBD(model, **s.xpbd)
+    else:
+        kamino = newton.solvers.SolverKamino
+        config = kamino.Config.from_model(model, dynamics_solver=s.solver)
+        if s.gamma is not None:
+            config.constraints.gamma = s.gamma
+        if s.delta is not None:
+            config.constraints.delta = s.delta
+        if s.solver == "padmm" and s.iterations is not None:
+            config.padmm.max_iterations = s.iterations
+        if s.solver == "padmm" and s.tolerance is not None:
+            config.padmm.primal_tolerance = config.padmm.dual_tolerance = s.tolerance
+            config.padmm.compl_tolerance = s.tolerance
+        solver = kamino(model, config=config)
+    now, after = model.state(), model.state()
+
+    def advance() -> None:
+        pipeline.collide(now, contacts)
+        solver.step(now, after, None, contacts, s.dt)
+        now.assign(after)
+
+    advance()  # compiles its kernels
+    with wp.ScopedCapture(device="cpu") as recorded:
+        advance()
+    force = now.body_f.numpy()  # on the CPU a view, as those that follow
+    place, velocity = now.body_q.numpy(), now.body_qd.numpy()
+    return model, solver, now, recorded.graph, force, place, velocity
+
+
 class Recorded:
     """A model, its solver, and a step of it.
 
@@ -45,64 +121,13 @@ class Recorded:
         self, newton: Any, warp: Any, scene: Scene, settings: NewtonSettings, dt_s: float
     ) -> None:
         self.made_of = made_of(scene, settings, dt_s)
-        self.settings, self._dt = settings, dt_s
-        self._newton, self._warp = newton, warp
-        builder = newton.ModelBuilder(gravity=(0.0, 0.0, -scene.block.gravity))
-        if settings.solver != XPBD:
-            newton.solvers.SolverKamino.register_custom_attributes(builder)
-        builder.default_shape_cfg.mu = settings.friction
-        builder.add_ground_plane()
-        self._add_block(scene, builder)
-        self.model = builder.finalize(device="cpu")
-        self.model.rigid_contact_max = MOST_CONTACTS
-        self._pipeline = newton.CollisionPipeline(self.model, rigid_contact_max=MOST_CONTACTS)
-        self._contacts = self._pipeline.contacts()
-        self._solver = self._add_solver(scene)
-        self._now, self._next = self.model.state(), self.model.state()
-        # on the CPU these are views of the library's own memory
-        self.force = self._now.body_f.numpy()
-        self.place, self.velocity = self._now.body_q.numpy(), self._now.body_qd.numpy()
-        self._advance()  # so that its kernels are compiled
-        with warp.ScopedCapture(device="cpu") as recorded:
-            self._advance()
-        self.graph = recorded.graph
+        built = build(newton, warp, numbers(scene, settings), values(scene, settings, dt_s))
+        self.model, self._solver, self._now, self.graph, *views = built
+        self.force, self.place, self.velocity = views
 
     def put_back(self) -> None:
         """Let the solver forget the last run; the block is put where it begins by who takes it."""
         self._solver.reset(self._now)
-
-    def _advance(self) -> None:
-        self._pipeline.collide(self._now, self._contacts)
-        self._solver.step(self._now, self._next, None, self._contacts, self._dt)
-        self._now.assign(self._next)
-
-    def _add_block(self, scene: Scene, builder: Any) -> None:
-        s, (x, y, z) = self.settings, half_size(scene)
-        at = self._warp.transform((0.0, 0.0, z), (0.0, 0.0, 0.0, 1.0))
-        shape = builder.default_shape_cfg.copy()
-        if s.geometry == "box":
-            shape.density = scene.density
-            builder.add_shape_box(builder.add_body(xform=at), hx=x, hy=y, hz=z, cfg=shape)
-            return
-        shape.density = 0.0
-        first, second, third = scene.inertia
-        inertia = self._warp.mat33(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third)
-        body = builder.add_body(xform=at, mass=scene.mass, inertia=inertia, lock_inertia=True)
-        radius = s.corner_radius * scene.block.width
-        for corner in corner_spheres(scene, radius, planar=False):
-            place = self._warp.transform(corner, (0.0, 0.0, 0.0, 1.0))
-            builder.add_shape_sphere(body, xform=place, radius=radius, cfg=shape)
-
-    def _add_solver(self, scene: Scene) -> Any:
-        s, solvers = self.settings, self._newton.solvers
-        wanted = s.of_solver(scene)
-        if s.solver == XPBD:
-            return solvers.SolverXPBD(self.model, **wanted)
-        config = solvers.SolverKamino.Config.from_model(self.model, dynamics_solver=s.solver)
-        for name, value in wanted.items():
-            part, _, number = name.partition(".")
-            setattr(getattr(config, part), number, value)
-        return solvers.SolverKamino(self.model, config=config)
 
 
 idle: "OrderedDict[Made, Recorded]" = OrderedDict()

@@ -16,7 +16,6 @@ from engines.parts.factors import (
 )
 from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM
-from engines.scene import Scene
 
 XPBD = "xpbd"
 """The solver by positions; the other ones are Kamino's, by impulses."""
@@ -71,26 +70,15 @@ class NewtonSettings:
         if self.iterations is not None and self.solver == "dvi":
             raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
 
-    def of_solver(self, scene: Scene) -> dict[str, Any]:
-        """Return what of its solver is set, by the library's own names.
-
-        They are arguments of XPBD, and parts of Kamino's configuration.
-        """
-        if self.solver == XPBD:
-            return given(
-                {
-                    "iterations": self.iterations or EXAMPLE_ITERATIONS,
-                    "rigid_contact_relaxation": self.relaxation,
-                    "rigid_contact_con_weighting": self.weighting,
-                }
-            )
-        depth = None if self.depth is None else self.depth * scene.block.width
-        wanted = {"constraints.gamma": self.baumgarte, "constraints.delta": depth}
-        if self.solver == "padmm":
-            wanted["padmm.max_iterations"] = self.iterations
-            for kind in ("primal", "dual", "compl"):
-                wanted[f"padmm.{kind}_tolerance"] = self.tolerance
-        return given(wanted)
+    def of_xpbd(self) -> dict[str, Any]:
+        """Return the arguments of XPBD that are set."""
+        return given(
+            {
+                "iterations": self.iterations or EXAMPLE_ITERATIONS,
+                "rigid_contact_relaxation": self.relaxation,
+                "rigid_contact_con_weighting": self.weighting,
+            }
+        )
 
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
