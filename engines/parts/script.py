@@ -76,10 +76,12 @@ def filled(function: Callable[..., Any], **values: Any) -> tuple[Line, ...]:
     Parameters
     ----------
     function : callable
-        Its docstring and what it returns are left out; an ``if`` that the values decide is left
-        out, too, with all but the branch that is taken.
+        Its docstring is left out, and what it returns in the end: its variables are the script's.
+        So is an ``if`` that the values decide, with all but the branch that is taken; comments stay
+        that stand on a line with code.
     **values
-        Its parameters whose attributes are filled in, by name.
+        Its parameters whose attributes are filled in, by name. A mapping after ``**`` becomes named
+        arguments, and ``getattr`` with a name an attribute.
 
     Returns
     -------
