@@ -125,6 +125,9 @@ class _Filling:
                 first = statement.body[0].lineno - 1
                 yield from self._written(statement, first, indent, setting)
                 yield from self._block(statement.body, f"{indent}    ", setting)
+                if not isinstance(statement, ast.With) and statement.orelse:
+                    yield Line(f"{indent}else:", setting)
+                    yield from self._block(statement.orelse, f"{indent}    ", setting)
             else:
                 last = statement.end_lineno or statement.lineno
                 yield from self._written(statement, last, indent, setting)
@@ -145,6 +148,7 @@ class _Filling:
                 lines[row] = f"{before}{value!r}{after}"
         own = setting or any(self._sets(node) for node in places)
         text = GETATTR.sub(r"\1.\2", dedent("\n".join(lines)))
+        text = re.sub(r"\Aelif\b", "if", text)  # it stands below an else
         yield from (Line(f"{indent}{line}", own) for line in text.splitlines())
 
     def _known(self, statement: ast.stmt) -> list[ast.Attribute]:

@@ -40,8 +40,12 @@ def build(library, n, s):
         made["roots"].append(getattr(library, s.root)(abs(x)))
     made.update(dict(**s.others))
     with_mass = weighed(made, s.mass)
-    if with_mass["places"]:
-        with_mass["any"] = True
+    if with_mass["places"] and s.doubled:
+        with_mass["any"] = "doubled"
+    elif with_mass["places"]:
+        with_mass["any"] = s.root
+    else:
+        with_mass["any"] = None
     return with_mass
 
 
@@ -84,8 +88,13 @@ def test_a_script_reads_as_if_it_had_been_written_by_hand():
         '    made["roots"].append(library.sqrt(abs(x)))',
         "made.update(dict(a=1, b=2.0))",
         "with_mass = weighed(made, None)",
-        'if with_mass["places"]:',
-        '    with_mass["any"] = True',
+        'if with_mass["places"] and False:',
+        '    with_mass["any"] = "doubled"',
+        "else:",
+        '    if with_mass["places"]:',
+        """        with_mass["any"] = 'sqrt'""",
+        "    else:",
+        '        with_mass["any"] = None',
     ]
     assert settings_of(lines) == (
         'made["friction"] = library.sqrt(1.3)  # of a pair',
@@ -94,6 +103,7 @@ def test_a_script_reads_as_if_it_had_been_written_by_hand():
         'made["roots"].append(library.sqrt(abs(x)))',
         "made.update(dict(a=1, b=2.0))",
         "with_mass = weighed(made, None)",
+        """with_mass["any"] = 'sqrt'""",
     )
 
 
