@@ -126,9 +126,10 @@ def build(drake: Any, n: Any, s: Any) -> Any:
         plant.SetFreeBodySpatialVelocity(context, block, velocity)
     if s.scheme is not None:
         drake.ResetIntegratorFromFlags(simulator, scheme=s.scheme, max_step_size=s.longest)
-        simulator.get_mutable_integrator().set_fixed_step_mode(s.fixed)
+        integrator = simulator.get_mutable_integrator()
+        integrator.set_fixed_step_mode(s.fixed)
         if s.accuracy is not None:
-            simulator.get_mutable_integrator().set_target_accuracy(s.accuracy)
+            integrator.set_target_accuracy(s.accuracy)
     simulator.Initialize()
     return plant, scene_graph, block, simulator, context
 

@@ -80,8 +80,8 @@ def filled(function: Callable[..., Any], **values: Any) -> tuple[Line, ...]:
         So is an ``if`` that the values decide, with all but the branch that is taken; comments stay
         that stand on a line with code.
     **values
-        Its parameters whose attributes are filled in, by name. A mapping after ``**`` becomes named
-        arguments, and ``getattr`` with a name an attribute.
+        Its parameters whose attributes are filled in, by name. What is after ``*`` or ``**``
+        becomes arguments, and ``getattr`` with a name an attribute.
 
     Returns
     -------
@@ -144,6 +144,8 @@ class _Filling:
             if before.endswith("**"):
                 given = ", ".join(f"{name}={part!r}" for name, part in value.items())
                 lines[row] = f"{before.removesuffix('**')}{given}{after}"
+            elif before.endswith("*"):
+                lines[row] = f"{before.removesuffix('*')}{', '.join(map(repr, value))}{after}"
             else:
                 lines[row] = f"{before}{value!r}{after}"
         own = setting or any(self._sets(node) for node in places)

@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -141,18 +142,15 @@ def test_a_step_that_does_not_end_is_ended_by_the_limit() -> None:
 
 
 def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    from engines.drake.build import DrakeWorld
+    from engines.drake import build
 
-    made = DrakeWorld._properties
+    whole = build.values
 
-    def forgetful(self: DrakeWorld, scene: Scene) -> Any:
-        self._s = replace(self._s, friction=0.5)
-        properties = made(self, scene)
-        self._s = replace(self._s, friction=1.3)
-        return properties
+    def forgetful(*asked: Any) -> Any:
+        return SimpleNamespace(**{**vars(whole(*asked)), "friction": 0.5})
 
-    monkeypatch.setattr(DrakeWorld, "_properties", forgetful)
-    assert rocked("fixed").message == "friction was set to 1.3 but reads 0.5"
+    monkeypatch.setattr(build, "values", forgetful)
+    assert rocked("fixed").message == "friction was set to 100.0 but reads 0.5"
 
 
 def test_a_box_turns_out_of_the_plane_about_its_one_contact() -> None:

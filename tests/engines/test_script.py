@@ -38,7 +38,7 @@ def build(library, n, s):
         else:
             made["places"].append((number, x))
         made["roots"].append(getattr(library, s.root)(abs(x)))
-    made.update(dict(**s.others))
+    made.update(dict(**s.others), most=max(*n.sizes))
     with_mass = weighed(made, s.mass)
     if with_mass["places"] and s.doubled:
         with_mass["any"] = "doubled"
@@ -49,10 +49,18 @@ def build(library, n, s):
     return with_mass
 
 
+def numbers(**options):
+    usual = {"x": 0.5, "speed": 0.0, "at_rest": True, "sizes": (1.0, 2)}
+    return SimpleNamespace(**{**usual, **options})
+
+
 CASES = [
-    (SimpleNamespace(x=0.5, speed=-0.25, at_rest=False), {"friction": 0.5, "doubled": True}),
-    (SimpleNamespace(x=1e-7, speed=0.0, at_rest=True), {"friction": None, "doubled": False}),
-    (SimpleNamespace(x=-0.0, speed=0.0, at_rest=True), {"friction": 0, "mass": 3.0}),
+    (
+        numbers(speed=-0.25, at_rest=False, sizes=[2.0, 3.0]),
+        {"friction": 0.5, "doubled": True},
+    ),
+    (numbers(x=1e-7), {"friction": None, "doubled": False}),
+    (numbers(x=-0.0), {"friction": 0, "mass": 3.0}),
 ]
 
 
@@ -77,7 +85,10 @@ def test_a_script_makes_what_the_function_returns(n, options, others):
 
 
 def test_a_script_reads_as_if_it_had_been_written_by_hand():
-    n, s = SimpleNamespace(x=0.5, speed=0.0, at_rest=True), values(others={"a": 1, "b": 2.0})
+    n, s = (
+        SimpleNamespace(x=0.5, speed=0.0, at_rest=True, sizes=(1.0, 2)),
+        values(others={"a": 1, "b": 2.0}),
+    )
     lines = filled(build, n=n, s=s)
     assert [line.text for line in lines] == [
         'made = {"places": [], "roots": []}',
@@ -86,7 +97,7 @@ def test_a_script_reads_as_if_it_had_been_written_by_hand():
         "for number, x in enumerate((-0.5, 0.5)):",
         '    made["places"].append((number, x))',
         '    made["roots"].append(library.sqrt(abs(x)))',
-        "made.update(dict(a=1, b=2.0))",
+        "made.update(dict(a=1, b=2.0), most=max(1.0, 2))",
         "with_mass = weighed(made, None)",
         'if with_mass["places"] and False:',
         '    with_mass["any"] = "doubled"',
@@ -101,7 +112,7 @@ def test_a_script_reads_as_if_it_had_been_written_by_hand():
         'made["speed"] = "at rest"',
         'made["places"].append((number, x))',
         'made["roots"].append(library.sqrt(abs(x)))',
-        "made.update(dict(a=1, b=2.0))",
+        "made.update(dict(a=1, b=2.0), most=max(1.0, 2))",
         "with_mass = weighed(made, None)",
         """with_mass["any"] = 'sqrt'""",
     )

@@ -1,6 +1,7 @@
 """Advice: the cheapest published setting that keeps an error, and the library's words for it."""
 
 import math
+import re
 import shutil
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -289,7 +290,7 @@ def test_a_dial_is_no_step(wider, capsys):
     assert f"accuracy = {DIAL[0]:g}" in told
     own = DIAL[0] * BLOCK.alpha * max(1.0, BLOCK.R)
     assert f"integrator.set_target_accuracy({own!r})" in told
-    assert "AddContactMaterial(point_stiffness=" in told
+    assert re.search(r"AddContactMaterial\(.*point_stiffness=", told)
     rough = float(ENGINES["drake"].preset("error-controlled").settings.friction)
     assert f"CoulombFriction({rough!r}, {rough!r})" in told
 
