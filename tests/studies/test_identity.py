@@ -91,6 +91,15 @@ EDITS = {
     ),
     "the registry": ("engines/registry.py", "return own | ", "return own | own | ", set()),
     "a script": ("engines/mujoco/script.py", "return ", "return 1 + ", set()),
+    "what a script is filled by": ("engines/parts/script.py", "return ", "return 1 + ", set()),
+    "a script beside its build": (
+        *("engines/pymunk/build.py", '"import pymunk",', '"import pymunk", "",'),
+        set(),
+    ),
+    "a build beside its script": (
+        *("engines/pymunk/build.py", "space = pymunk.Space()", "space = pymunk.Space"),
+        {"pymunk"},
+    ),
     "another study": ("studies/restitution/strike.py", "return ", "return 1 + ", set()),
     "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
