@@ -93,12 +93,12 @@ EDITS = {
     "a script": ("engines/mujoco/script.py", "return ", "return 1 + ", set()),
     "what a script is filled by": ("engines/parts/script.py", "return ", "return 1 + ", set()),
     "a script beside its build": (
-        *("engines/pymunk/build.py", '"import pymunk",', '"import pymunk", "",'),
+        *("engines/box2d/build.py", '"import Box2D",', '"import Box2D", "",'),
         set(),
     ),
     "a build beside its script": (
-        *("engines/pymunk/build.py", "space = pymunk.Space()", "space = pymunk.Space"),
-        {"pymunk"},
+        *("engines/box2d/build.py", "world = Box2D.b2World(", "world = dict("),
+        {"box2d"},
     ),
     "another study": ("studies/restitution/strike.py", "return ", "return 1 + ", set()),
     "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
