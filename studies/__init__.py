@@ -7,14 +7,17 @@ what an answer is worth, `drawing` draws it, `page` shows all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from analytic.block import RigidBlock
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
 
-__all__ = ["respond"]
+__all__ = ["respond", "side_by_side"]
 
 
 def respond(
@@ -59,3 +62,53 @@ def respond(
     asked = resolve(source)
     asked.check(block, motion, duration=duration, times=times, **options)
     return asked.call(block, motion, duration=duration, times=times, **options)
+
+
+def side_by_side(
+    block: RigidBlock,
+    motion: Motion,
+    sources: Sequence[str],
+    *,
+    start: tuple[float, float] = (0.0, 0.0),
+    duration: float | None = None,
+    friction: float | None = None,
+    dt: float | None = None,
+) -> pd.DataFrame:
+    """Ask several sources for the response of a block to the same motion of its base.
+
+    Parameters
+    ----------
+    block, motion, start : RigidBlock, Motion, (float, float)
+        As in `respond`.
+    sources : sequence of str
+        Their names, each as in `respond`.
+    duration : float, optional
+        Observe until this time [s]; by default the motion and 8/p of free rocking.
+    friction : float, optional
+        Coefficient between block and base in the engines; by default their presets'. The models do
+        not slide: where it is less than the exact solution needs, the message of its row says so.
+    dt : float, optional
+        Step [s] of the solvers, and of engines whose preset takes equal steps.
+
+    Returns
+    -------
+    DataFrame
+        A row for each source, with the columns of ``rocking compare --json``; the peak is inf where
+        the block overturns, and what there is not is nan.
+
+    Raises
+    ------
+    ValueError
+        If there is no such source, or a value is not allowed.
+    """
+    from studies.compare.study import frame
+    from studies.kit.arguments import BadInputError
+    from studies.kit.options import Yours
+
+    if isinstance(sources, str) or not sources:
+        raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
+    yours = Yours(friction=friction, dt=dt)
+    try:
+        return frame(block, motion, sources, start=start, duration=duration, yours=yours)
+    except BadInputError as error:
+        raise ValueError(str(error).removeprefix("--")) from None

@@ -33,7 +33,15 @@ is null there."""
 
 
 def json_lines(rows: list[Row], note: str = "") -> str:
-    """Return one JSON object a line; a number that is not finite is null, a note in each message.
+    """Return one JSON object a line; a number that is not finite is null."""
+    return "\n".join(
+        json.dumps({k: _finite_or_null(v) for k, v in item.items()}, allow_nan=False)
+        for item in records(rows, note)
+    )
+
+
+def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
+    """Return what is told of each row, by name, with a note in each message.
 
     The last three, `valid` among them, say what the exact solution needs, and are alike in all.
     """
@@ -46,10 +54,7 @@ def json_lines(rows: list[Row], note: str = "") -> str:
         item["message"] = "; ".join(words for words in (item["message"], note) if words)
         item |= {name: getattr(exact, name) for name in ("min_normal", "friction_needed")}
         objects.append({**item, "valid": valid(exact)})
-    return "\n".join(
-        json.dumps({k: _finite_or_null(v) for k, v in item.items()}, allow_nan=False)
-        for item in objects
-    )
+    return objects
 
 
 def _finite_or_null(value: Any) -> Any:

@@ -1,11 +1,12 @@
 """One block, one pulse, record or release, every named source side by side."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from statistics import median
 from typing import Annotated, Any
 
 import numpy as np
+import pandas as pd
 
 from analytic import conditioning, sensitivity
 from analytic.block import RigidBlock
@@ -13,13 +14,21 @@ from analytic.motion import FloatArray, Motion
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
-from studies.compare.rendering import baseline_note, draw, json_lines, table_text
+from studies.compare.rendering import baseline_note, draw, json_lines, records, table_text
 from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
 from studies.kit.executors import Executor
-from studies.kit.jobs import Job, summary
+from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_COMPUTING, OWN_EFFORT, Computing, EffortOptions
+from studies.kit.options import (
+    DEFAULT_COMPUTING,
+    NOT_YOURS,
+    OWN_EFFORT,
+    Computing,
+    EffortOptions,
+    Yours,
+    refuse_two_steps,
+)
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
@@ -40,6 +49,7 @@ def command(
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     effort: EffortOptions = OWN_EFFORT,
+    yours: Yours = NOT_YOURS,
     estimate: bool = False,
     plot: Place | None = None,
     json: bool = False,
@@ -74,7 +84,8 @@ def command(
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     window = _window(block, motion, duration)
-    refuse_endless(block, window, duration=duration, step=effort.step)
+    refuse_two_steps(effort.step, yours)
+    refuse_endless(block, window, duration=duration, step=effort.step, dt=yours.dt)
     rows = compare(
         block,
         posed,
@@ -82,6 +93,7 @@ def command(
         window,
         times=np.linspace(0.0, window, 1501) if plot else None,
         effort=effort,
+        yours=yours,
         estimate=estimate,
         executor=computing.executor(),
     )
@@ -123,6 +135,7 @@ def compare(
     executor: Executor,
     times: FloatArray | None = None,
     effort: Effort = DEFAULT_EFFORT,
+    yours: Yours = NOT_YOURS,
     estimate: bool = False,
 ) -> list[Row]:
     """Ask every source; return a row for each, with its response and its distance from exact.
@@ -133,8 +146,10 @@ def compare(
         Columns source, outcome, peak_ratio, impacts, steps, wall_s, message, response, error
         (relative; nan unless both rocked), velocity_ratio (the median), impact_error [1/p] (of the
         first impacts, nan where one is missing) and exact, the response of the exact solution;
-        with `estimate`, estimate and bound, nan where there is none.
+        with `estimate`, estimate and bound, nan where there is none. Where the friction is less
+        than the exact solution needs, its message says so.
     """
+    own = yours.options(sources, block)
     asked = list(dict.fromkeys(["exact", *sources]))
     begin = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     jobs = [
@@ -145,7 +160,7 @@ def compare(
             source=name,
             duration=window,
             times=times,
-            options={**begin, **effort.options(name)},
+            options={**begin, **effort.options(name), **own.get(name, {})},
         )
         for name in asked
     ]
@@ -153,10 +168,36 @@ def compare(
     if estimate:
         finer = [half for job in jobs if (half := halved(job)) is not None]
         halves = run_jobs(finer, executor=executor, reduce=_reduce)
-        rows = with_estimates(rows, halves, own_steps=effort.own)
+        rows = with_estimates(rows, halves, own_steps=effort.own and yours.dt is None)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
+    if yours.friction is not None and yours.friction < exact.friction_needed:
+        words = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"
+        said = compared["exact"]["message"]
+        compared["exact"]["message"] = "; ".join(filter(None, (said, words)))
     return [compared[name] for name in sources]
+
+
+def frame(
+    block: RigidBlock,
+    motion: Motion,
+    sources: Sequence[str],
+    *,
+    start: tuple[float, float],
+    duration: float | None,
+    yours: Yours,
+) -> pd.DataFrame:
+    """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`."""
+    window, posed = _window(block, motion, duration), Posed(motion, start)
+    refuse_endless(block, window, duration=duration, dt=yours.dt)
+    rows = compare(block, posed, sources, window, executor=_here, yours=yours)
+    return pd.DataFrame(records(conditioned(rows, block, posed)))
+
+
+def _here(jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
+    """Run jobs in this process: from a reader's script others may not be startable."""
+    for number, job in enumerate(jobs):
+        yield number, ask(job, job.asked)
 
 
 def _reduce(job: Job, response: Response) -> Row:

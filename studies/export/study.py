@@ -13,6 +13,7 @@ from studies.kit.arguments import BadInputError, Place, Positive, Step
 from studies.kit.drafts import write_all
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
+from studies.kit.options import NOT_YOURS, Yours, refuse_two_steps
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
 
@@ -26,6 +27,7 @@ def command(
     preset: str | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     step: Step | None = None,
+    yours: Yours = NOT_YOURS,
     time_limit: Positive = 60.0,
 ) -> int:
     """Write a scene as a script that needs an engine's library alone, with the peak to expect.
@@ -48,19 +50,22 @@ def command(
     time_limit
         Wall-clock time [s] after which the engine is given up.
     """
+    refuse_two_steps(step, yours)
     asked, used = _asked(engine, preset)
     block = posed_block(width, height)
     posed = excitation.pose(block)
     motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
-    refuse_endless(block, window, step=step)
+    refuse_endless(block, window, step=step, dt=yours.dt)
+    source = f"{asked.name}:{used.name}"
     begin: dict[str, Any] = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
-    options = begin if step is None else {**begin, "step": step}
+    stepped = {} if step is None else {"step": step}
+    options = {**begin, **stepped, **yours.options([source], block)[source]}
     rows = run_jobs(
         [
             _job("exact", block, motion, window, begin),
-            _job(f"{asked.name}:{used.name}", block, motion, window, options),
+            _job(source, block, motion, window, options),
         ],
         executor=Local(workers=1, time_limit_s=time_limit),
         reduce=summary,

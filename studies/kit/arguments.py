@@ -62,6 +62,13 @@ def _number(most: float) -> Callable[[type, str], Any]:
     return convert
 
 
+def _not_negative(type_: type, text: str) -> Any:
+    value = _finite(type_, text)
+    if value < 0:
+        raise ValueError(text)
+    return value
+
+
 def _finite(type_: type, text: str) -> Any:
     value = _plain(type_, text)
     if not math.isfinite(value):
@@ -86,6 +93,9 @@ Positive = Annotated[
     float, _read("a positive finite number", _number(math.nextafter(math.inf, 0.0)))
 ]
 """A positive finite number."""
+
+NotNegative = Annotated[float, _read("a finite number, 0 or more", _not_negative)]
+"""A finite number that is not negative."""
 
 Finite = Annotated[float, _read("a finite number", _finite)]
 """A finite number of either sign."""

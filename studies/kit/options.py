@@ -1,17 +1,28 @@
 """Options that studies share: each a dataclass, which is the type of a command's parameter."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 from cyclopts import Parameter
 
+from analytic.block import RigidBlock
 from analytic.response import Response
-from studies.kit.arguments import Count, Place, Positive, Step, one_of, several_or_none
+from engines.declaration import Stepping
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    NotNegative,
+    Place,
+    Positive,
+    Step,
+    one_of,
+    several_or_none,
+)
 from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
 from studies.kit.executors import Executor, choose
 from studies.kit.jobs import Job, ask
-from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source
+from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source, resolve
 
 
 @Parameter(name="*")
@@ -120,3 +131,68 @@ class EffortOptions(Effort):
 
 OWN_EFFORT = EffortOptions()
 """Every source as finely as it sees fit."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Yours:
+    """What a reader's own simulation has.
+
+    Attributes
+    ----------
+    friction
+        Coefficient of friction between block and base, in the engines; by default the preset's. The
+        models do not slide: where it is less than the exact solution needs, its row says so.
+    dt
+        Step [s] of the solvers, and of engines whose preset takes equal steps.
+    """
+
+    friction: NotNegative | None = None
+    dt: Positive | None = None
+
+    def options(self, sources: Sequence[str], block: RigidBlock) -> dict[str, dict[str, float]]:
+        """Return the options that this means for each source.
+
+        Raises
+        ------
+        BadInputError
+            If one takes no step of its own, or none takes what is given.
+        """
+        asked = {name: resolve(name) for name in sources}
+        self._refuse_idle(asked.values())
+        chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
+        for name, source in asked.items():
+            if self.friction is not None and source.engine:
+                chosen[name]["friction"] = self.friction
+            if self.dt is not None and source.stepping:
+                self._refuse_uneven(source)
+                chosen[name]["step"] = self.dt * block.p
+        return chosen
+
+    def _refuse_idle(self, asked: Collection[Source]) -> None:
+        if self.friction is not None and not any(source.engine for source in asked):
+            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
+        if self.dt is not None and not any(source.stepping for source in asked):
+            words = "a solver or an engine that takes equal steps"
+            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
+
+    def _refuse_uneven(self, source: Source) -> None:
+        if not source.accurate:
+            return
+        engine = source.declared
+        equal = [use.name for use in engine.presets if use.stepping is Stepping.FIXED]
+        instead = " or ".join(f"{engine.name}:{name}" for name in equal)
+        raise BadInputError(
+            f"--dt is {self.dt:g}; it must come with equal steps, and {source.name} takes "
+            f"{source.used.stepping.value}: ask {instead}"
+        )
+
+
+NOT_YOURS = Yours()
+"""Nothing of one's own."""
+
+
+def refuse_two_steps(step: float | None, yours: Yours) -> None:
+    """Raise BadInputError if a step is given both in units of 1/p and in seconds."""
+    if None not in (step, yours.dt):
+        raise BadInputError(f"--dt is {yours.dt:g} and --step is {step:g}; give one or the other")

@@ -174,7 +174,12 @@ DEFAULT_EXCITATION = Excitation()
 
 
 def refuse_endless(
-    block: RigidBlock, watched_s: float, *, duration: float | None = None, step: float | None = None
+    block: RigidBlock,
+    watched_s: float,
+    *,
+    duration: float | None = None,
+    step: float | None = None,
+    dt: float | None = None,
 ) -> None:
     """Refuse what no computer sees the end of.
 
@@ -183,8 +188,8 @@ def refuse_endless(
     block : RigidBlock
     watched_s : float
         How long it is watched [s].
-    duration, step : float, optional
-        What was given of that, and p dt.
+    duration, step, dt : float, optional
+        What was given of that, p dt, and a step [s].
 
     Raises
     ------
@@ -201,12 +206,13 @@ def refuse_endless(
             f"{asked} must last at most {most_s:.4g} s, {MOST_TIME:g} times 1/p, "
             f"and the block is watched for {watched_s:.4g} s"
         )
-    if step is not None and watched_s * block.p > MOST_STEPS * step:
-        least = watched_s * block.p / MOST_STEPS
-        raise BadInputError(
-            f"--step is {step:g}; it must be at least {least:.4g} for a run of {watched_s:.4g} s, "
-            f"so that this takes at most {MOST_STEPS:g} steps"
-        )
+    for name, given, unit in (("step", step, 1.0 / block.p), ("dt", dt, 1.0)):
+        if given is not None and watched_s > MOST_STEPS * given * unit:
+            least = watched_s / (MOST_STEPS * unit)
+            raise BadInputError(
+                f"--{name} is {given:g}; it must be at least {least:.4g} for a run of "
+                f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
+            )
 
 
 def posed_block(width: float, height: float) -> RigidBlock:

@@ -2,7 +2,5 @@
 
 from pathlib import Path
 
-import studies
-
-PUBLISHED = Path(studies.__file__).parent / "published"
+PUBLISHED = Path(__file__).parents[1] / "published"
 """The folder of the published tables, one folder inside for each chapter."""

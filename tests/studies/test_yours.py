@@ -1,0 +1,160 @@
+"""A reader's own friction and step: in a comparison, in an exported scene, from Python."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import studies
+from analytic import RigidBlock, SinePulse, simulate
+from engines import ENGINES
+from studies import respond, side_by_side
+from studies.__main__ import run
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
+NEEDED = simulate(BLOCK, PULSE).friction_needed
+
+
+def compared(capsys, *options):
+    code = run(["compare", *CASE, *options, "--json"])
+    rows = map(json.loads, capsys.readouterr().out.splitlines())
+    return code, {row["source"]: row for row in rows}
+
+
+def test_an_engine_is_asked_with_the_friction_and_the_step_that_are_given(capsys):
+    code, rows = compared(
+        capsys, "--friction", "0.8", "--dt", "0.002", "--sources", "exact", "mujoco:naive", "rk4"
+    )
+    assert code == 0
+    window = PULSE.duration + 8.0 / BLOCK.p
+    given = {"step": 0.002 * BLOCK.p, "duration": window}
+    for name, options in (("mujoco:naive", {**given, "friction": 0.8}), ("rk4", given)):
+        answer = respond(name, BLOCK, PULSE, **options)
+        assert rows[name]["peak_ratio"] == answer.peak_ratio
+        assert rows[name]["steps"] == answer.steps
+    other = respond("mujoco:naive", BLOCK, PULSE, duration=window, step=0.002 * BLOCK.p)
+    assert other.peak_ratio != rows["mujoco:naive"]["peak_ratio"]
+    assert rows["exact"]["message"] == ""
+
+
+@pytest.mark.parametrize(("part", "says"), [(0.5, True), (1.1, False)])
+def test_the_exact_row_says_where_friction_is_too_low_for_it(part, says, capsys):
+    friction = part * NEEDED
+    code, rows = compared(capsys, "--friction", str(friction), "--sources", "exact", "pymunk:fixed")
+    words = f"slides: needs {NEEDED:.3g}, has {friction:.3g}"
+    assert rows["exact"]["message"] == (words if says else "")
+    slid = "slid" in rows["pymunk:fixed"]["message"]
+    assert slid == says
+    assert code == int(slid)
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--dt", "0.002"], "--dt is 0.002; .* pybullet takes steps that land on impacts: ask "
+         "pybullet:naive or pybullet:fixed"),
+        (["--dt", "0.002", "--sources", "drake"], "drake takes the engine's own steps"),
+        (["--dt", "0.002", "--sources", "exact"], "--dt is 0.002; it must come with a solver"),
+        (["--friction", "1", "--sources", "rk4"], "--friction is 1; it must come with an engine"),
+        (["--friction", "-1"], "--friction is '-1'; it must be a finite number, 0 or more"),
+        (["--friction", "nan"], "--friction is 'nan'; it must be a finite number, 0 or more"),
+        (["--friction", "99", "--sources", "pybullet"], "friction is 99.0; it must be from 0 to"),
+        (["--dt", "0", "--sources", "rk4"], "--dt is '0'; it must be a positive"),
+        (["--dt", "1e-12", "--sources", "rk4"], "--dt is 1e-12; it must be at least 3.6"),
+        (["--dt", "0.01", "--step", "0.1", "--sources", "rk4"], "--dt is 0.01 and --step is 0.1"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused(options, problem, capsys):
+    assert run(["compare", *CASE, *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(problem, line)
+
+
+def test_a_step_in_seconds_that_is_long_is_refused_by_its_own_name(capsys):
+    assert run(["compare", *CASE, "--duration", "3e4", "--dt", "1e-6", "--sources", "rk4"]) == 2
+    assert (
+        "--dt is 1e-06; it must be at least 3e-05 for a run of 3e+04 s" in capsys.readouterr().err
+    )
+
+
+def test_a_scene_is_exported_with_them(tmp_path, capsys):
+    own = ("--friction", "0.8", "--dt", "0.002")
+    _, rows = compared(capsys, *own, "--sources", "mujoco:naive")
+    scene = ["--engine", "mujoco:naive", "--out", str(tmp_path / "scene")]
+    assert run(["export", *CASE, *own, *scene]) == 0
+    told = float(re.search(r"to expect: (\S+)", capsys.readouterr().out)[1])
+    assert told == pytest.approx(rows["mujoco:naive"]["peak_ratio"], rel=1e-11)
+    script = tmp_path / "scene" / "block.py"
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "DT = 0.002 " in script.read_text()
+    assert 'friction="0.8 ' in (tmp_path / "scene" / "block.xml").read_text()
+    assert run(["export", *CASE, "--step", "0.1", "--dt", "0.1", *scene]) == 2
+    assert "give one or the other" in capsys.readouterr().err
+
+
+def test_side_by_side_is_what_compare_tells(capsys):
+    names = ["exact", "housner", "mujoco:fixed"]
+    _, rows = compared(capsys, "--friction", "0.8", "--sources", *names)
+    table = side_by_side(BLOCK, PULSE, names, friction=0.8)
+    assert list(table["source"]) == names
+    assert list(table.columns) == list(rows["exact"])
+    for row in table.drop(columns="wall_s").to_dict("records"):
+        for name, value in row.items():
+            kept = rows[row["source"]][name]
+            finite = not isinstance(value, float) or math.isfinite(value)
+            assert kept == (value if finite else None)
+    assert table.set_index("source").loc["housner", "peak_ratio"] == math.inf
+    assert isinstance(table, pd.DataFrame)
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"sources": []}, r"sources is \[\]; it must be a list of one name or more"),
+        ({"sources": "exact"}, "sources is 'exact'; it must be a list"),
+        ({"sources": ["exat"]}, "source is 'exat'; it must be one of exact"),
+        ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; it must come with equal steps"),
+        ({"sources": ["rk4"], "dt": -1.0}, "^dt is -1; it must be"),
+        ({"sources": ["rk4"], "friction": 1.0}, "^friction is 1; it must come with an engine"),
+        ({"sources": ["mujoco"], "friction": math.nan}, "friction is nan; it must be a finite"),
+        ({"sources": ["exact"], "duration": 0.1}, "^duration is 0.1; it must be at least"),
+    ],
+)
+def test_side_by_side_refuses_what_cannot_be(options, problem):
+    with pytest.raises(ValueError, match=problem):
+        side_by_side(BLOCK, PULSE, **options)
+
+
+def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
+    """It has no guard by which other processes could be started from it."""
+    guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
+    (code,) = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
+    script = tmp_path / "mine.py"
+    script.write_text(code + "print(table['peak_ratio'].tolist())\n")
+    root = str(Path(studies.__file__).parents[1])
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys, runpy; sys.path.insert(0, {root!r});"
+         f"runpy.run_path({str(script)!r}, run_name='__main__')"],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    (line,) = done.stdout.splitlines()
+    exact, engine = json.loads(line)
+    assert exact == pytest.approx(simulate(BLOCK, PULSE).peak_ratio, rel=1e-12)
+    assert 0.0 < engine < 1.0
+
+
+def test_every_engine_takes_a_friction_and_a_step():
+    names = [f"{name}:fixed" for name in ENGINES if ENGINES[name].installed and name != "newton"]
+    table = side_by_side(BLOCK, PULSE, names, friction=1.0, dt=0.001, duration=PULSE.duration)
+    assert set(table["outcome"]) <= {"rocked", "overturned"}
+    steps = table["steps"] * 0.001
+    assert steps.between(0.9 * PULSE.duration, 1.2 * PULSE.duration).all()
