@@ -67,10 +67,14 @@ def table_text(
     window: float,
     rows: list[Row],
     note: str = "",
+    edge: str = "",
     *,
     degrees: bool = False,
 ) -> str:
-    """Return the table with its head, a note on the motion in it, and the messages under it."""
+    """Return the table with its head, a note on the motion in it, and what is said below it.
+
+    Those are the messages of its rows, and what an answer near the edge hangs on.
+    """
     motion, scale = posed.motion, math.degrees(block.alpha) if degrees else 1.0
     table = pd.DataFrame(
         {
@@ -103,6 +107,7 @@ def table_text(
             "",
             table.to_string(index=False),
             *notes,
+            *([edge] if edge else []),
         ]
     )
 

@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Generator, Sequence
+from dataclasses import replace
 from statistics import median
 from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
 
-from analytic import conditioning, sensitivity
+from analytic import conditioning, sensitivity, simulate
 from analytic.block import RigidBlock
-from analytic.motion import FloatArray, Motion
+from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
@@ -34,6 +35,9 @@ from studies.kit.runner import exit_code, run_jobs
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
+
+EDGE = 0.01
+"""An answer hangs on its amplitude where so much of it makes the difference of a fall."""
 
 TIMED_IMPACTS = 5
 """First impacts whose times are compared."""
@@ -100,7 +104,8 @@ def command(
     if json:
         print(json_lines(conditioned(rows, block, posed), note))
     else:
-        print(table_text(block, posed, window, rows, note, degrees=excitation.degrees))
+        edge = hanging(block, posed, window, rows[0]["exact"])
+        print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
     if plot:
         draw(rows, block, motion, plot)
     return exit_code(rows)
@@ -113,6 +118,30 @@ def conditioned(rows: Sequence[Row], block: RigidBlock, posed: Posed) -> list[Ro
         kappa, _ = conditioning(block, posed.motion, start=posed.start)
         moved = sensitivity(block, posed.motion, start=posed.start)
     return [{**row, "kappa": kappa, "sensitivity": moved} for row in rows]
+
+
+def hanging(block: RigidBlock, posed: Posed, window: float, exact: Response) -> str:
+    """Say where less than a hundredth of the amplitude decides whether the block overturns."""
+    for factor in (1.0 + EDGE, 1.0 - EDGE):
+        motion = _scaled(posed.motion, factor)
+        other = simulate(block, motion, start=posed.start, duration=window).outcome
+        outcomes = {exact.outcome, other} - {Outcome.OVERTURNED}
+        if len(outcomes) == 1 and other is not exact.outcome and Outcome.FAILED not in outcomes:
+            falls = "overturns" if other is Outcome.OVERTURNED else "does not overturn"
+            return (
+                f"the answer hangs on less than {100.0 * EDGE:g} % of the amplitude: "
+                f"at {factor:g} times it, the exact block {falls}"
+            )
+    return ""
+
+
+def _scaled(motion: Motion, factor: float) -> Motion:
+    """Return a motion of the base with its acceleration multiplied."""
+    if isinstance(motion, Record):
+        return motion.scaled(factor)
+    if isinstance(motion, SinePulse):
+        return replace(motion, amplitude=factor * motion.amplitude)
+    return motion
 
 
 def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:

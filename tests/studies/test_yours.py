@@ -100,6 +100,35 @@ def test_a_scene_is_exported_with_them(tmp_path, capsys):
     assert "give one or the other" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("kind", ["pulse", "record"])
+def test_an_answer_that_hangs_on_a_hundredth_of_the_amplitude_says_so(kind, tmp_path, capsys):
+    def amplified(factor):
+        if kind == "pulse":
+            return ["--amplitude", str(factor), "--omega", "6.2832"]
+        path = tmp_path / "record.csv"
+        times = [0.01 * i for i in range(101)]
+        lines = [f"{time},{math.sin(6.2832 * time)}" for time in times]
+        path.write_text("time_s,acceleration_g\n" + "\n".join(lines) + "\n")
+        return ["--record", str(path), "--scale", str(factor), "--baseline", "none"]
+
+    def told(factor):
+        sources = ["--sources", "exact"]
+        assert (
+            run(["compare", "--width", "0.5", "--height", "1.5", *amplified(factor), *sources]) == 0
+        )
+        return capsys.readouterr().out
+
+    low, high = 0.4, 0.6
+    assert "overturned" in told(high) and "overturned" not in told(low)
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if "overturned" in told(middle) else (middle, high)
+    words = "the answer hangs on less than 1 % of the amplitude: at {} times it, the exact block {}"
+    assert words.format("1.01", "overturns") in told(low / 1.005)
+    assert words.format("0.99", "does not overturn") in told(high * 1.005)
+    assert "hangs" not in told(low / 1.02) + told(high * 1.02)
+
+
 def test_side_by_side_is_what_compare_tells(capsys):
     names = ["exact", "housner", "mujoco:fixed"]
     _, rows = compared(capsys, "--friction", "0.8", "--sources", *names)
