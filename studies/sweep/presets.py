@@ -1,6 +1,7 @@
 """The presets of the engines beside each other: all cases at once, and along the frequency."""
 
 import math
+import re
 from textwrap import fill
 
 import pandas as pd
@@ -44,7 +45,8 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         axes.plot(*ends[1], **style.points(7.0))
         axes.plot(*ends[0], "_", color=style.colour, markersize=8)
         title = ENGINES[str(line["engine"])].title
-        lost = " + ".join(f"{line[kind]:.0f}" for kind in KINDS) if any(line[list(KINDS)]) else ""
+        counts = " + ".join(f"{line[kind]:.0f}" for kind in KINDS)
+        lost = re.sub(r"( \+ 0)+$", "", counts) if any(line[list(KINDS)]) else ""
         words = f"{title} ({lost})" if lost else title
         names.append(Name(words, *ends[1], style.colour))
     axes.margins(x=0.12, y=0.08)
