@@ -101,8 +101,8 @@ def settings_claim(corners: pd.DataFrame) -> str:
         for row in best_of(corners).to_dict("records")
     ]
     return (
-        f"It is kept, here one of {SHOWN:g}, over {RANGES} (at {USUAL}), DT being the step in "
-        f"seconds, {'; '.join(words)}."
+        f"It is kept, here one of {SHOWN:g} and over the same (in brackets: where nothing is "
+        f"varied), DT being the step in seconds, {'; '.join(words)}."
     )
 
 
@@ -115,7 +115,7 @@ def rate_claim(corners: pd.DataFrame, rates: pd.DataFrame) -> str:
     near, far = best[best["off"] <= GOOD], best[best["off"] > GOOD]
     words = [
         f"within {near['off'].max():.3f} in {listed(list(near['engine']))}, and within "
-        f"{near['off_over_all'].max():.3f} over {RANGES}"
+        f"{near['off_over_all'].max():.3f} over the same"
     ] * bool(len(near))
     for row in far.to_dict("records"):
         slides = f", its corner sliding at {_off(row['slide'])} times the speed of its approach"
