@@ -1,6 +1,7 @@
 """What every source answers: the outcome of a case, its peak, its impacts, what it cost."""
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ class Outcome(enum.Enum):
     ROCKED = "rocked"
     OVERTURNED = "overturned"
     FAILED = "failed"
+    SLID = "slid"
 
     @property
     def sentence(self) -> str:
@@ -27,6 +29,7 @@ _SENTENCES = {
     Outcome.ROCKED: "the block rocked and survived",
     Outcome.OVERTURNED: "the block overturned",
     Outcome.FAILED: "no usable result",
+    Outcome.SLID: "the box slid along the base",
 }
 
 
@@ -120,6 +123,10 @@ class Response:
         Largest depth [m] of an engine's lowest corner in the base; nan for the reference.
     hop_m : float
         Largest height [m] of an engine's lowest corner above the base; nan for the reference.
+    slips : tuple of float
+        Distances [m] relative to the base by which a box slid, one a slip, with their signs.
+    observables : mapping
+        Name -> value of what else its scene shows: of a frame how far its bodies came apart, ...
     """
 
     outcome: Outcome
@@ -140,6 +147,8 @@ class Response:
     slip_m: float = float("nan")
     sink_m: float = float("nan")
     hop_m: float = float("nan")
+    slips: tuple[float, ...] = ()
+    observables: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def failure(

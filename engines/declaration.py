@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from analytic.block import RigidBlock
+from engines.layouts import Ability
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
@@ -126,7 +127,7 @@ class Preset:
 
     def ordinary_step_s(self, scene: Scene) -> float:
         """Return the ordinary step [s] in a scene."""
-        p = scene.block.p
+        p = scene.system.p
         if scene.step is not None:
             return scene.step / p
         if self.stepping is not Stepping.FIXED:
@@ -157,6 +158,8 @@ class Engine:
         Whether the published studies ask it by default.
     frames, geometries : tuple of str
         Those of `FRAMES` and `GEOMETRIES` that it has.
+    abilities : tuple of Ability
+        What its adapter can build beyond one body.
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
@@ -197,6 +200,7 @@ class Engine:
     core: bool = False
     frames: tuple[str, ...] = FRAMES
     geometries: tuple[str, ...] = ("box",)
+    abilities: tuple[Ability, ...] = ()
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
     scatter: float = 0.0
@@ -246,6 +250,9 @@ class Engine:
     def lacks(self, scene: Scene) -> str:
         """Say what of a scene the engine cannot do, or return an empty string."""
         wanted = scene.settings.get("geometry")
+        for asked in scene.layout.asks:
+            if asked not in self.abilities:
+                return f"{self.title} is not built here for {asked.value}"
         if scene.frame not in self.frames:
             return f"{self.title} has no frame {scene.frame!r}"
         if wanted in GEOMETRIES and wanted not in self.geometries:

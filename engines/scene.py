@@ -1,4 +1,4 @@
-"""What is simulated: one block, one shaken base, and how."""
+"""What is simulated: bodies on a shaken base, and how."""
 
 import itertools
 import math
@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from difflib import get_close_matches
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
-from analytic.block import RigidBlock
 from analytic.checks import finite, positive
 from analytic.motion import SEGMENT_COLUMNS, Motion
 from engines.hints import TRUE, Hints
+from engines.layouts import Body, Layout, System, layout_of
 
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
@@ -26,33 +26,14 @@ convex hull of its corners."""
 SettingsT = TypeVar("SettingsT")
 
 
-class Beginning(NamedTuple):
-    """Place [m, rad] and velocities [m/s, rad/s] of a block's centre at t = 0.
-
-    They are relative to the base, which is at rest then.
-    """
-
-    x: float
-    z: float
-    theta: float
-    velocity_x: float
-    velocity_z: float
-    rate: float
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the block stands upright and still."""
-        return self.theta == 0.0 == self.rate
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """One block on one shaken base, and how it is to be simulated.
+    """Bodies on one shaken base, and how they are to be simulated.
 
     Parameters
     ----------
-    block : RigidBlock
-        Its restitution is not used: the impact is the engine's own.
+    system : RigidBlock, or another of `engines.layouts.LAYOUTS`
+        What stands on the base. Its restitution is not used: the impact is the engine's own.
     motion : Motion
         Horizontal motion of the base.
     start : pair of float, optional
@@ -99,7 +80,7 @@ class Scene:
         If a value is not allowed; the message says what is.
     """
 
-    block: RigidBlock
+    system: System
     motion: Motion
     start: tuple[float, float] = (0.0, 0.0)
     preset: str | None = None
@@ -143,7 +124,7 @@ class Scene:
         if abs(theta) >= 0.5 * math.pi:
             words = "it must be between -pi/2 and pi/2 rad"
             raise ValueError(f"theta of the start is {theta!r}; {words}")
-        if abs(theta) == self.block.alpha and rate == 0.0 and not _moves(self.motion):
+        if abs(theta) == self.system.alpha and rate == 0.0 and not _moves(self.motion):
             words = "it must not be the unstable equilibrium where nothing moves"
             raise ValueError(f"start is {start!r}; {words}")
         return theta, rate
@@ -157,42 +138,20 @@ class Scene:
         return duration
 
     @property
-    def depth_m(self) -> float:
-        """Size of the block out of the plane [m]."""
-        return self.block.width if self.depth is None else self.depth
+    def layout(self) -> Layout:
+        """Which bodies there are, what touches what, and which of them rock."""
+        return layout_of(self.system, self.density, self.depth, self.start)
 
     @property
-    def mass(self) -> float:
-        """Mass of the block [kg]."""
-        return self.density * self.block.width * self.block.height * self.depth_m
-
-    @property
-    def inertia(self) -> tuple[float, float, float]:
-        """Moments of inertia [kg m2] about the centre of mass and the axes x, y, z."""
-        x, y, z = self.block.width, self.depth_m, self.block.height
-        twelfth = self.mass / 12.0
-        return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
+    def bodies(self) -> tuple[Body, ...]:
+        """The bodies, in the order of a world's state."""
+        return self.layout.bodies
 
     @property
     def side(self) -> float:
         """Corner about which the block turns at first: -1 or 1, or 0 if it is at rest."""
         theta, rate = self.start
         return math.copysign(1.0, theta or rate) if theta or rate else 0.0
-
-    @property
-    def beginning(self) -> Beginning:
-        """Place and velocities at t = 0, from which every engine sets out."""
-        (theta, rate), side = self.start, self.side
-        half_width, half_height = 0.5 * side * self.block.width, 0.5 * self.block.height
-        sine, cosine = math.sin(theta), math.cos(theta)
-        return Beginning(
-            x=half_width * (1.0 - cosine) + half_height * sine,
-            z=half_width * sine + half_height * cosine,
-            theta=theta,
-            velocity_x=rate * (half_width * sine + half_height * cosine),
-            velocity_z=rate * (half_width * cosine - half_height * sine),
-            rate=rate,
-        )
 
     def choose(self, settings: SettingsT) -> SettingsT:
         """Return an engine's settings with this scene's own in their place.

@@ -1,8 +1,10 @@
-"""What a built scene is told and must answer: steps, poses, and the moment of a velocity."""
+"""What a built scene is told and must answer: steps, states, and the moment of a velocity."""
 
 import enum
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
+
+from analytic.motion import FloatArray
 
 
 class Moment(enum.Enum):
@@ -102,11 +104,11 @@ class Step(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Where the block is, relative to its base, as the engine reports it.
+    """Where a body is, relative to the base, as the engine reports it: a row of a world's state.
 
-    x, z [m] are the horizontal and vertical position of the centre of mass, zero under the
-    centre of the block at rest and at the level of the base; theta [rad] is positive when the
-    block leans towards +x; rate [rad/s] is the angular velocity, at the world's `Moment`.
+    x, z [m] are the horizontal and vertical position of the centre of mass, zero where the base's
+    middle began and at the level of the base; theta [rad] is positive when the body leans towards
+    +x; rate [rad/s] is the angular velocity, at the world's `Moment`.
     """
 
     x: float
@@ -116,14 +118,19 @@ class Pose(NamedTuple):
 
 
 class World(Protocol):
-    """A built scene, the block where and as fast as `Scene.beginning` says."""
+    """A built scene, its bodies where and as fast as `Scene.bodies` says."""
 
     @property
     def moment(self) -> Moment:
-        """At which moment of a step the velocity of a pose holds."""
+        """At which moment of a step the velocities of a state hold."""
 
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
+    def state(self) -> Sequence[Sequence[float]] | FloatArray:
+        """Read every body's `Pose` back, a row each; the next call may overwrite what it returns.
+
+        Returns
+        -------
+        array_like (bodies, 4)
+        """
 
     def fault(self) -> str:
         """Say what the engine knows to have gone wrong, or return an empty string.

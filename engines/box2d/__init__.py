@@ -3,6 +3,7 @@
 from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld, script
 from engines.box2d.settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.layouts import Ability
 
 ENGINE = Engine(
     name="box2d",
@@ -11,6 +12,7 @@ ENGINE = Engine(
     packages=("Box2D",),
     install="rocking[box2d]",
     build=Box2DWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",

@@ -9,8 +9,12 @@ radius, and half is the height by which its floor is raised.
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
 from engines.box2d.settings import Box2DSettings
 from engines.declaration import Precision
+from engines.layouts import BASE
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.script import Script, filled, settings_of
@@ -27,16 +31,35 @@ MANUAL = "the library's own hello world, 1/60 s with 6 and 2 iterations"
 
 def numbers(scene: Scene, s: Box2DSettings, dt_s: float) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
-    at, block, unit, sunk = scene.beginning, scene.block, s.unit_of(scene), s.sunk_of(scene)
-    reach = s.reach_of(scene, dt_s)
+    unit, sunk, reach = s.unit_of(scene), s.sunk_of(scene), s.reach_of(scene, dt_s)
     return SimpleNamespace(
         **{"unit": unit, "sunk": sunk, "reach": reach, "high": reach - sunk},
-        **{"x": 0.5 * block.width * unit, "z": 0.5 * block.height * unit},
-        **{"far": FLOOR_HEIGHTS * block.height * unit},
-        **{"mass": scene.mass, "inertia": scene.inertia[1] * unit**2},
+        **{"far": FLOOR_HEIGHTS * scene.bodies[0].height * unit},
+        bodies=[of_body(scene, number, unit, sunk) for number in range(len(scene.bodies))],
+    )
+
+
+def of_body(scene: Scene, number: int, unit: float, sunk: float) -> SimpleNamespace:
+    """Return the numbers of a body, and of the corners by which it touches others."""
+    body, contacts = scene.bodies[number], scene.layout.contacts
+    at, x, z = body.at, 0.5 * body.width * unit, 0.5 * body.height * unit
+    corners = [
+        SimpleNamespace(at=(side * x, contact.face * z), **filtered(contact.on, k))
+        for contact in contacts
+        if contact.body == number
+        for k, side in enumerate((-1.0, 1.0))
+    ]
+    return SimpleNamespace(
+        **{"x": x, "z": z, "mass": body.mass, "inertia": body.inertia[1] * unit**2},
         **{"place": (at.x * unit, at.z * unit - sunk), "angle": -at.theta, "at_rest": at.at_rest},
         **{"velocity": (at.velocity_x * unit, at.velocity_z * unit), "rate": -at.rate},
+        **{"corners": corners, "carried": any(contact.on == number for contact in contacts)},
     )
+
+
+def filtered(on: int, side: int) -> dict[str, int]:
+    """Return what a corner is and meets: a floor of its own side, or any body that rests on it."""
+    return {"own": 1 << side, "meets": 4 << side} if on == BASE else {"own": 16, "meets": 32}
 
 
 def values(scene: Scene, s: Box2DSettings) -> SimpleNamespace:
@@ -51,23 +74,33 @@ def values(scene: Scene, s: Box2DSettings) -> SimpleNamespace:
 
 
 def build(Box2D: Any, n: Any, s: Any) -> Any:
-    """Build a block on one kinematic body, or on one for each corner."""
+    """Build bodies on one kinematic body, or on one for each corner of a block."""
     world = Box2D.b2World(gravity=(0.0, 0.0))
     world.continuousPhysics = s.continuous
-    block = world.CreateDynamicBody(position=n.place, angle=n.angle)
-    if s.geometry == "corners":
-        for k, x in enumerate((-n.x, n.x)):
-            shape = Box2D.b2CircleShape(pos=(x, -n.z), radius=n.reach)
-            meets = Box2D.b2Filter(categoryBits=1 << k, maskBits=4 << k)
-            corner = block.CreateFixture(shape=shape, friction=s.friction, filter=meets)
-            corner.restitution = s.restitution
-    else:
-        shape = Box2D.b2PolygonShape(box=(n.x, n.z))
-        block.CreateFixture(shape=shape, friction=s.friction, restitution=s.restitution)
-    block.massData = Box2D.b2MassData(mass=n.mass, center=(0.0, 0.0), I=n.inertia)
-    if not n.at_rest:
-        block.linearVelocity, block.angularVelocity = n.velocity, n.rate
-    block.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
+    bodies = []
+    for b in n.bodies:
+        block = world.CreateDynamicBody(position=b.place, angle=b.angle)
+        bodies.append(block)
+        if s.geometry == "corners":
+            for c in b.corners:
+                shape = Box2D.b2CircleShape(pos=c.at, radius=n.reach)
+                meets = Box2D.b2Filter(categoryBits=c.own, maskBits=c.meets)
+                corner = block.CreateFixture(shape=shape, friction=s.friction, filter=meets)
+                corner.restitution = s.restitution
+            if b.carried:
+                low = s.skins * Box2D.b2_polygonRadius - b.z
+                shape = Box2D.b2PolygonShape(
+                    vertices=[(-b.x, low), (b.x, low), (b.x, b.z), (-b.x, b.z)]
+                )
+                meets = Box2D.b2Filter(categoryBits=32, maskBits=16)
+                block.CreateFixture(shape=shape, friction=s.friction, filter=meets)
+        else:
+            shape = Box2D.b2PolygonShape(box=(b.x, b.z))
+            block.CreateFixture(shape=shape, friction=s.friction, restitution=s.restitution)
+        block.massData = Box2D.b2MassData(mass=b.mass, center=(0.0, 0.0), I=b.inertia)
+        if not b.at_rest:
+            block.linearVelocity, block.angularVelocity = b.velocity, b.rate
+        block.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
     top = -s.skins * Box2D.b2_polygonRadius  # a polygon acts from its skin on
     ground = [(-n.far, -n.far), (n.far, -n.far), (n.far, top), (-n.far, top)]
     floors = [world.CreateKinematicBody(position=(0.0, n.high)) for _ in range(s.pairs)]
@@ -76,7 +109,7 @@ def build(Box2D: Any, n: Any, s: Any) -> Any:
         fixture = floor.CreateFixture(shape=shape, friction=s.friction)
         if s.geometry == "corners":
             fixture.filterData = Box2D.b2Filter(categoryBits=4 << k, maskBits=1 << k)
-    return world, block, floors
+    return world, bodies, floors
 
 
 def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
@@ -94,7 +127,7 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
 
 
 class Box2DWorld:
-    """A block on one kinematic body, or on one for each corner."""
+    """Bodies on one kinematic body, or on one for each corner of a block."""
 
     moment = Moment.MIDDLE
 
@@ -103,8 +136,10 @@ class Box2DWorld:
         self._moving = scene.frame == "world"
         self._dt = self._speed = self._place = 0.0
         n, self._values = numbers(scene, settings, dt_s), values(scene, settings)
-        self._unit, self._half, self._sunk, self._reach = n.unit, (n.x, n.z), n.sunk, n.reach
-        self._world, self._body, self._floors = build(imported("Box2D"), n, self._values)
+        self._unit, self._sunk, self._reach = n.unit, n.sunk, n.reach
+        self._half = n.bodies[0].x, n.bodies[0].z
+        self._world, self._bodies, self._floors = build(imported("Box2D"), n, self._values)
+        self._body, self._state = self._bodies[0], np.zeros((len(self._bodies), len(Pose._fields)))
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -130,15 +165,13 @@ class Box2DWorld:
         self._world.Step(step.dt_s, s.iterations, s.position_iterations)
         self._speed, self._place = felt, step.base_x if self._moving else 0.0
 
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
-        body, (x, z) = self._body, self._body.position
-        return Pose(
-            x / self._unit - self._place,
-            (z + self._sunk) / self._unit,
-            -body.angle,
-            -body.angularVelocity,
-        )
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        for row, body in zip(self._state, self._bodies, strict=True):
+            x, z = body.position
+            place, level = x / self._unit - self._place, (z + self._sunk) / self._unit
+            row[:] = place, level, -body.angle, -body.angularVelocity
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken."""
@@ -146,15 +179,18 @@ class Box2DWorld:
 
     def close(self) -> None:
         """Release the engine's memory."""
-        for body in (self._body, *self._floors):
+        for body in (*self._bodies, *self._floors):
             self._world.DestroyBody(body)
 
     def _read_back(self, scene: Scene) -> str:
-        body, s = self._body, self.settings
+        body, s, masses = self._body, self.settings, {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self._bodies, strict=True)):
+            masses[f"mass {number}"] = (wanted.mass, found.mass)
+            inertia = wanted.inertia[1] * self._unit**2
+            masses[f"inertia {number}"] = (inertia, found.inertia)
         return disagreement(
             {
-                "mass": (scene.mass, body.mass),
-                "inertia": (scene.inertia[1] * self._unit**2, body.inertia),
+                **masses,
                 "friction": (s.friction, body.fixtures[0].friction),
                 "restitution": (s.restitution, body.fixtures[0].restitution),
                 "sleeping": (s.sleeping, body.sleepingAllowed),

@@ -27,14 +27,14 @@ from engines.world import Grip, Moment, Pose, Step
 
 def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
-    at, unit = scene.beginning, s.unit
-    half, floor = counted(half_size(scene), unit), counted(floor_half_size(scene), unit)
-    radius = s.corner_radius * scene.block.width
+    (body,), unit = scene.bodies, s.unit
+    at, half, floor = body.at, counted(half_size(body), unit), counted(floor_half_size(scene), unit)
+    radius = s.corner_radius * scene.system.width
     return SimpleNamespace(
         **{"half": half, "size": [2.0 * x for x in half], "floor": [2.0 * x for x in floor]},
         **{"beneath": (0.0, 0.0, -floor[2]), "radius": radius * unit},
-        corners=[counted(each, unit) for each in corner_spheres(scene, radius, planar=s.planar)],
-        **{"mass": scene.mass, "inertia": tuple(unit * unit * moment for moment in scene.inertia)},
+        corners=[counted(each, unit) for each in corner_spheres(body, radius, planar=s.planar)],
+        **{"mass": body.mass, "inertia": tuple(unit * unit * moment for moment in body.inertia)},
         coordinates=IN_PLANE if s.planar else IN_SPACE,
         places=(at.x * unit, at.z * unit, at.theta),
         speeds=(at.velocity_x * unit, at.velocity_z * unit, at.rate),
@@ -162,12 +162,12 @@ class DartWorld:
         if self._moving:
             self._place = step.base_x * unit
 
-    def pose(self) -> Pose:
+    def state(self) -> tuple[Pose]:
         """Read the block's pose back."""
         x, z, theta = self._at
         q, unit = self._joint.getPositions().tolist(), self._unit
         rate = self._joint.getVelocity(theta)
-        return Pose((q[x] - self._place) / unit, q[z] / unit, q[theta], rate)
+        return (Pose((q[x] - self._place) / unit, q[z] / unit, q[theta], rate),)
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
@@ -204,14 +204,15 @@ class DartWorld:
 
     def _read_back(self, scene: Scene) -> str:
         s, world, solver = self._s, self._world, self._world.getConstraintSolver()
+        (body,) = scene.bodies
         sleeps = hasattr(world, "getDeactivationOptions")
         splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self._floor.getShapeNode(0), self._block.getShapeNode(0)]
         top, own = (node.getDynamicsAspect() for node in shapes)
-        moment = scene.inertia[1] * self._unit**2 if s.exact_inertia else None
+        moment = body.inertia[1] * self._unit**2 if s.exact_inertia else None
         return disagreement(
             {
-                "mass": (scene.mass, self._block.getMass()),
+                "mass": (body.mass, self._block.getMass()),
                 "moment": (moment, self._block.getInertia().getMoment()[1, 1]),
                 "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
                 "restitution": (

@@ -50,11 +50,12 @@ IN_SPACE = (4, 6, 8)
 
 def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
     """Return the numbers of a scene."""
-    at, radius = scene.beginning, s.corner_radius * scene.block.width
+    (body,) = scene.bodies
+    at, radius = body.at, s.corner_radius * body.width
     return SimpleNamespace(
-        **{"mass": scene.mass, "size": [2.0 * half for half in half_size(scene)]},
+        **{"mass": body.mass, "size": [2.0 * half for half in half_size(body)]},
         **{"plane": [list(row) for row in PLANE], "radius": radius},
-        corners=[list(each) for each in corner_spheres(scene, radius, planar=s.planar)],
+        corners=[list(each) for each in corner_spheres(body, radius, planar=s.planar)],
         state=[at.z, at.x, at.theta, at.velocity_z, at.velocity_x, at.rate],
         **{"theta": at.theta, "place": [at.x, 0.0, at.z]},
         **{"spin": [0.0, at.rate, 0.0], "velocity": [at.velocity_x, 0.0, at.velocity_z]},
@@ -63,7 +64,7 @@ def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
 
 def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
     """Return settings as the library is given them, for ordinary steps dt_s [s]."""
-    block, continuous = scene.block, s.solver == CENIC
+    block, continuous = scene.system, s.solver == CENIC
     scale = block.p * block.R
     config = {
         "time_step": 0.0 if continuous else dt_s,
@@ -75,7 +76,7 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
     material = {
         "point_stiffness": None
         if s.stiffness is None
-        else 2.0 * s.stiffness * scene.mass / dt_s**2,
+        else 2.0 * s.stiffness * scene.bodies[0].mass / dt_s**2,
         "dissipation": None if s.dissipation is None else s.dissipation / scale,
     }
     return SimpleNamespace(
@@ -169,7 +170,7 @@ class DrakeWorld:
         self._s, self._dt = settings, dt_s
         self._continuous = settings.solver == CENIC
         self._count, self._time, self._problem = 0, 0.0, ""
-        self._gravity = scene.block.gravity
+        self._gravity = scene.system.gravity
         self._velocity_of = mean_velocity_of(scene.motion.segments())
         built = build(library(), numbers(scene, settings), values(scene, settings, dt_s))
         self._plant, scene_graph, self._block, self._simulator, self._context = built
@@ -212,14 +213,14 @@ class DrakeWorld:
         self._time = end_s
         return int(self._integrator.get_num_steps_taken() - before)
 
-    def pose(self) -> Pose:
+    def state(self) -> tuple[Pose]:
         """Read the block's pose back."""
         state = self._plant.GetPositionsAndVelocities(self._context).tolist()
         if self._s.planar:
             x, z, theta, rate = (state[i] for i in IN_PLANE)
-            return Pose(x, z, theta, rate)
+            return (Pose(x, z, theta, rate),)
         x, z, rate = (state[i] for i in IN_SPACE)
-        return Pose(x, z, 2.0 * math.atan2(state[2], state[0]), rate)
+        return (Pose(x, z, 2.0 * math.atan2(state[2], state[0]), rate),)
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the library gave up on."""
@@ -230,7 +231,7 @@ class DrakeWorld:
         self._simulator = None
 
     def _read_back(self, scene: Scene, scene_graph: Any) -> str:
-        s, plant = self._s, self._plant
+        s, plant, (body,) = self._s, self._plant, scene.bodies
         inspector = scene_graph.model_inspector()
         found = [
             inspector.GetProximityProperties(shape).GetProperty("material", "coulomb_friction")
@@ -240,8 +241,8 @@ class DrakeWorld:
         turning = inertia.CalcRotationalInertia().get_moments()
         problem = disagreement(
             {
-                "mass": (scene.mass, self._block.get_mass(self._context)),
-                "moment": (scene.inertia[1], turning[1]),
+                "mass": (body.mass, self._block.get_mass(self._context)),
+                "moment": (body.inertia[1], turning[1]),
                 "friction": (s.friction, found[0].static_friction()),
                 "step": (0.0 if self._continuous else self._dt, plant.time_step()),
             }

@@ -1,6 +1,7 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Preset, Stepping
+from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
@@ -21,6 +22,7 @@ ENGINE = Engine(
     packages=("mujoco",),
     install="rocking",
     build=world_of,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",

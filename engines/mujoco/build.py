@@ -9,8 +9,8 @@ from engines.mujoco.contact import (
     arrays_of,
     begin_hold,
     notice_step,
-    pose_now,
     prepare_step,
+    read_now,
 )
 from engines.mujoco.fast import drive, memory_of, obstacle
 from engines.mujoco.model import OPTIONS, coordinates, model_xml
@@ -19,9 +19,10 @@ from engines.mujoco.settings import (
     MujocoSettings,
     kept,
 )
+from engines.parts.compiled import FloatArray
 from engines.parts.readback import disagreement
 from engines.scene import Scene
-from engines.world import Driver, Moment, Pose, Step
+from engines.world import Driver, Moment, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
@@ -45,12 +46,12 @@ class MujocoWorld:
         self._model, self._data = self._built.model, self._built.data
         self._option = self._model.opt
         self._fault = self._read_back(scene)
-        if not scene.beginning.at_rest:
+        if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
         self._holds = Hold.blank()
         self._held = self._holds[0]
         begin_hold(self._held, scene, s, dt_s, self._model.npair)
-        self._arrays = tuple(arrays_of(self._model, self._data, self._held))
+        self._arrays = tuple(arrays_of(self._model, self._data, self._held, scene))
         self._memory = memory_of(self._model, self._data)
         # the library would write its warnings to a file; they are counted and read from `fault`
         self._mj.set_mju_user_warning(_ignore)
@@ -76,9 +77,10 @@ class MujocoWorld:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
         return obstacle()
 
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
-        return Pose(*pose_now(self._holds, self._arrays))
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        read_now(self._holds, self._arrays)
+        return self._arrays[-1]
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the engine warned of."""
@@ -99,11 +101,13 @@ class MujocoWorld:
     def _read_back(self, scene: Scene) -> str:
         s, model = self._s, self._model
         pairs: dict[str, tuple[Any, Any]] = {
-            "mass": (scene.mass, model.body_mass[-1]),
             "timestep": (LIBRARY_STEP_S, self._option.timestep),
             "friction": (s.friction, model.geom_friction[-1, 0]),
         }
-        pairs |= {f"inertia {i}": (scene.inertia[i], model.body_inertia[-1, i]) for i in range(3)}
+        for number, body in enumerate(scene.bodies, len(model.body_mass) - len(scene.bodies)):
+            pairs[f"mass {number}"] = (body.mass, model.body_mass[number])
+            found = model.body_inertia[number]
+            pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}
         pairs |= {name: self._read_option(name) for name in OPTIONS}
         if s.impedance is not None:
             pairs |= {

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from engines.layouts import LOWER, Ability
 from engines.mujoco.model import direct_reference
 from engines.mujoco.settings import MujocoSettings
 from engines.parts.compiled import FloatArray, State, fill, kernel, shared
@@ -35,7 +36,7 @@ class Hold(State):
     planar, moving, base_velocity : bool
         Whether the block has three coordinates, whether the base moves, and with a velocity.
     width, height : float
-        Of the block, the half of the latter [m].
+        Of a body that rocks, the half of the latter [m].
     form : int
         Of the contact's reference, one of `UNSET`, `SCALED`, `DIRECT`.
     time_constant, ratio : float
@@ -46,16 +47,14 @@ class Hold(State):
         Whether the contact changes with every step, and what for.
     carry : float
         Gap [m] within which the pivot stays in contact; 0 for no such thing.
-    pairs, corners : int
-        Pairs that touch, and how many of them at each side.
-    weight : float
-        Of the block, over the corners at a side [N].
+    touching, pairs, corners : int
+        Contacts of the layout, pairs that touch, and how many of them at each side of a contact.
+    single, stacked : bool
+        Whether all corners of a contact share one pair, and whether bodies rest on others.
     ordinary_squared, impedance_squared : float
         Squares of the ordinary step and of the impedance.
     dt, time : float
         Length and end of the last step [s].
-    yields : float
-        By how much [m/s2] a corner that carries the block yields to its force.
     sliding : float
         Damping along the base in this step.
     moved, velocity : float
@@ -80,25 +79,36 @@ class Hold(State):
     reflects: bool
     preload: bool
     carry: float
+    touching: int
     pairs: int
     corners: int
-    weight: float
+    single: bool
+    stacked: bool
     ordinary_squared: float
     impedance_squared: float
     dt: float
     time: float
-    yields: float
     sliding: float
     moved: float
     velocity: float
     reflection: Reflection
 
 
-class Arrays(NamedTuple):
-    """The library's arrays, and two of the same lengths as its pairs.
+SIDE, PIVOT, BODY, FACE, ON, WEIGHT, YIELDS, RESISTED = range(8)
+"""Columns of pairs.
 
-    resisted is by how much [m/s2] each corner yields at rest; sides is +1 for corners at -x, -1 for
-    those at +x, and 0 for a single pair.
++1 for corners at -x, -1 for those at +x, 0 for a single pair; about which side the body turns for
+it to be the pivot; whose corner it is, of which face, and on which body (`engines.layouts.Contact`);
+the weight [N] that it carries as a pivot; by how much [m/s2] it yields to that, and to what it
+carries at rest.
+"""
+
+
+class Arrays(NamedTuple):
+    """The library's arrays, and three of what it is asked about.
+
+    pairs has a row for each of the library's, homes is where each body's centre is at rest and half
+    of its height [m], and state the last one that was read.
     """
 
     position: FloatArray
@@ -110,8 +120,9 @@ class Arrays(NamedTuple):
     geom_reference: FloatArray
     surface_velocity: FloatArray
     base_place: FloatArray
-    resisted: FloatArray
-    sides: FloatArray
+    pairs: FloatArray
+    homes: FloatArray
+    state: FloatArray
 
 
 class Forces(NamedTuple):
@@ -125,7 +136,6 @@ class Forces(NamedTuple):
 
 def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> None:
     """Prepare for a scene in ordinary steps of `dt_s` [s], of which so many pairs touch."""
-    corners = max(pairs // 2, 1)
     impedance = 1.0 if s.impedance is None else s.impedance[1]
     sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
     fill(
@@ -133,8 +143,8 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
         planar=s.planar,
         moving=scene.frame == "world",
         base_velocity=s.base_velocity,
-        width=scene.block.width,
-        height=0.5 * scene.block.height,
+        width=scene.system.width,
+        height=0.5 * scene.system.height,
         damping=s.damping or 0.0,
         sliding_damping=sliding,
         sliding=sliding,
@@ -144,13 +154,14 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
         by_phase=s.by_phase,
         reflects=s.reflection,
         preload=s.preload,
-        carry=(s.carry or 0.0) * scene.block.width,
+        carry=(s.carry or 0.0) * scene.system.width,
+        touching=len(scene.layout.contacts),
         pairs=pairs,
-        corners=corners,
-        weight=scene.mass * scene.block.gravity / corners,
+        corners=max(pairs // len(scene.layout.contacts) // 2, 1),
+        single=s.geometry != "corners",
+        stacked=Ability.STACKED in scene.layout.asks,
         ordinary_squared=dt_s**2,
         impedance_squared=impedance**2,
-        yields=(1.0 - impedance) * scene.block.gravity,
     )
     if s.solref is not None:
         fill(held, form=SCALED, time_constant=s.solref[0], ratio=s.solref[1])
@@ -159,9 +170,21 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
     begin_reflection(held.reflection, scene, dt_s)
 
 
-def arrays_of(model: Any, data: Any, held: Hold) -> Arrays:
+def pairs_of(held: Hold, scene: Scene) -> FloatArray:
+    """Return what is known of each pair, in the library's order: by contacts, those at -x first."""
+    rows, yields = [], (1.0 - held.impedance) * scene.system.gravity
+    for contact in scene.layout.contacts if held.pairs else ():
+        weight = scene.layout.carried(contact) * scene.system.gravity / held.corners
+        for side in (0.0,) if held.single else (1.0, -1.0):
+            pivot = contact.face * side
+            row = (side, pivot, *contact, weight, yields, 0.5 * yields)
+            rows += [row] * (1 if held.single else int(held.corners))
+    return np.array(rows).reshape(-1, 8)
+
+
+def arrays_of(model: Any, data: Any, held: Hold, scene: Scene) -> Arrays:
     """Return the library's arrays, which share its memory."""
-    pairs = int(held.pairs)
+    homes = np.array([(*body.home, 0.5 * body.height) for body in scene.bodies])
     return Arrays(
         data.qpos,
         data.qvel,
@@ -172,16 +195,16 @@ def arrays_of(model: Any, data: Any, held: Hold) -> Arrays:
         model.geom_solref,
         getattr(model, "geom_surfacevel", np.zeros((0, 3))),  # only a base that moves needs it
         data.mocap_pos,
-        np.full(pairs, 0.5 * held.yields),
-        np.repeat((1.0, -1.0), pairs // 2) if pairs > 1 else np.zeros(pairs),
+        pairs_of(held, scene),
+        homes,
+        np.zeros((len(homes), len(Pose._fields))),
     )
 
 
 @kernel
-def pose_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> tuple[float, ...]:
-    """Return the block's pose, for Python."""
-    pose = pose_of(holds[0], Arrays(*arrays))
-    return pose.x, pose.z, pose.theta, pose.rate
+def read_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> None:
+    """Read the state, for Python."""
+    read(holds[0], Arrays(*arrays))
 
 
 @kernel
@@ -204,12 +227,24 @@ def notice_step(
 
 
 @shared
-def pose_of(held: Hold, arrays: Arrays) -> Pose:
-    """Return the block's pose."""
+def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
+    """Return the pose of a body."""
     q, v = arrays.position, arrays.velocity
     if held.planar:
-        return Pose(q[0] - held.moved, q[1] + held.height, q[2], v[2])
-    return Pose(q[0] - held.moved, q[2], 2.0 * math.atan2(q[5], q[3]), v[4])
+        x, z = arrays.homes[body, 0], arrays.homes[body, 1]
+        i = 3 * body
+        return Pose(q[i] + x - held.moved, q[i + 1] + z, q[i + 2], v[i + 2])
+    i, j = 7 * body, 6 * body
+    return Pose(q[i] - held.moved, q[i + 2], 2.0 * math.atan2(q[i + 5], q[i + 3]), v[j + 4])
+
+
+@shared
+def read(held: Hold, arrays: Arrays) -> None:
+    """Read the state."""
+    for body in range(len(arrays.homes)):
+        pose = pose_of(held, arrays, body)
+        arrays.state[body, 0], arrays.state[body, 1] = pose.x, pose.z
+        arrays.state[body, 2], arrays.state[body, 3] = pose.theta, pose.rate
 
 
 @shared
@@ -246,13 +281,6 @@ def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def put(numbers: FloatArray, value: float) -> None:
-    """Write a number into every place."""
-    for i in range(len(numbers)):
-        numbers[i] = value
-
-
-@shared
 def put_pair(table: FloatArray, first: float, second: float) -> None:
     """Write two numbers into every row."""
     for row in range(len(table)):
@@ -262,28 +290,35 @@ def put_pair(table: FloatArray, first: float, second: float) -> None:
 @shared
 def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
     """Set from which gap on each contact acts, and preload the one that carries the block."""
-    margin, sag = arrays.pair_margin, held.yields * held.ordinary_squared
-    if step.grip != Grip.REST:
-        put(margin, 0.0)
-        put(arrays.resisted, 0.5 * held.yields)
-    elif step.side != 0.0:
-        # the free corner, about to lift, is still in reach where no weight presses it
-        put(margin, sag)
-    else:
+    if step.grip == Grip.REST and step.side == 0.0:
         hold_at_rest(held, arrays, step)
-    if step.side == 0.0:
         return
-    if held.pairs == 1:
-        # all corners of a box share one pair, and the free one must not touch early
-        lean = 0.5 * held.width * abs(pose_of(held, arrays).theta)
-        put(margin, max(sag, min(held.carry, lean)))
-        return
-    first = 0 if step.side < 0.0 else held.corners
-    for pivot in range(first, first + held.corners):
-        margin[pivot] = held.carry
-        if held.preload:
-            preload = held.yields * step.kick_s / step.dt_s
-            arrays.pair_reference[pivot, 0] = -preload * held.impedance_squared / held.carry
+    margin, pairs = arrays.pair_margin, arrays.pairs
+    for i in range(held.pairs):
+        # the free corner, about to lift, is still in reach where no weight presses it
+        sag = pairs[i, YIELDS] * held.ordinary_squared
+        margin[i] = sag if step.grip == Grip.REST else 0.0
+        if step.grip != Grip.REST:
+            pairs[i, RESISTED] = 0.5 * pairs[i, YIELDS]
+        if step.side == 0.0:
+            continue
+        if held.single:
+            # all corners of a box share one pair, and the free one must not touch early
+            theta = pose_of(held, arrays, int(pairs[i, BODY])).theta
+            margin[i] = max(sag, min(held.carry, 0.5 * held.width * abs(theta)))
+        elif pairs[i, PIVOT] == step.side:
+            hold_pivot(held, arrays, step, i)
+        elif held.stacked and step.grip == Grip.STRIKE:
+            margin[i] = held.carry  # below and above, all close in the same step
+
+
+@shared
+def hold_pivot(held: Hold, arrays: Arrays, step: Step, pair: int) -> None:
+    """Keep a pivot in contact, and press it."""
+    arrays.pair_margin[pair] = held.carry
+    if held.preload:
+        preload = arrays.pairs[pair, YIELDS] * step.kick_s / step.dt_s
+        arrays.pair_reference[pair, 0] = -preload * held.impedance_squared / held.carry
 
 
 @shared
@@ -294,14 +329,25 @@ def hold_at_rest(held: Hold, arrays: Arrays, step: Step) -> None:
     higher is held from where it is, and comes down.
     """
     reach = step.kick_s * step.dt_s
-    all_of_it = held.yields * reach
-    pose = pose_of(held, arrays)
-    level = pose.z - held.height * math.cos(pose.theta)
+    for i in range(held.pairs):
+        all_of_it = arrays.pairs[i, YIELDS] * reach
+        resisted = arrays.pairs[i, RESISTED] * reach
+        pressed = min(max(gap_of(held, arrays, i), resisted), all_of_it)
+        arrays.pair_margin[i] = pressed + LEAST_HELD * all_of_it
+
+
+@shared
+def gap_of(held: Hold, arrays: Arrays, pair: int) -> float:
+    """Return the gap [m] between a corner and what it touches, both about upright."""
+    row = arrays.pairs[pair]
+    pose = pose_of(held, arrays, int(row[BODY]))
     raised = 0.5 * held.width * math.sin(pose.theta)
-    for corner in range(held.pairs):
-        gap = level + arrays.sides[corner] * raised
-        pressed = min(max(gap, arrays.resisted[corner] * reach), all_of_it)
-        arrays.pair_margin[corner] = pressed + LEAST_HELD * all_of_it
+    if row[FACE] == LOWER:
+        level = pose.z - held.height * math.cos(pose.theta)
+        return level + row[SIDE] * raised
+    on = int(row[ON])
+    under = pose_of(held, arrays, on).z - arrays.homes[on, 2]
+    return under - (pose.z + held.height * math.cos(pose.theta) + row[SIDE] * raised)
 
 
 @shared
@@ -328,15 +374,25 @@ def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
 
 @shared
 def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
-    """Note by how much [m/s2] the corners yield to their forces."""
-    if step.grip == Grip.REST and forces.rows > 0:
-        held.yields = forces.resistance[0] * held.weight
-        if forces.contacts == held.pairs and held.pairs > 1:
-            stride = forces.rows // forces.contacts
-            for corner in range(held.pairs):
-                normal = corner * stride
-                yielded = forces.resistance[normal] * forces.force[normal]
-                arrays.resisted[corner] = yielded * (step.dt_s / step.kick_s)
-    elif step.grip == Grip.SWING and forces.contacts == held.corners:
-        yielded = forces.resistance[0] * forces.force[0]
-        held.yields = yielded * step.dt_s / step.kick_s
+    """Note by how much [m/s2] the corners yield to their forces.
+
+    Where all touch, or all pivots, the solver's contacts are theirs in the order of the pairs; the
+    first of those between two bodies speaks for all.
+    """
+    pairs, count = arrays.pairs, forces.contacts
+    if count == 0:
+        return
+    stride, each = forces.rows // count, held.pairs // held.touching
+    whole, pivots = count == held.pairs, count == held.touching * held.corners
+    if step.grip == Grip.REST and (whole or not held.stacked):
+        for i in range(held.pairs):
+            first = i // each * each * stride if whole else 0
+            pairs[i, YIELDS] = forces.resistance[first] * pairs[i, WEIGHT]
+            if whole and held.pairs > 1:
+                yielded = forces.resistance[i * stride] * forces.force[i * stride]
+                pairs[i, RESISTED] = yielded * (step.dt_s / step.kick_s)
+    elif step.grip == Grip.SWING and pivots:
+        for i in range(held.pairs):
+            first = i // each * held.corners * stride
+            yielded = forces.resistance[first] * forces.force[first]
+            pairs[i, YIELDS] = yielded * step.dt_s / step.kick_s

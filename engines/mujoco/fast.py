@@ -17,7 +17,7 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from engines.mujoco.contact import Arrays, Forces, Hold, notice, pose_of, prepare
+from engines.mujoco.contact import Arrays, Forces, Hold, notice, prepare, read
 from engines.parts.compiled import SWITCHED_OFF, FloatArray, kernel, shared, switched_off
 from engines.run.look import Lists, Run, onward, undecided
 
@@ -81,14 +81,16 @@ def drive(
     most: int,
 ) -> int:
     """Take up to so many steps while the run goes on; return how many were taken."""
-    run, held, arrays = runs[0], holds[0], Arrays(*lent)
+    held, arrays = holds[0], Arrays(*lent)
+    read(held, arrays)
     for taken in range(most):
-        step = onward(run, lists, pose_of(held, arrays))
+        step = onward(runs, lists, arrays.state)
         prepare(held, arrays, step)
         memory.timestep[0] = step.dt_s
         mj_step(memory.model, memory.data)
         notice(held, arrays, forces_in(memory), step)
-        if not undecided(run, lists, pose_of(held, arrays)):
+        read(held, arrays)
+        if not undecided(runs, lists, arrays.state):
             return taken + 1
     return most
 

@@ -1,8 +1,10 @@
 """A scene in MuJoCo's own language."""
 
 import math
+from collections.abc import Iterator
 from xml.etree import ElementTree
 
+from engines.layouts import BASE
 from engines.mujoco.settings import MujocoSettings
 from engines.parts.compiled import shared
 from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
@@ -28,26 +30,44 @@ PLANAR_JOINTS = (
 
 def model_xml(scene: Scene, s: MujocoSettings) -> str:
     """Return the model of a scene in MuJoCo's own language."""
-    block, margin = scene.block, (s.margin or 0.0) * scene.block.width
+    margin = (s.margin or 0.0) * scene.system.width
     named = ((name, getattr(s, name)) for name in OPTIONS)
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
-    geoms = _geoms(scene, s)
     common = f'{_friction(s)} margin="{margin}"'
-    parts = (f'<geom name="{name}" {shape} {common}/>' for name, shape in geoms.items())
-    pairs = "" if s.impedance is None else "".join(_pair(name, s, margin) for name in geoms)
+    bodies = "".join(_body(scene, number, s, common) for number in range(len(scene.bodies)))
+    contact = f' margin="{margin}" solimp="{_row(impedance_of(scene, s) or ())}" '
+    pairs = "" if s.impedance is None else "".join(_pairs(scene, s, contact))
     return (
-        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}"
-        f'<body pos="0 0 {0.5 * block.height}">{PLANAR_JOINTS if s.planar else "<freejoint/>"}'
-        f'<inertial pos="0 0 0" mass="{scene.mass}" diaginertia="{_row(scene.inertia)}"/>'
-        f"{''.join(parts)}</body></worldbody><contact>{pairs}</contact></mujoco>"
+        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}{bodies}"
+        f"</worldbody><contact>{pairs}</contact></mujoco>"
+    )
+
+
+def _body(scene: Scene, number: int, s: MujocoSettings, common: str) -> str:
+    body = scene.bodies[number]
+    (x, z), joints = body.home, PLANAR_JOINTS if s.planar else "<freejoint/>"
+    shapes = _geoms(scene, number, s).items()
+    geoms = "".join(f'<geom name="{name}" {shape} {common}/>' for name, shape in shapes)
+    return (
+        f'<body pos="{x} 0 {z}">{joints}'
+        f'<inertial pos="0 0 0" mass="{body.mass}" diaginertia="{_row(body.inertia)}"/>'
+        f"{geoms}</body>"
     )
 
 
 def _assets(scene: Scene, s: MujocoSettings) -> str:
     if s.geometry != "hull":
         return ""
-    vertices = " ".join(map(_row, hull_points(scene)))
-    return f'<asset><mesh name="hull" vertex="{vertices}"/></asset>'
+    meshes = (
+        f'<mesh name="{named("hull", number)}" vertex="{" ".join(map(_row, hull_points(body)))}"/>'
+        for number, body in enumerate(scene.bodies)
+    )
+    return f"<asset>{''.join(meshes)}</asset>"
+
+
+def named(shape: str, number: int) -> str:
+    """Return the name of a body's shape; the first body's is the shape's."""
+    return f"{shape}{number or ''}"
 
 
 def _base(scene: Scene, s: MujocoSettings) -> str:
@@ -55,47 +75,81 @@ def _base(scene: Scene, s: MujocoSettings) -> str:
         return f'<geom name="base" type="plane" size="1 1 1" {_friction(s)}/>'
     # a plane may not move, so a box does; any surface velocity will do to switch it on
     return (
-        f'<body mocap="true" pos="0 0 {-scene.block.height}"><geom name="base" type="box" '
+        f'<body mocap="true" pos="0 0 {-scene.bodies[0].height}"><geom name="base" type="box" '
         f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.base_velocity)} 0 0" '
         f"{_friction(s)}/></body>"
     )
 
 
-def _geoms(scene: Scene, s: MujocoSettings) -> dict[str, str]:
-    """Name and shape of what the block touches its base with."""
+def _geoms(scene: Scene, number: int, s: MujocoSettings) -> dict[str, str]:
+    """Name and shape of what a body touches others with, or is touched on."""
+    body = scene.bodies[number]
     if s.geometry == "hull":
-        return {"hull": 'type="mesh" mesh="hull"'}
+        name = named("hull", number)
+        return {name: f'type="mesh" mesh="{name}"'}
+    box = {named("box", number): f'type="box" size="{_row(half_size(body))}"'}
     if s.geometry == "box":
-        return {"box": f'type="box" size="{_row(half_size(scene))}"'}
-    radius = s.corner_radius * scene.block.width
-    corners = corner_spheres(scene, radius, planar=s.planar)
-    shape = f'type="sphere" size="{radius}"'
-    return {f"corner{i}": f'{shape} pos="{_row(at)}"' for i, at in enumerate(corners)}
+        return box
+    radius = s.corner_radius * scene.system.width
+    shape, geoms = f'type="sphere" size="{radius}"', {}
+    for order, contact in enumerate(scene.layout.contacts):
+        if contact.body == number:
+            corners = corner_spheres(body, radius, planar=s.planar, face=contact.face)
+            names = corner_names(order, s)
+            geoms |= {
+                name: f'{shape} pos="{_row(at)}"' for name, at in zip(names, corners, strict=True)
+            }
+    touched = any(contact.on == number for contact in scene.layout.contacts)
+    return geoms | box if touched else geoms
+
+
+def corner_names(order: int, s: MujocoSettings) -> list[str]:
+    """Return the names of the spheres of a contact, by its place in the layout."""
+    count = 2 if s.planar else 4
+    return [f"corner{order * count + number}" for number in range(count)]
+
+
+def surface_name(body: int, s: MujocoSettings) -> str:
+    """Return the name of what corners touch: the base, or a body's face."""
+    return "base" if body == BASE else named("hull" if s.geometry == "hull" else "box", body)
+
+
+def impedance_of(scene: Scene, s: MujocoSettings) -> tuple[float, ...] | None:
+    """Return the five numbers of solimp, the width [m] of the soft surface among them."""
+    return s.impedance
 
 
 def _friction(s: MujocoSettings) -> str:
     return f'friction="{s.friction} 0.005 0.0001"'
 
 
-def _pair(name: str, s: MujocoSettings, margin: float) -> str:
+def _pairs(scene: Scene, s: MujocoSettings, contact: str) -> Iterator[str]:
+    """Yield what touches what: the corners of each contact, those at -x first."""
     friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
     # any direct form will do for now: it is set with the first step
     reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
-    return (
-        f'<pair geom1="base" geom2="{name}" condim="3" friction="{friction}" margin="{margin}" '
-        f'solimp="{_row(s.impedance or ())}" {reference}/>'
-    )
+    for order, touching in enumerate(scene.layout.contacts):
+        boxes = [surface_name(touching.body, s)]
+        for name in corner_names(order, s) if s.geometry == "corners" else boxes:
+            yield (
+                f'<pair geom1="{surface_name(touching.on, s)}" geom2="{name}" condim="3" '
+                f'friction="{friction}"{contact}{reference}/>'
+            )
 
 
 def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the positions and the velocities from which the block sets out."""
-    at, half = scene.beginning, 0.5 * scene.beginning.theta
-    if s.planar:
-        place = (at.x, at.z - 0.5 * scene.block.height, at.theta)
-        return place, (at.velocity_x, at.velocity_z, at.rate)
-    turned = (math.cos(half), 0.0, math.sin(half), 0.0)
-    velocity = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
-    return (at.x, 0.0, at.z, *turned), velocity
+    """Return the positions and the velocities from which the bodies set out."""
+    places: list[float] = []
+    velocities: list[float] = []
+    for body in scene.bodies:
+        at, half, (x, z) = body.at, 0.5 * body.at.theta, body.home
+        if s.planar:
+            places += (at.x - x, at.z - z, at.theta)
+            velocities += (at.velocity_x, at.velocity_z, at.rate)
+        else:
+            places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
+            velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+    return tuple(places), tuple(velocities)
 
 
 @shared

@@ -21,7 +21,7 @@ FREE_POSE = (
 
 def _beginning(scene: Scene, s: MujocoSettings) -> tuple[str, ...]:
     """Return lines that let the block set out; none where it is at rest."""
-    if scene.beginning.at_rest:
+    if all(body.at.at_rest for body in scene.bodies):
         return ()
     place, velocity = coordinates(scene, s)
     return (f"data.qpos[:] = {place}", f"data.qvel[:] = {velocity}")

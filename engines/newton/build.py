@@ -23,7 +23,7 @@ class NewtonWorld:
 
     def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:
         self._s, self._dt = settings, dt_s
-        self._mass, self._gravity = scene.mass, scene.block.gravity
+        self._mass, self._gravity = scene.bodies[0].mass, scene.system.gravity
         newton, self._warp = imported("newton"), imported("warp")
         self._warp.config.log_level = self._warp.LOG_ERROR
         with silence():
@@ -41,11 +41,11 @@ class NewtonWorld:
         self._force[0, 2] = self._mass * (step.pull_z + self._gravity)
         self._warp.capture_launch(self._graph)
 
-    def pose(self) -> Pose:
+    def state(self) -> tuple[Pose]:
         """Read the block's pose back."""
         x, _, z, _, turn_y, _, turn_w = self._place[0].tolist()
         theta = 2.0 * math.atan2(turn_y, turn_w)
-        return Pose(x, z, theta, float(self._velocity[0, 4]))
+        return (Pose(x, z, theta, float(self._velocity[0, 4])),)
 
     def fault(self) -> str:
         """Say which setting was not taken, or that a step was not the one that is recorded."""
@@ -57,16 +57,16 @@ class NewtonWorld:
 
     def _put(self, scene: Scene) -> None:
         """Let the block set out from where the scene begins."""
-        at = scene.beginning
+        at = scene.bodies[0].at
         half = 0.5 * at.theta
         self._place[0] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
         self._velocity[0] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
 
     def _read_back(self, scene: Scene) -> str:
-        model = self._recorded.model
+        model, (body,) = self._recorded.model, scene.bodies
         pairs = {
-            "mass": (scene.mass, float(model.body_mass.numpy()[0])),
-            "moment": (scene.inertia[1], float(model.body_inertia.numpy()[0, 1, 1])),
+            "mass": (body.mass, float(model.body_mass.numpy()[0])),
+            "moment": (body.inertia[1], float(model.body_inertia.numpy()[0, 1, 1])),
             "friction": (self._s.friction, min(model.shape_material_mu.numpy().tolist())),
         }
         return disagreement(pairs, Precision.SINGLE.value)
@@ -74,7 +74,7 @@ class NewtonWorld:
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of Newton; see `engines.parts.script`."""
-    n, at = numbers(scene, settings), scene.beginning
+    n, at = numbers(scene, settings), scene.bodies[0].at
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     return Script(
         imports=("import newton", "import warp as wp"),

@@ -32,13 +32,14 @@ class Made(NamedTuple):
 
 def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
     """Return the numbers of a block, wherever it begins."""
-    (x, y, z), radius = half_size(scene), s.corner_radius * scene.block.width
-    first, second, third = scene.inertia
+    (body,) = scene.bodies
+    (x, y, z), radius = half_size(body), s.corner_radius * body.width
+    first, second, third = body.inertia
     return SimpleNamespace(
         **{"x": x, "y": y, "z": z, "radius": radius, "most": MOST_CONTACTS},
-        **{"mass": scene.mass, "density": scene.density, "weight": -scene.block.gravity},
+        **{"mass": body.mass, "density": scene.density, "weight": -scene.system.gravity},
         inertia=(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third),
-        corners=corner_spheres(scene, radius, planar=False),
+        corners=corner_spheres(body, radius, planar=False),
     )
 
 
@@ -47,7 +48,7 @@ def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
     return SimpleNamespace(
         **{"geometry": s.geometry, "friction": float(s.friction), "dt": dt_s},
         **{"solver": s.solver, "xpbd": s.of_xpbd(), "gamma": s.baumgarte},
-        delta=None if s.depth is None else s.depth * scene.block.width,
+        delta=None if s.depth is None else s.depth * scene.system.width,
         **{"iterations": s.iterations, "tolerance": s.tolerance},
     )
 
@@ -136,7 +137,7 @@ idle: "OrderedDict[Made, Recorded]" = OrderedDict()
 
 def made_of(scene: Scene, settings: NewtonSettings, dt_s: float) -> Made:
     """Return what the model of a scene is made of; where the scene begins is none of it."""
-    return Made(settings, dt_s, half_size(scene), scene.density, scene.block.gravity)
+    return Made(settings, dt_s, half_size(scene.bodies[0]), scene.density, scene.system.gravity)
 
 
 def taken(newton: Any, warp: Any, scene: Scene, settings: NewtonSettings, dt_s: float) -> Recorded:

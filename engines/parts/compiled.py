@@ -61,9 +61,9 @@ class State:
         return np.dtype([(name, *_kind(hint)) for name, hint in hints.items()], align=True)
 
     @classmethod
-    def blank(cls) -> Sequence[Self]:
-        """Return an array of one such state, all zeros; a state alone is slow to hand over."""
-        return cast(Sequence[Self], np.zeros(1, np.dtype((np.record, cls.kind()))))
+    def blank(cls, count: int = 1) -> Sequence[Self]:
+        """Return an array of such states, all zeros; a state alone is slow to hand over."""
+        return cast(Sequence[Self], np.zeros(count, np.dtype((np.record, cls.kind()))))
 
 
 def _kind(hint: Any) -> tuple[Any, ...]:

@@ -68,10 +68,10 @@ def begin_reflection(state: Reflection, scene: Scene, dt_s: float) -> None:
     """Prepare for a scene in ordinary steps of `dt_s` [s]."""
     fill(
         state,
-        growth=1.0 + MOST_GROWTH * scene.block.p * dt_s,
-        steady=1.0 + RELEASED_GROWTH * scene.block.p * dt_s,
+        growth=1.0 + MOST_GROWTH * scene.system.p * dt_s,
+        steady=1.0 + RELEASED_GROWTH * scene.system.p * dt_s,
         released=bool(scene.side),
-        rate=scene.beginning.rate,
+        rate=scene.bodies[0].at.rate,
     )
 
 

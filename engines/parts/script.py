@@ -77,8 +77,8 @@ def filled(function: Callable[..., Any], **values: Any) -> tuple[Line, ...]:
     ----------
     function : callable
         Its docstring is left out, and what it returns in the end: its variables are the script's.
-        So is an ``if`` that the values decide, with all but the branch that is taken; comments stay
-        that stand on a line with code.
+        So is an ``if`` that the values decide, with all but the branch that is taken; a ``for``
+        over values is its body for each; comments stay that stand on a line with code.
     **values
         Its parameters whose attributes are filled in, by name. What is after ``*`` or ``**``
         becomes arguments, and ``getattr`` with a name an attribute.
@@ -106,7 +106,7 @@ class _Filling:
 
     def __init__(self, function: Callable[..., Any], values: Mapping[str, Any]) -> None:
         text = dedent(inspect.getsource(function))
-        self._source, self._values = text.splitlines(), values
+        self._source, self._values = text.splitlines(), dict(values)
         (definition,) = ast.parse(text).body
         assert isinstance(definition, ast.FunctionDef)
         self._body = definition.body[1:]  # after the docstring
@@ -121,6 +121,11 @@ class _Filling:
             if isinstance(statement, ast.If) and self._decided(statement.test):
                 branch = statement.body if self._value(statement.test) else statement.orelse
                 yield from self._block(branch, indent, setting or self._sets(statement.test))
+            elif isinstance(statement, ast.For) and self._decided(statement.iter):
+                assert isinstance(statement.target, ast.Name)
+                for item in self._value(statement.iter):
+                    self._values[statement.target.id] = item
+                    yield from self._block(statement.body, indent, setting)
             elif isinstance(statement, ast.For | ast.With | ast.If):
                 first = statement.body[0].lineno - 1
                 yield from self._written(statement, first, indent, setting)

@@ -3,6 +3,7 @@
 import itertools
 import math
 
+from engines.layouts import LOWER, Body
 from engines.scene import Scene
 
 Point = tuple[float, float, float]
@@ -20,7 +21,7 @@ FLOOR_HEIGHTS = 100.0
 
 def fall(scene: Scene, dt_s: float) -> float:
     """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot."""
-    return (scene.block.alpha * scene.block.p * dt_s) ** 2 * scene.block.height
+    return (scene.system.alpha * scene.system.p * dt_s) ** 2 * scene.system.height
 
 
 def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -> int | None:
@@ -32,32 +33,32 @@ def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -
     """
     if iterations is not None or sweeps is None:
         return iterations
-    return min(math.ceil(sweeps / math.sin(scene.block.alpha) ** 2), MOST_ITERATIONS)
+    return min(math.ceil(sweeps / math.sin(scene.system.alpha) ** 2), MOST_ITERATIONS)
 
 
-def half_size(scene: Scene) -> Point:
-    """Return half of the block's size [m] along x, y and z."""
-    return (0.5 * scene.block.width, 0.5 * scene.depth_m, 0.5 * scene.block.height)
+def half_size(body: Body) -> Point:
+    """Return half of a body's size [m] along x, y and z."""
+    return (0.5 * body.width, 0.5 * body.depth, 0.5 * body.height)
 
 
-def corner_spheres(scene: Scene, radius: float, *, planar: bool) -> list[Point]:
-    """Return the centres [m] of spheres at the corners on the base, those at -x first.
+def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER) -> list[Point]:
+    """Return the centres [m] of spheres at the corners of a body's face, those at -x first.
 
-    They are relative to the block's centre: two in the middle plane if `planar`, or four at the
+    They are relative to the body's centre: two in the middle plane if `planar`, or four at the
     edges. `radius` is in metres.
     """
-    x, y, z = half_size(scene)
+    x, y, z = half_size(body)
     depths = (0.0,) if planar else (-y, y)
-    return [(side, depth, radius - z) for side in (-x, x) for depth in depths]
+    return [(side, depth, face * (z - radius)) for side in (-x, x) for depth in depths]
 
 
-def hull_points(scene: Scene) -> list[Point]:
-    """Return the eight corners of the block [m], relative to its centre."""
-    x, y, z = half_size(scene)
+def hull_points(body: Body) -> list[Point]:
+    """Return the eight corners of a body [m], relative to its centre."""
+    x, y, z = half_size(body)
     return list(itertools.product((-x, x), (-y, y), (-z, z)))
 
 
 def floor_half_size(scene: Scene) -> Point:
     """Return half of the size [m] of a base that is a box; its top is at its own half height."""
-    block = scene.block
-    return (FLOOR_HEIGHTS * block.height, FLOOR_HEIGHTS * scene.depth_m, block.height)
+    height, depth = scene.bodies[0].height, scene.bodies[0].depth
+    return (FLOOR_HEIGHTS * height, FLOOR_HEIGHTS * depth, height)

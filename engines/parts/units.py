@@ -25,11 +25,11 @@ class Counted:
 
     def unit_of(self, scene: Scene) -> float:
         """Return the units of length in a metre."""
-        return 1.0 if self.units is None else self.units / scene.block.height
+        return 1.0 if self.units is None else self.units / scene.system.height
 
     def sunk_of(self, scene: Scene) -> float:
         """Return how far below the origin the base is, in units of length."""
-        return 0.5 * scene.block.height * self.unit_of(scene) if self.centred else 0.0
+        return 0.5 * scene.system.height * self.unit_of(scene) if self.centred else 0.0
 
 
 def counted(lengths: Point, unit: float) -> Point:

@@ -1,6 +1,7 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Preset, Stepping
+from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
@@ -21,6 +22,7 @@ ENGINE = Engine(
     packages=("pybullet",),
     install="rocking",
     build=BulletWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",

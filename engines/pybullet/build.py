@@ -6,21 +6,24 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
+import numpy as np
+
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from engines.parts.compiled import SWITCHED_OFF, switched_off
+from engines.parts.compiled import SWITCHED_OFF, FloatArray, switched_off
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
 from engines.pybullet.calls import (
     Call,
     Constant,
+    aloft,
     base_body,
     base_call,
     base_place,
     base_shape,
-    block_body,
-    block_call,
-    block_shape,
+    body_call,
+    body_of,
+    body_shape,
     engine_call,
 )
 from engines.pybullet.clients import given_back, held_for_all, taken
@@ -74,15 +77,15 @@ class BulletWorld:
             self._set_engine(scene)
             floor = self._do(base_shape(scene, settings))
             self._base = int(self._do(base_body(floor, self._ground)))
-            shape = self._do(block_shape(scene, settings, dt_s))
-            self._body = int(self._do(block_body(scene, settings, shape)))
+            self._bodies = [self._made(scene, number) for number in range(len(scene.bodies))]
             self._fault = self._set_bodies(scene)
             self._take_inertia(scene)
         self._put(scene)
         self._holds = Hold.blank()
         self._held = self._holds[0]
         begin_hold(self._held, scene, settings, dt_s)
-        self._held.block, self._held.base = self._body, self._base
+        self._held.block, self._held.base = self._bodies[0], self._base
+        self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._lent = self.lent() if loops else None
 
     def step(self, step: Step) -> None:
@@ -113,16 +116,18 @@ class BulletWorld:
 
     def lent(self) -> tuple[Sequence[Hold], Client]:
         """Return what a compiled loop steps by."""
-        return self._holds, client_of(self._p, self._client, self._body)
+        return self._holds, client_of(self._p, self._client, self._bodies[0], self._state)
 
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
-        p, client = self._p, self._client
-        (x, _, z), q = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
-        rate = p.getBaseVelocity(self._body, physicsClientId=client)[1][1]
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        p, client, moved = self._p, self._client, 0.0
         if self._moving:
-            x -= p.getBasePositionAndOrientation(self._base, physicsClientId=client)[0][0]
-        return Pose(x, z, 2.0 * math.atan2(q[1], q[3]), rate)
+            moved = p.getBasePositionAndOrientation(self._base, physicsClientId=client)[0][0]
+        for row, body in zip(self._state, self._bodies, strict=True):
+            (x, _, z), q = p.getBasePositionAndOrientation(body, physicsClientId=client)
+            rate = p.getBaseVelocity(body, physicsClientId=client)[1][1]
+            row[:] = x - moved, z, 2.0 * math.atan2(q[1], q[3]), rate
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
@@ -140,18 +145,20 @@ class BulletWorld:
 
         With the shape's own a block that is lifted or released at once would turn too fast.
         """
-        p, client = self._p, self._client
-        aloft, upright = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
-        p.resetBasePositionAndOrientation(self._body, aloft, upright, physicsClientId=client)
+        p, client, upright = self._p, self._client, (0.0, 0.0, 0.0, 1.0)
+        for body, place in zip(self._bodies, aloft(scene), strict=True):
+            p.resetBasePositionAndOrientation(body, place, upright, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
 
     def _put(self, scene: Scene) -> None:
-        """Let the block set out from where the scene begins."""
-        p, client, start = self._p, self._client, scene.beginning
-        turned = (0.0, math.sin(0.5 * start.theta), 0.0, math.cos(0.5 * start.theta))
-        place, velocity = (start.x, 0.0, start.z), (start.velocity_x, 0.0, start.velocity_z)
-        p.resetBasePositionAndOrientation(self._body, place, turned, physicsClientId=client)
-        p.resetBaseVelocity(self._body, velocity, (0.0, start.rate, 0.0), physicsClientId=client)
+        """Let the bodies set out from where the scene begins."""
+        p, client = self._p, self._client
+        for number, body in zip(self._bodies, scene.bodies, strict=True):
+            at, half = body.at, 0.5 * body.at.theta
+            turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
+            velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
+            p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
+            p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
 
     def _move_base(self, step: Step) -> None:
         p, client = self._p, self._client
@@ -186,25 +193,34 @@ class BulletWorld:
             return getattr(self._p, value)
         return [self._value(item) for item in value] if isinstance(value, list) else value
 
+    def _made(self, scene: Scene, number: int) -> int:
+        """Make a body; return its number in the library."""
+        shape = self._do(body_shape(scene, number, self._s, self._ordinary))
+        return int(self._do(body_of(scene.bodies[number], self._s, shape)))
+
     def _set_bodies(self, scene: Scene) -> str:
         """Set the bodies' dynamics and say where reading them back disagrees."""
-        call = block_call(scene, self._s, self._body)
-        self._do(call)
-        self._do(base_call(self._s, self._base))
-        return self._read_back(scene, call.arguments)
+        faults = []
+        for number, body in enumerate(self._bodies):
+            call = body_call(scene, number, self._s, body)
+            self._do(call)
+            if not number:
+                self._do(base_call(self._s, self._base))
+            faults.append(self._read_back(scene, number, call.arguments))
+        return next(filter(None, faults), "")
 
-    def _read_back(self, scene: Scene, wanted: Mapping[str, Any]) -> str:
-        s = self._s
-        block, base = self._dynamics(self._body), self._dynamics(self._base)
+    def _read_back(self, scene: Scene, number: int, wanted: Mapping[str, Any]) -> str:
+        s, body = self._s, scene.bodies[number]
+        block, base = self._dynamics(self._bodies[number]), self._dynamics(self._base)
         engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
         pairs: dict[str, tuple[Any, Any]] = {
-            "mass": (scene.mass, block[0]),
+            "mass": (body.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
             "friction of the base": (1.0, base[1]),
             "numSolverIterations": (s.iterations_of(scene), engine["numSolverIterations"]),
         }
         if s.exact_inertia:
-            pairs |= {f"inertia {i}": (scene.inertia[i], block[2][i]) for i in range(3)}
+            pairs |= {f"inertia {i}": (body.inertia[i], block[2][i]) for i in range(3)}
         if s.multibody:
             # a body in maximal coordinates takes them, too, but reads zeros
             pairs["restitution"] = (s.restitution, block[5])
@@ -223,22 +239,24 @@ def loop_agrees() -> bool:
     return bool(known.size) and _trial(_by_loop) == _trial(_by_calls)
 
 
-def _trial(after: Callable[[BulletWorld, Step], Pose]) -> list[Pose]:
+def _trial(after: Callable[[BulletWorld, Step], FloatArray]) -> list[list[float]]:
     """Return the poses after each step of the trial."""
     block = RigidBlock(width=0.5, height=1.5)
     motion = SinePulse(amplitude=1.0, omega=1.0)
-    scene = Scene(block=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
+    scene = Scene(system=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
     world = BulletWorld(scene, LANDING, TRIAL[0].dt_s)
     try:
-        return [after(world, step) for step in TRIAL]
+        return [after(world, step)[0].tolist() for step in TRIAL]
     finally:
         world.close()
 
 
-def _by_calls(world: BulletWorld, step: Step) -> Pose:
+def _by_calls(world: BulletWorld, step: Step) -> FloatArray:
     world.step(step)
-    return world.pose()
+    return world.state()
 
 
-def _by_loop(world: BulletWorld, step: Step) -> Pose:
-    return Pose(*once(*world.lent(), (*step[:-2], int(step.grip), step.side)))
+def _by_loop(world: BulletWorld, step: Step) -> FloatArray:
+    holds, client = world.lent()
+    once(holds, client, (*step[:-2], int(step.grip), step.side))
+    return client.state

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from engines.layouts import Body
 from engines.parts.settings import given
 from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size, hull_points
 from engines.pybullet.settings import SOLVERS, BulletSettings
@@ -56,16 +57,16 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
 def kept_gap(scene: Scene, s: BulletSettings, dt_s: float) -> float:
     """Return the gap, over the half diagonal, up to which a contact is kept."""
     if s.gap_by_step:
-        return KEPT_GAP * (math.sin(scene.block.alpha) * scene.block.p * dt_s) ** 2
+        return KEPT_GAP * (math.sin(scene.system.alpha) * scene.system.p * dt_s) ** 2
     return s.breaking_threshold
 
 
 def corner_radius(scene: Scene, s: BulletSettings, dt_s: float) -> float:
     """Return the radius [m] of the corner spheres."""
-    radius = s.corner_radius * scene.block.width
+    radius = s.corner_radius * scene.system.width
     if s.gap_by_step:
-        gap = kept_gap(scene, s, dt_s) * scene.block.R
-        radius = min(radius, ROLLED * gap / scene.block.alpha)
+        gap = kept_gap(scene, s, dt_s) * scene.system.R
+        radius = min(radius, ROLLED * gap / scene.system.alpha)
     return radius
 
 
@@ -76,14 +77,19 @@ def base_shape(scene: Scene, s: BulletSettings) -> Call:
     return _shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
 
 
-def block_shape(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
-    """Return the call that makes what the block touches its base with."""
-    if s.geometry == "box":
-        return _shape("GEOM_BOX", halfExtents=half_size(scene))
+def body_shape(scene: Scene, number: int, s: BulletSettings, dt_s: float) -> Call:
+    """Return the call that makes what a body touches others with, or is touched on."""
+    body, contacts = scene.bodies[number], scene.layout.contacts
+    if s.geometry == "box" or any(contact.on == number for contact in contacts):
+        return _shape("GEOM_BOX", halfExtents=half_size(body))
     if s.geometry == "hull":
-        return _shape("GEOM_MESH", vertices=hull_points(scene))
-    radius = corner_radius(scene, s, dt_s)
-    corners = corner_spheres(scene, radius, planar=s.planar)
+        return _shape("GEOM_MESH", vertices=hull_points(body))
+    radius, faces = corner_radius(scene, s, dt_s), (c.face for c in contacts if c.body == number)
+    corners = [
+        corner
+        for face in faces
+        for corner in corner_spheres(body, radius, planar=s.planar, face=face)
+    ]
     spheres = {
         "shapeTypes": [Constant("GEOM_SPHERE")] * len(corners),
         "radii": [radius] * len(corners),
@@ -98,7 +104,7 @@ def _shape(kind: str, **shape: Any) -> Call:
 
 def base_place(scene: Scene, s: BulletSettings) -> Point:
     """Return where the centre of the base is [m]."""
-    return (0.0, 0.0, -scene.block.height if s.base_geometry == "box" else 0.0)
+    return (0.0, 0.0, -scene.bodies[0].height if s.base_geometry == "box" else 0.0)
 
 
 def base_body(shape: Any, place: tuple[float, ...]) -> Call:
@@ -106,9 +112,10 @@ def base_body(shape: Any, place: tuple[float, ...]) -> Call:
     return _body(0.0, shape, place, False)
 
 
-def block_body(scene: Scene, s: BulletSettings, shape: Any) -> Call:
-    """Return the call that makes the block of its shape."""
-    return _body(scene.mass, shape, (0.0, 0.0, 0.5 * scene.block.height), not s.multibody)
+def body_of(body: Body, s: BulletSettings, shape: Any) -> Call:
+    """Return the call that makes a body of its shape."""
+    x, z = body.home
+    return _body(body.mass, shape, (x, 0.0, z), not s.multibody)
 
 
 def _body(mass: float, shape: Any, place: tuple[float, ...], rigid: bool) -> Call:
@@ -121,21 +128,27 @@ def _body(mass: float, shape: Any, place: tuple[float, ...], rigid: bool) -> Cal
     return Call("createMultiBody", body)
 
 
-def block_call(scene: Scene, s: BulletSettings, body: Any) -> Call:
-    """Return the call that sets the block's dynamics."""
-    p = scene.block.p
+def aloft(scene: Scene) -> list[Point]:
+    """Return places [m] at which the bodies touch nothing, above where they rest."""
+    up = 2.0 * scene.bodies[0].height - scene.bodies[0].home[1]
+    return [(x, 0.0, z + up) for x, z in (body.home for body in scene.bodies)]
+
+
+def body_call(scene: Scene, number: int, s: BulletSettings, body: Any) -> Call:
+    """Return the call that sets a body's dynamics."""
+    p, it = scene.system.p, scene.bodies[number]
     wanted: dict[str, Any] = {
         "lateralFriction": s.friction,
         # without its mass in the same call, a block in maximal coordinates becomes NaN
-        "mass": scene.mass,
-        "localInertiaDiagonal": scene.inertia if s.exact_inertia else None,
+        "mass": it.mass,
+        "localInertiaDiagonal": it.inertia if s.exact_inertia else None,
         "linearDamping": s.damping,
         "angularDamping": s.damping,
         "restitution": s.restitution,
     }
     if s.contact_stiffness is not None and s.contact_damping is not None:
-        wanted["contactStiffness"] = s.contact_stiffness * scene.mass * p * p
-        wanted["contactDamping"] = s.contact_damping * scene.mass * p
+        wanted["contactStiffness"] = s.contact_stiffness * it.mass * p * p
+        wanted["contactDamping"] = s.contact_damping * it.mass * p
     return _change(s, body, given(wanted))
 
 

@@ -25,7 +25,7 @@ from engines.pybullet.clients import given_back, taken
 from engines.pybullet.settings import BulletSettings
 from engines.run.look import Lists, Run, onward, undecided
 from engines.scene import Scene
-from engines.world import Grip, Pose, Step
+from engines.world import Grip, Step
 
 HANDLE, NUMBER, REAL = types.intp, types.intc, types.float64
 
@@ -70,7 +70,7 @@ class Hold(State):
     Attributes
     ----------
     block, base : int
-        Numbers of the bodies.
+        Numbers of the first body, after which the others come, and of the base.
     by_phase, moving, base_velocity : bool
         Whether positions are corrected in ordinary steps alone, whether the base moves, and with a
         velocity.
@@ -123,6 +123,8 @@ class Client(NamedTuple):
         Of a body: its position [m] and orientation, a quaternion with its real part last.
     motion : array (6,)
         And its velocity [m/s] and angular velocity [rad/s].
+    state : array
+        The last that was read; see `engines.world.World.state`.
     """
 
     handle: int
@@ -130,6 +132,7 @@ class Client(NamedTuple):
     answer: NDArray[np.int64]
     place: FloatArray
     motion: FloatArray
+    state: FloatArray
 
 
 @exclusive
@@ -137,12 +140,12 @@ def drive(
     holds: Sequence[Hold], client: Client, runs: Sequence[Run], lists: Lists, most: int
 ) -> int:
     """Take up to so many steps while the run goes on; return how many were taken."""
-    run, held = runs[0], holds[0]
-    where = pose_of(held, client)
+    held = holds[0]
+    read(held, client)
     for before in range(most):
-        take(held, client, onward(run, lists, where))
-        where = pose_of(held, client)
-        if not undecided(run, lists, where):
+        take(held, client, onward(runs, lists, client.state))
+        read(held, client)
+        if not undecided(runs, lists, client.state):
             return before + 1
     return most
 
@@ -192,14 +195,19 @@ def move_base(held: Hold, client: Client, step: Step) -> None:
 
 
 @shared
-def pose_of(held: Hold, client: Client) -> Pose:
-    """Return the block's pose."""
+def read(held: Hold, client: Client) -> None:
+    """Read the bodies' poses."""
     moved, q = 0.0, client.place
     if held.moving:
         ask(client, held.base)
         moved = q[0]
-    ask(client, held.block)
-    return Pose(q[0] - moved, q[2], 2.0 * math.atan2(q[4], q[6]), client.motion[4])
+    for body in range(len(client.state)):
+        ask(client, held.block + body)
+        client.state[body, 0], client.state[body, 1] = q[0] - moved, q[2]
+        client.state[body, 2], client.state[body, 3] = (
+            2.0 * math.atan2(q[4], q[6]),
+            client.motion[4],
+        )
 
 
 @shared
@@ -227,15 +235,14 @@ def located(handle: int, body: int, answer: NDArray[np.int64]) -> None:
 
 
 @exclusive
-def once(holds: Sequence[Hold], client: Client, step: tuple[Any, ...]) -> tuple[float, ...]:
-    """Take a step; return the pose after it, for Python."""
+def once(holds: Sequence[Hold], client: Client, step: tuple[Any, ...]) -> None:
+    """Take a step, and read the poses after it; for Python."""
     take(holds[0], client, Step(*step))
-    where = pose_of(holds[0], client)
-    return where.x, where.z, where.theta, where.rate
+    read(holds[0], client)
 
 
-def client_of(p: Any, number: int, body: int) -> Client:
-    """Return the client of a number, in which a body is."""
+def client_of(p: Any, number: int, body: int, state: FloatArray) -> Client:
+    """Return the client of a number, in which a body is; poses are read into a state."""
     handle, answer = int(clients(p)[number]), np.zeros(2, np.int64)
     located(handle, body, answer)
     place, motion = answer.tolist()
@@ -245,6 +252,7 @@ def client_of(p: Any, number: int, body: int) -> Client:
         answer,
         _memory(place, 7, np.float64),
         _memory(motion, 6, np.float64),
+        state,
     )
 
 

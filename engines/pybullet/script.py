@@ -1,6 +1,7 @@
 """A scene in PyBullet's own words, for a script that needs the library alone."""
 
 import math
+from collections.abc import Iterator
 from textwrap import fill
 from typing import Any
 
@@ -8,40 +9,44 @@ from engines.parts.script import Script
 from engines.pybullet.calls import (
     Call,
     Constant,
+    aloft,
     base_body,
     base_call,
     base_place,
     base_shape,
-    block_body,
-    block_call,
-    block_shape,
+    body_call,
+    body_of,
+    body_shape,
     engine_call,
 )
 from engines.pybullet.settings import BulletSettings
 from engines.scene import Scene
 
-FLOOR, SHAPE, BASE, BLOCK = map(Constant, ("floor", "shape", "base", "block"))
-"""Variables of the script."""
+FLOOR, BASE = map(Constant, ("floor", "base"))
+"""Variables of the script; of the first body they are ``shape`` and ``block``."""
 
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of PyBullet; see `engines.parts.script`."""
     ground = base_place(scene, s)
-    engine, bodies = engine_call(scene, s, dt_s), (block_call(scene, s, BLOCK), base_call(s, BASE))
-    shape, body = block_shape(scene, s, dt_s), block_body(scene, s, SHAPE)
-    settings = (engine, shape, body, *bodies)
+    engine, base, made, settings = engine_call(scene, s, dt_s), base_call(s, BASE), [], []
+    names = [f"block{number or ''}" for number in range(len(scene.bodies))]
+    for number, (body, name) in enumerate(zip(scene.bodies, names, strict=True)):
+        shape, called = body_shape(scene, number, s, dt_s), Constant(f"shape{number or ''}")
+        it, tuned = body_of(body, s, called), body_call(scene, number, s, Constant(name))
+        settings += [shape, it, tuned]
+        made += [f"{called} = {written(shape)}", f"{name} = {written(it)}", written(tuned)]
     return Script(
         imports=("import pybullet as p",),
-        settings=(f"p.setTimeStep({dt_s!r})", *map(written, settings)),
+        settings=(f"p.setTimeStep({dt_s!r})", *map(written, (engine, *settings, base))),
         build=(
             "p.connect(p.DIRECT)",
             written(engine),
             f"floor = {written(base_shape(scene, s))}",
             f"base = {written(base_body(FLOOR, ground))}",
-            f"shape = {written(shape)}",
-            f"block = {written(body)}",
-            *map(written, bodies),
-            *_beginning(scene),
+            *made,
+            written(base),
+            *_beginning(scene, names),
             "p.setTimeStep(DT)",
         ),
         step=("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
@@ -53,18 +58,17 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     )
 
 
-def _beginning(scene: Scene) -> tuple[str, ...]:
-    """Return lines that let the block set out; it has its inertia only after a step, far aloft."""
-    at, half = scene.beginning, 0.5 * scene.beginning.theta
-    turned = (0.0, math.sin(half), 0.0, math.cos(half))
-    velocities = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
-    aloft = (0.0, 0.0, 2.0 * scene.block.height), (0.0, 0.0, 0.0, 1.0)
-    return (
-        f"p.resetBasePositionAndOrientation(block, {aloft[0]}, {aloft[1]})",
-        "p.stepSimulation()",
-        f"p.resetBasePositionAndOrientation(block, {(at.x, 0.0, at.z)}, {turned})",
-        f"p.resetBaseVelocity(block, {velocities[0]}, {velocities[1]})",
-    )
+def _beginning(scene: Scene, names: list[str]) -> Iterator[str]:
+    """Yield lines that let bodies set out; each has its inertia only after a step, far aloft."""
+    for place, name in zip(aloft(scene), names, strict=True):
+        yield f"p.resetBasePositionAndOrientation({name}, {place}, {(0.0, 0.0, 0.0, 1.0)})"
+    yield "p.stepSimulation()"
+    for body, name in zip(scene.bodies, names, strict=True):
+        at, half = body.at, 0.5 * body.at.theta
+        turned = (0.0, math.sin(half), 0.0, math.cos(half))
+        velocities = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
+        yield f"p.resetBasePositionAndOrientation({name}, {(at.x, 0.0, at.z)}, {turned})"
+        yield f"p.resetBaseVelocity({name}, {velocities[0]}, {velocities[1]})"
 
 
 def written(call: Call) -> str:

@@ -1,6 +1,7 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld, script
 from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
 
@@ -11,6 +12,7 @@ ENGINE = Engine(
     packages=("pymunk",),
     install="rocking[pymunk]",
     build=PymunkWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",

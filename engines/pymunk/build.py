@@ -10,6 +10,10 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
+from engines.layouts import BASE, Body
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.script import Script, defined, filled, settings_of
@@ -30,13 +34,35 @@ README = "the library's own first example, space.step(0.02)"
 
 def numbers(scene: Scene) -> SimpleNamespace:
     """Return the numbers of a scene."""
-    at, block = scene.beginning, scene.block
+    far, bodies = FLOOR_HEIGHTS * scene.bodies[0].height, scene.bodies
+    deep = [(-far, -far), (far, -far), (far, 0.0), (-far, 0.0)]
+    contacts = [
+        SimpleNamespace(
+            **{"x": 0.5 * bodies[contact.body].width, "body": contact.body, "on": contact.on},
+            z=0.5 * contact.face * bodies[contact.body].height,
+            under=deep if contact.on == BASE else boxed(bodies[contact.on]),
+        )
+        for contact in scene.layout.contacts
+    ]
     return SimpleNamespace(
-        **{"x": 0.5 * block.width, "z": 0.5 * block.height, "far": FLOOR_HEIGHTS * block.height},
-        **{"mass": scene.mass, "inertia": scene.inertia[1]},
+        **{"far": far, "bodies": list(map(of_body, bodies)), "contacts": contacts},
+    )
+
+
+def of_body(body: Body) -> SimpleNamespace:
+    """Return the numbers of a body."""
+    at = body.at
+    return SimpleNamespace(
+        **{"mass": body.mass, "inertia": body.inertia[1], "box": boxed(body)},
         **{"place": (at.x, at.z), "angle": -at.theta, "at_rest": at.at_rest},
         **{"velocity": (at.velocity_x, at.velocity_z), "rate": -at.rate},
     )
+
+
+def boxed(body: Body) -> list[tuple[float, float]]:
+    """Return the corners [m] of a body, about its centre."""
+    x, z = 0.5 * body.width, 0.5 * body.height
+    return [(-x, -z), (x, -z), (x, z), (-x, z)]
 
 
 def values(scene: Scene, s: PymunkSettings, dt_s: float) -> SimpleNamespace:
@@ -45,11 +71,12 @@ def values(scene: Scene, s: PymunkSettings, dt_s: float) -> SimpleNamespace:
         **{"geometry": s.geometry, "friction": float(s.friction), "bias": s.bias, "level": -LEVEL},
         **{"iterations": s.iterations_of(scene), "slop": s.slop_of(scene, dt_s)},
         margin=s.margin_of(scene, dt_s),
+        pivots=[c.face * side for c in scene.layout.contacts for side in (1.0, -1.0)],
     )
 
 
 def build(pymunk: Any, n: Any, s: Any) -> Any:
-    """Build a block on a body that does not move by itself; see `engines.parts.script`."""
+    """Build bodies on one that does not move by itself; see `engines.parts.script`."""
     space = pymunk.Space()
     if s.iterations is not None:
         space.iterations = s.iterations
@@ -58,29 +85,35 @@ def build(pymunk: Any, n: Any, s: Any) -> Any:
     if s.bias is not None:
         space.collision_bias = s.bias
     base = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    block = pymunk.Body(n.mass, n.inertia)
-    block.position, block.angle = n.place, n.angle
-    if not n.at_rest:
-        block.velocity, block.angular_velocity = n.velocity, n.rate
+    bodies, corners, floors = [], [], []
+    for b in n.bodies:
+        block = pymunk.Body(b.mass, b.inertia)
+        block.position, block.angle = b.place, b.angle
+        if not b.at_rest:
+            block.velocity, block.angular_velocity = b.velocity, b.rate
+        bodies.append(block)
+        if s.geometry == "box":
+            corners.append(pymunk.Poly(block, b.box))
     if s.geometry == "box":
-        corners = [pymunk.Poly(block, [(-n.x, -n.z), (n.x, -n.z), (n.x, n.z), (-n.x, n.z)])]
         floors = [pymunk.Segment(base, (-n.far, 0.0), (n.far, 0.0), 0.0)]
     else:
-        corners = [pymunk.Circle(block, 0.0, (x, -n.z)) for x in (-n.x, n.x)]
-        deep = [(-n.far, -n.far), (n.far, -n.far), (n.far, 0.0), (-n.far, 0.0)]
-        # the radius that a floor is made with bounds the ones that it is given later
-        floors = [pymunk.Poly(base, deep, radius=s.margin) for _ in corners]
-    for number, pair in enumerate(zip(corners, floors, strict=True)):
-        for shape in pair:  # a corner meets its own floor alone
-            shape.friction = math.sqrt(s.friction)  # the product counts
-            shape.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
-    space.add(base, block, *corners, *floors)
-    return space, base, block, corners, floors
+        for c in n.contacts:
+            corners += [pymunk.Circle(bodies[c.body], 0.0, (x, c.z)) for x in (-c.x, c.x)]
+            # the radius that a floor is made with bounds the ones that it is given later
+            under = [base, *bodies][c.on + 1]
+            floors += [pymunk.Poly(under, c.under, radius=s.margin) for _ in (1, 2)]
+        for number, pair in enumerate(zip(corners, floors, strict=True)):
+            for shape in pair:  # a corner meets its own floor alone
+                shape.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
+    for shape in (*corners, *floors):
+        shape.friction = math.sqrt(s.friction)  # the product counts
+    space.add(base, *bodies, *corners, *floors)
+    return space, base, bodies, corners, floors
 
 
 def hold(floors: Any, about: float, s: Any) -> None:
     """Keep the corner in contact about which the block turns, both where it turns about neither."""
-    for side, floor in zip((-1.0, 1.0), floors, strict=True):
+    for side, floor in zip(s.pivots, floors, strict=True):
         floor.unsafe_set_radius(s.margin if side * about >= s.level else 0.0)
 
 
@@ -103,19 +136,20 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
 
 
 class PymunkWorld:
-    """A block on a body that does not move by itself."""
+    """Bodies on one that does not move by itself."""
 
     def __init__(self, scene: Scene, settings: PymunkSettings, dt_s: float) -> None:
         self.settings = settings
         self._pm: Any = imported("pymunk")
-        self._half = (0.5 * scene.block.width, 0.5 * scene.block.height)
         self._moving, self._dt = scene.frame == "world", 0.0
-        self._values = values(scene, settings, dt_s)
-        built = build(self._pm, numbers(scene), self._values)
-        self._space, self._base, self._body, self._corners, self._floors = built
+        self._values, n = values(scene, settings, dt_s), numbers(scene)
+        built = build(self._pm, n, self._values)
+        self._space, self._base, self._bodies, self._corners, self._floors = built
+        self._at = [(x, c.z) for c in n.contacts for x in (-c.x, c.x)]
+        self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._base.position_func = _stay
-        if settings.positions:
-            self._body.position_func = _stay
+        for body in self._bodies if settings.positions else ():
+            body.position_func = _stay
         self._fault = self._read_back(scene)
 
     @property
@@ -135,14 +169,16 @@ class PymunkWorld:
         self._space.step(dt)
         if self._moving:
             self._base.position = (step.base_x, 0.0)
-        if own:
-            self._pm.Body.update_position(self._body, step.dt_s)
+        for body in self._bodies if own else ():
+            self._pm.Body.update_position(body, step.dt_s)
 
-    def pose(self) -> Pose:
-        """Read the block's pose back."""
-        body, (base_x, _) = self._body, self._base.position
-        x, z = body.position
-        return Pose(x - base_x, z, -body.angle, -body.angular_velocity)
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        base_x, _ = self._base.position
+        for row, body in zip(self._state, self._bodies, strict=True):
+            x, z = body.position
+            row[:] = x - base_x, z, -body.angle, -body.angular_velocity
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken."""
@@ -160,23 +196,26 @@ class PymunkWorld:
             back = min(step.dt_s / before, MOST_REFLECTION)
         bounce = self.settings.restitution * self.settings.base_restitution
         # equal steps do not say about which corner
-        about = 0.0 if step.grip is Grip.REST else step.side or -self._body.angle
+        about = 0.0 if step.grip is Grip.REST else step.side or -self._bodies[0].angle
         hold(self._floors, about, self._values)
-        for side, corner, floor in zip((-1.0, 1.0), self._corners, self._floors, strict=True):
+        pairs = zip(self._values.pivots, self._at, self._corners, self._floors, strict=True)
+        for side, at, corner, floor in pairs:
             returned = back if side * about >= -LEVEL and step.side else 0.0
             corner.elasticity, floor.elasticity = 1.0, max(returned, bounce)
             slip = 0.0
             if returned:
-                at = (side * self._half[0], -self._half[1])
-                slip = self._body.velocity_at_local_point(at)[0] - self._base.velocity[0]
+                under = floor.body.velocity[0]
+                slip = corner.body.velocity_at_local_point(at)[0] - under
             corner.surface_velocity = (returned * slip, 0.0)
 
     def _read_back(self, scene: Scene) -> str:
-        s, space = self.settings, self._space
+        s, space, masses = self.settings, self._space, {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self._bodies, strict=True)):
+            masses[f"mass {number}"] = (wanted.mass, found.mass)
+            masses[f"moment {number}"] = (wanted.inertia[1], found.moment)
         return disagreement(
             {
-                "mass": (scene.mass, self._body.mass),
-                "moment": (scene.inertia[1], self._body.moment),
+                **masses,
                 "friction": (s.friction, self._corners[0].friction * self._floors[0].friction),
                 "iterations": (self._values.iterations, space.iterations),
                 "slop": (None if s.margin else s.slop, space.collision_slop),

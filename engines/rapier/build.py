@@ -27,15 +27,15 @@ FROZEN = 1e-5
 
 def numbers(scene: Scene, s: RapierSettings) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
-    at, unit, sunk = scene.beginning, s.unit_of(scene), s.sunk_of(scene)
-    radius = s.corner_radius * scene.block.height
+    (body,), unit, sunk = scene.bodies, s.unit_of(scene), s.sunk_of(scene)
+    at, radius = body.at, s.corner_radius * body.height
     x, y, z = counted(s.base_half_size(scene), unit)
     return SimpleNamespace(
-        **{"unit": unit, "half": counted(half_size(scene), unit), "radius": radius * unit},
-        corners=[counted(each, unit) for each in corner_spheres(scene, radius, planar=s.planar)],
+        **{"unit": unit, "half": counted(half_size(body), unit), "radius": radius * unit},
+        corners=[counted(each, unit) for each in corner_spheres(body, radius, planar=s.planar)],
         **{"base_half": (x, y, z), "below": (0.0, 0.0, -z), "lowered": (0.0, 0.0, -sunk)},
-        **{"mass": scene.mass, "density": scene.density / unit**3},
-        inertia=tuple(moment * unit**2 for moment in scene.inertia),
+        **{"mass": body.mass, "density": scene.density / unit**3},
+        inertia=tuple(moment * unit**2 for moment in body.inertia),
         **{"place": (at.x * unit, 0.0, at.z * unit - sunk), "at_rest": at.at_rest},
         **{"turn": (0.0, at.theta, 0.0), "spin": (0.0, at.rate, 0.0)},
         velocity=(at.velocity_x * unit, 0.0, at.velocity_z * unit),
@@ -122,7 +122,7 @@ class RapierWorld:
     moment = Moment.MIDDLE
 
     def __init__(self, scene: Scene, settings: RapierSettings, dt_s: float) -> None:
-        self._s, self._alpha = settings, scene.block.alpha
+        self._s, self._alpha = settings, scene.system.alpha
         self._moving = scene.frame == "world"
         self._driven = self._moving or settings.reflection
         self._dt = self._speed = self._place = 0.0
@@ -144,16 +144,16 @@ class RapierWorld:
         if self._moving:
             self._place = step.base_x * self._unit
 
-    def pose(self) -> Pose:
+    def state(self) -> tuple[Pose]:
         """Read the block's pose back."""
         at, turn = self._body.translation, self._body.rotation
         theta = 2.0 * math.atan2(turn.j, turn.w)
         x, z = (at.x - self._place) / self._unit, (at.z + self._sunk) / self._unit
-        return Pose(x, z, theta, self._body.angvel.y)
+        return (Pose(x, z, theta, self._body.angvel.y),)
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the block sleeps where none can rest."""
-        if self._body.is_sleeping and abs(self.pose().theta) > FROZEN * self._alpha:
+        if self._body.is_sleeping and abs(self.state()[0].theta) > FROZEN * self._alpha:
             return (
                 "the library put the block to sleep aloft, and gravity that changes wakes nothing"
             )
@@ -182,7 +182,7 @@ class RapierWorld:
         colliders = [self._world.colliders[it.colliders[0]] for it in (self._base, self._body)]
         friction = 0.5 * sum(collider.friction for collider in colliders)
         pairs = {
-            "mass": (scene.mass, self._body.mass),
+            "mass": (scene.bodies[0].mass, self._body.mass),
             "friction": (self._s.friction, friction),
             "restitution": (self._s.restitution, colliders[1].restitution),
             "iterations": (

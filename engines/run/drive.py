@@ -64,7 +64,7 @@ def run(engine: str, scene: Scene) -> Response:
             scene,
             preset.ordinary_step_s(scene),
             preset.stepping,
-            asked.resolution(scene.block),
+            asked.resolution(scene.system),
         )
         driver = driver_of(world, scene)
     finally:
@@ -161,7 +161,7 @@ class Walk:
         self._look, self._world = look, world
         self._take = _taker(world, stepping)
         look.make_room(LOOK_AROUND)
-        self._step = look.next(world.pose())
+        self._step = look.next(world.state())
 
     def go(self, most: int) -> int:
         """Take up to so many steps while the run goes on; return how many were taken."""
@@ -170,7 +170,7 @@ class Walk:
             if self._step is None or taken >= most:
                 break
             taken += self._take(self._step)
-            self._step = self._look.next(self._world.pose())
+            self._step = self._look.next(self._world.state())
         return taken
 
 

@@ -140,7 +140,7 @@ def begin_landing(
     resolution : Resolution
         What the engine's numbers tell apart: nothing finer is asked of it.
     """
-    block = scene.block
+    block = scene.system
     fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
     # a swing that rises by no more than the engine's numbers tell apart
     unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * fall))

@@ -8,17 +8,19 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Problem, Response
+from analytic.response import History, Problem, Response
 from engines.declaration import Stepping
 from engines.parts.compiled import FloatArray, State, kernel, shared
 from engines.run.ground import rows_of
 from engines.run.steps import Pace, begin_pace, next_step
 from engines.run.timetable import timetable
 from engines.scene import Scene
-from engines.watching.answer import problem_of, response_of
+from engines.watching.answer import problem_of, response_of, slide_response, together
+from engines.watching.frame import Spread, begin_spread, observables_of, see_spread
 from engines.watching.history import sample
 from engines.watching.observe import (
     EVENTS_A_LOOK,
@@ -26,6 +28,7 @@ from engines.watching.observe import (
     begin_watch,
     see,
 )
+from engines.watching.sliding import Slide, begin_slide, see_slide
 from engines.watching.swing import Row
 from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution, Step
 
@@ -38,46 +41,67 @@ GRIP, GRIPS = Step._fields.index("grip"), tuple(Grip)
 class Run(State):
     """What is known of a run: how it steps, and what was seen.
 
+    A run has one for each body that rocks, and one where there is none; the first one steps, and
+    sees what concerns all.
+
     Attributes
     ----------
     pace : Pace
     watch : Watch
+        Of the body, where it rocks.
+    spread : Spread
+        Of a frame.
+    slide : Slide
+        Of a box that slides.
     """
 
     pace: Pace
     watch: Watch
+    spread: Spread
+    slide: Slide
 
 
 @shared
-def onward(run: Run, lists: Lists, pose: Pose) -> Step:
-    """Return the step from where the block has the pose `pose`."""
+def onward(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
+    """Return the step from where the bodies have a state."""
     ground, stops, loads, _, _ = lists
-    return next_step(run.pace, ground, stops, loads, pose, run.watch.lifted)
+    run = runs[0]
+    return next_step(run.pace, ground, stops, loads, pose_in(state, 0), run.watch.lifted)
 
 
 @shared
-def undecided(run: Run, lists: Lists, pose: Pose) -> bool:
-    """See the pose at the end of the step; return whether the run goes on."""
+def pose_in(state: FloatArray, body: int) -> Pose:
+    """Return the pose of a body in a state."""
+    return Pose(state[body, 0], state[body, 1], state[body, 2], state[body, 3])
+
+
+@shared
+def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
+    """See the state at the end of the step; return whether the run goes on."""
     _, _, _, rows, events = lists
-    see(run.watch, rows, events, run.pace.time, run.pace.last_dt, pose)
-    return not (run.watch.done or run.watch.problem)
+    first = runs[0]
+    if first.slide.on:
+        see_slide(first.slide, events[0], first.pace.time, pose_in(state, 0))
+        return not (first.slide.done or first.slide.problem)
+    see_spread(first.spread, state)
+    goes_on = False
+    for body in range(len(runs)):
+        watch = runs[body].watch
+        if not watch.done:
+            pose = pose_in(state, body)
+            see(watch, rows[body], events[body], first.pace.time, first.pace.last_dt, pose)
+        if watch.problem or watch.overturned:
+            return False
+        goes_on = goes_on or not watch.done
+    return goes_on
 
 
 @kernel
-def look(
-    runs: Sequence[Run],
-    lists: Lists,
-    step: FloatArray,
-    x: float,
-    z: float,
-    theta: float,
-    rate: float,
-) -> bool:
-    """See a pose, and choose the next step unless the run is over; return whether it goes on."""
-    run, pose = runs[0], Pose(x, z, theta, rate)
-    if run.pace.time > 0.0 and not undecided(run, lists, pose):
+def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
+    """See a state, and choose the next step unless the run is over; return whether it goes on."""
+    if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
         return False
-    put_step(step, onward(run, lists, pose))
+    put_step(step, onward(runs, lists, state))
     return True
 
 
@@ -108,8 +132,8 @@ class Look:
 
     Attributes
     ----------
-    runs : array (1,)
-        What is known, a `Run`.
+    runs : array
+        What is known, a `Run` for each body that rocks.
     lists : tuple
         And what of it grows with the motion and the run; see `Lists`.
     """
@@ -122,41 +146,58 @@ class Look:
         moment: Moment = Moment.MIDDLE,
         resolution: Resolution = UNLIMITED,
     ) -> None:
-        self.runs = Run.blank()
-        self.run = run = self.runs[0]
-        begin_pace(run.pace, scene, dt_s, stepping, moment, resolution)
-        begin_watch(run.watch, scene, dt_s, moment, resolution)
+        rocking = scene.layout.rocking
+        self.runs = Run.blank(max(rocking, 1))
+        first = self.runs[0]
+        begin_pace(first.pace, scene, dt_s, stepping, moment, resolution)
+        for run, body in zip(self.runs, scene.bodies[:rocking], strict=False):
+            begin_watch(run.watch, scene, body, dt_s, moment, resolution)
+        begin_spread(first.spread, scene.layout)
+        if not rocking:
+            begin_slide(first.slide, scene)
         ground = np.array(rows_of(scene.motion.segments().tolist()))
         table = timetable(scene, dt_s, resolution.time_s)
-        rows = np.zeros((0, len(Row._fields)))
-        if scene.times is not None:
-            rows = np.array([Row(0.0, 0.0, *scene.start)])
-            run.watch.rows = 1
-        self.lists: Lists = (ground, *table, rows, np.zeros((0, 4)))
-        self._times = scene.times
+        rows = np.zeros((len(self.runs), 0, len(Row._fields)))
+        if scene.times is not None and rocking:
+            rows = np.array([[Row(0.0, 0.0, *scene.start)]] * rocking)
+            for run in self.runs:
+                run.watch.rows = 1
+        self.lists: Lists = (ground, *table, rows, np.zeros((len(self.runs), 0, 4)))
+        self._times, self._alpha = scene.times, scene.system.alpha
         self._numbers = np.zeros(len(Step._fields))
+        self._shape = len(scene.bodies), len(Pose._fields)
+
+    @property
+    def watches(self) -> Sequence[Watch]:
+        """What was seen of each body that rocks."""
+        return [run.watch for run in self.runs]
 
     @property
     def goes_on(self) -> bool:
         """Whether the response is neither decided nor spoilt."""
-        watch = self.run.watch
-        return not (watch.done or watch.problem)
+        slide = self.runs[0].slide
+        if slide.on:
+            return not (slide.done or slide.problem)
+        spoilt = any(watch.problem or watch.overturned for watch in self.watches)
+        return not (spoilt or all(watch.done for watch in self.watches))
 
     def make_room(self, looks: int) -> None:
         """Make room for what so many looks may write down."""
         *_, rows, events = self.lists
-        watch = self.run.watch
         if self._times is not None:
-            rows = roomy(rows, watch.rows, looks)
+            rows = roomy(rows, max(watch.rows for watch in self.watches), looks)
         # the response completes one more
-        events = roomy(events, watch.events, EVENTS_A_LOOK * looks + 1)
+        used = max(*(watch.events for watch in self.watches), self.runs[0].slide.slips)
+        events = roomy(events, used, EVENTS_A_LOOK * looks + 1)
         self.lists = (*self.lists[:3], rows, events)
 
-    def next(self, pose: Pose) -> Step | None:
-        """See the pose after a step; return the next step, or None where the run is over."""
-        x, z, theta, rate = pose
-        where = float(x), float(z), float(theta), float(rate)
-        if not look(self.runs, self.lists, self._numbers, *where):
+    def next(self, state: ArrayLike) -> Step | None:
+        """See the state after a step; return the next step, or None where the run is over."""
+        where = np.asarray(state, dtype=np.float64)
+        if where.shape != self._shape:
+            words = f"it must be {self._shape}, a row for each body"
+            raise ValueError(f"the engine's state has the shape {where.shape}; {words}")
+        if not look(self.runs, self.lists, self._numbers, where):
             return None
         numbers: list[Any] = self._numbers.tolist()
         numbers[GRIP] = GRIPS[int(numbers[GRIP])]
@@ -164,32 +205,40 @@ class Look:
 
     @property
     def problem(self) -> Problem | None:
-        """Why the response is no longer that of a rocking block."""
-        return problem_of(self.run.watch)
+        """Why the response is no longer that of what was posed."""
+        seen = [self.runs[0].slide, *self.watches]
+        return next((problem_of(each) for each in seen if each.problem), None)
 
     def response(self, *, steps: int, wall_s: float) -> Response:
         """Return what was seen until now."""
         *_, rows, events = self.lists
-        watch, history = self.run.watch, None
-        if self._times is not None:
-            history = sample(rows[: watch.rows], self._times)
-        return response_of(watch, events, history, steps=steps, wall_s=wall_s)
+        first, cost = self.runs[0], {"steps": steps, "wall_s": wall_s}
+        if first.slide.on:
+            return slide_response(first.slide, events[0], **cost)
+        responses = [
+            response_of(run.watch, events[number], self._history(run.watch, rows[number]), **cost)
+            for number, run in enumerate(self.runs)
+        ]
+        return together(responses, observables_of(first.spread, self._alpha))
+
+    def _history(self, watch: Watch, rows: FloatArray) -> History | None:
+        return None if self._times is None else sample(rows[: watch.rows], self._times)
 
 
 def compile_look() -> None:
     """Compile what looks at a run, if that has not been done on this machine."""
     scene = Scene(
-        block=RigidBlock(width=0.5, height=1.5), motion=SinePulse(amplitude=1.0, omega=1.0)
+        system=RigidBlock(width=0.5, height=1.5), motion=SinePulse(amplitude=1.0, omega=1.0)
     )
     look = Look(scene, dt_s=1e-3)
     look.make_room(1)
-    look.next(Pose(*(getattr(scene.beginning, name) for name in Pose._fields)))
+    look.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
 
 
-def roomy(table: FloatArray, used: int, more: int) -> FloatArray:
-    """Return a table, or a larger copy, that has room for so many more rows than are used."""
-    if used + more <= len(table):
-        return table
-    larger = np.zeros((2 * (used + more), table.shape[1]))
-    larger[:used] = table[:used]
+def roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
+    """Return tables, or larger copies, that have room for so many more rows than are used."""
+    if used + more <= tables.shape[1]:
+        return tables
+    larger = np.zeros((len(tables), 2 * (used + more), tables.shape[2]))
+    larger[:, :used] = tables[:, :used]
     return larger

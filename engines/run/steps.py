@@ -23,7 +23,7 @@ for function in (
 MIDDLE, END = Moment.MIDDLE.value, Moment.END.value
 
 POLICIES = tuple(Stepping)
-FIXED, LANDING = POLICIES.index(Stepping.FIXED), POLICIES.index(Stepping.LANDING)
+FIXED, LANDING, EVEN = map(POLICIES.index, (Stepping.FIXED, Stepping.LANDING, Stepping.OWN))
 
 
 class Pace(State):
@@ -89,14 +89,20 @@ def begin_pace(
     """
     fill(
         pace,
-        policy=POLICIES.index(stepping),
+        policy=policy_of(stepping, scene),
         dt=dt_s,
         part=moment.value,
-        gravity=scene.block.gravity,
+        gravity=scene.system.gravity,
         felt=scene.frame == "base",
     )
     begin_times(pace.times, scene, dt_s, resolution.time_s)
     begin_landing(pace.landing, scene, dt_s, moment, resolution)
+
+
+def policy_of(stepping: Stepping, scene: Scene) -> int:
+    """Return which of `POLICIES` chooses: steps land on the impacts of what rocks."""
+    lands = stepping is Stepping.LANDING
+    return EVEN if lands and not scene.layout.rocking else POLICIES.index(stepping)
 
 
 @shared

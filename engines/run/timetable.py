@@ -84,7 +84,7 @@ def timetable(scene: Scene, dt_s: float, resolved_s: float = 0.0) -> tuple[Float
     resolved_s : float, optional
         Times [s] closer than this are the same to the engine.
     """
-    block, hints = scene.block, scene.hints
+    block, hints = scene.system, scene.hints
     loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
     if hints.swapped:
         loads = [load._replace(side=-load.side) for load in loads]

@@ -1,6 +1,8 @@
-"""What was seen of a block, as a response or as the reason why there is none."""
+"""What was seen of a scene, as a response or as the reason why there is none."""
 
 import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.parts.compiled import FloatArray
@@ -17,20 +19,23 @@ from engines.watching.observe import (
     Watch,
     complete,
 )
+from engines.watching.sliding import DISTANCE, Slide
+from engines.watching.sliding import WHEN as STOP
+from engines.watching.sliding import observables_of as observables_of_slide
 
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""
 
 
-def problem_of(watch: Watch) -> Problem | None:
-    """Return why the response is no longer that of a rocking block."""
+def problem_of(watch: Watch | Slide) -> Problem:
+    """Return why the response is no longer that of what was posed, where there is a reason."""
     words = {
         DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
         SANK: (Reason.SANK, f"the block sank {watch.far:.3g} m, through the base"),
         THROWN: (Reason.THROWN, f"the block was thrown {watch.far:.3g} m off the base"),
         SLID: (Reason.SLID, f"the pivot slid {watch.far:.3g} m along the base"),
     }
-    return Problem(*words[int(watch.problem)]) if watch.problem else None
+    return Problem(*words[int(watch.problem)])
 
 
 def response_of(
@@ -68,3 +73,39 @@ def _remark(watch: Watch) -> str:
     if watch.sink <= 2.0 * watch.half_width * SINK_WIDTHS:
         return ""
     return f"the block sank {watch.sink:.3g} m into the base"
+
+
+def together(responses: Sequence[Response], observables: Mapping[str, float]) -> Response:
+    """Return the response of bodies that rock side by side: the first one's, and how all fared.
+
+    It has overturned if one has, and its peak is the largest.
+    """
+    first, *others = responses
+    if not others:
+        return replace(first, observables=observables) if observables else first
+    fallen = [each for each in responses if each.outcome is Outcome.OVERTURNED]
+    peaks = {f"peak_{number + 1}": each.peak_ratio for number, each in enumerate(responses)}
+    return replace(
+        first,
+        outcome=Outcome.OVERTURNED if fallen else first.outcome,
+        peak_ratio=max(each.peak_ratio for each in responses),
+        crossed=any(each.crossed for each in responses),
+        message=next((each.message for each in responses if each.message), ""),
+        observables={**peaks, **observables},
+    )
+
+
+def slide_response(slide: Slide, slips: FloatArray, *, steps: int, wall_s: float) -> Response:
+    """Return what was seen of a box that slides."""
+    seen = slips[: slide.slips]
+    slid = Outcome.SLID if slide.slips else Outcome.AT_REST
+    return Response(
+        outcome=Outcome.OVERTURNED if slide.overturned else slid,
+        peak_ratio=math.inf if slide.overturned else 0.0,
+        slips=tuple(seen[:, DISTANCE].tolist()),
+        steps=steps,
+        wall_s=wall_s,
+        slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
+        sink_m=float(slide.depth),
+        observables={**observables_of_slide(slide), "stop_s": float(max(seen[:, STOP], default=0))},
+    )

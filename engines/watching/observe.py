@@ -7,6 +7,7 @@ of the steps; what lies between two steps is interpolated.
 import math
 from typing import Annotated
 
+from engines.layouts import Body
 from engines.parts.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.swing import (
@@ -92,6 +93,8 @@ class Watch(State):
     ----------
     ahead : float
         Part of a step that its velocity is ahead of its end.
+    home : float
+        Where the block's centre is at rest [m].
     half_width, half_height, alpha : float
         Of the block [m, m, rad].
     lift, rest_time, rest_rate : float
@@ -144,6 +147,7 @@ class Watch(State):
     """
 
     ahead: float
+    home: float
     half_width: float
     half_height: float
     alpha: float
@@ -191,7 +195,7 @@ class Watch(State):
 
 
 def begin_watch(
-    watch: Watch, scene: Scene, dt_s: float, moment: Moment, resolution: Resolution
+    watch: Watch, scene: Scene, body: Body, dt_s: float, moment: Moment, resolution: Resolution
 ) -> None:
     """Begin at rest, or in a swing that no uplift began.
 
@@ -201,6 +205,8 @@ def begin_watch(
         What is filled.
     scene : Scene
         What is being simulated.
+    body : Body
+        Which of its bodies is watched: one that rocks.
     dt_s : float
         Ordinary step [s], which bounds what can be resolved.
     moment : Moment
@@ -208,7 +214,7 @@ def begin_watch(
     resolution : Resolution
         What the engine's numbers tell apart.
     """
-    block, (theta, rate) = scene.block, scene.start
+    block, (theta, rate) = scene.system, scene.start
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
     lift += LIFT_FALL * block.gravity * dt_s**2
     aloft, peak = bool(scene.side), abs(theta)
@@ -216,6 +222,7 @@ def begin_watch(
     fill(
         watch,
         ahead=1.0 - moment.value,
+        home=body.home[0],
         half_width=0.5 * block.width,
         half_height=0.5 * block.height,
         alpha=block.alpha,
@@ -273,7 +280,8 @@ def see(
         watch.hop = max(watch.hop, level - reach)
     if abs(theta) <= watch.alpha:
         inward = math.copysign(watch.half_width * (1.0 - cosine), theta)
-        watch.slide = max(watch.slide, abs(pose.x - watch.half_height * sine - inward))
+        shifted = pose.x - watch.home - watch.half_height * sine - inward
+        watch.slide = max(watch.slide, abs(shifted))
     check(watch, level - reach, pose.z)
     if watch.keeps_rows:
         put(rows, watch.rows, row)

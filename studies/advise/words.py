@@ -33,7 +33,7 @@ def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> 
         p dt, or the preset's dial; nan for its own step.
     """
     asked = options_at(preset, value)
-    scene = Scene(block=block, motion=ANY_PULSE, preset=preset.name, **asked)
+    scene = Scene(system=block, motion=ANY_PULSE, preset=preset.name, **asked)
     lines = [*_settings(engine, preset, scene), *_besides(preset)]
     return "\n".join(lines)
 

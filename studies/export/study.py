@@ -77,7 +77,7 @@ def command(
         raise BadInputError(
             f"--engine is {engine!r}; its block stays at rest, with no peak to tell"
         )
-    scene = Scene(block=block, motion=motion, preset=used.name, duration=window, **options)
+    scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
     what = Exported(
         engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
     )

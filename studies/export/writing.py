@@ -102,7 +102,7 @@ def block_text(what: Exported, script: Script) -> str:
         packages=packages,
         beside="".join(f", {name}" for name in script.files),
         script=script,
-        block=what.scene.block,
+        block=what.scene.system,
         start=what.scene.start,
         dt_s=what.preset.ordinary_step_s(what.scene),
         shaken=what.scene.motion.duration,

@@ -138,7 +138,7 @@ def put_back(engine: str, omission: Omission, block: RigidBlock, motion: SinePul
     if preset not in (None, *(use.name for use in ENGINES[engine].presets)):
         words = f"not available: {engine} has no preset {preset!r}"
         return Response.failure(words, reason=Reason.UNAVAILABLE)
-    return run(engine, Scene(block=block, motion=motion, **omission.put_back))
+    return run(engine, Scene(system=block, motion=motion, **omission.put_back))
 
 
 def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
@@ -150,7 +150,7 @@ def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
 def scene_memory(engine: str, put_back: dict[str, Any]) -> float:
     """Return the memory [KiB] that a built scene takes, nan where the system does not tell."""
     block, motion = pose_case()
-    scene = Scene(block=block, motion=motion, **put_back)
+    scene = Scene(system=block, motion=motion, **put_back)
     status = Path("/proc/self/statm")
     if not status.exists():
         return math.nan

@@ -43,7 +43,7 @@ def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
 
 def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
     block, motion = pose_case()
-    scene = Scene(block=block, motion=motion, compiled=False)
+    scene = Scene(system=block, motion=motion, compiled=False)
     # the first run of each driver may compile, which would spend the whole budget
     for compiled in (False, True):
         run(engine, replace(scene, compiled=compiled))
@@ -107,7 +107,7 @@ def own_step(engine: str) -> tuple[Any, str]:
 def example_world(engine: str) -> World:
     """Return a world of an engine, closed: its class is wanted."""
     block, motion = pose_case()
-    world = build(ENGINES[engine], Scene(block=block, motion=motion))
+    world = build(ENGINES[engine], Scene(system=block, motion=motion))
     world.close()
     return world
 

@@ -105,7 +105,7 @@ class Strike:
         """Return the scene at the start, in the preset "fixed" but for what the way sets."""
         tilt = self.start_tilt
         return Scene(
-            block=self.block,
+            system=self.block,
             motion=STILL,
             start=(-tilt, math.sqrt(self._rate_squared(tilt))),
             preset="fixed",
@@ -166,7 +166,7 @@ def strike(engine: Engine, asked: Strike, way: Way) -> Struck:
 
 
 def _watched(world: SteppedWorld, asked: Strike, scene: Scene) -> Struck:
-    half_width, half_height = 0.5 * scene.block.width, 0.5 * scene.block.height
+    half_width, half_height = 0.5 * scene.system.width, 0.5 * scene.system.height
     dt = asked.dt_s
     approach = 2.0 * half_width * asked.omega
 
@@ -176,12 +176,12 @@ def _watched(world: SteppedWorld, asked: Strike, scene: Scene) -> Struck:
         along = pose.x + half_width * cosine - half_height * sine
         return along, pose.z - half_width * sine - half_height * cosine
 
-    pose, kick, slide = world.pose(), world.moment.value * dt, 0.0
+    pose, kick, slide = Pose(*world.state()[0]), world.moment.value * dt, 0.0
     for number in range(AHEAD + 1 + PATIENCE):
         (x, z), end = corner(pose), (number + 1) * dt
-        pull = -scene.block.gravity * kick / dt
+        pull = -scene.system.gravity * kick / dt
         world.step(Step(dt, end, kick, 0.0, pull, 0.0, 0.0, 0.0, Grip.SWING, 0.0))
-        pose, kick = world.pose(), dt
+        pose, kick = Pose(*world.state()[0]), dt
         new_x, new_z = corner(pose)
         rise, slide = (new_z - z) / dt / approach, (new_x - x) / dt / approach
         if z > 0.0 and rise > RISING:

@@ -20,7 +20,7 @@ Kind = Literal["model", "solver", "peer", "engine"]
 none of them crashes; an engine may."""
 
 
-NOT_OPTIONS = frozenset({"block", "motion", "model", "method", "preset", "times"})
+NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset", "times"})
 """What is asked and who, beside which an option is a question of how."""
 
 
@@ -126,7 +126,7 @@ def scene_of(
     for name in options:
         one_of("option", name, allowed)
     sampled = None if times is None else times.tolist()
-    return Scene(block=block, motion=motion, preset=preset, times=sampled, **options)
+    return Scene(system=block, motion=motion, preset=preset, times=sampled, **options)
 
 
 def _engine(name: str, preset: str) -> Source:

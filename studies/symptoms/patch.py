@@ -69,7 +69,7 @@ def named(changes: str) -> str:
 
 def _scene(settings: Mapping[str, Any]) -> Scene:
     motion = SinePulse(amplitude=1.0, omega=1.0)
-    return Scene(block=BLOCK, motion=motion, preset=DEFAULT, settings=settings)
+    return Scene(system=BLOCK, motion=motion, preset=DEFAULT, settings=settings)
 
 
 def _files(script: Script) -> dict[str, list[str]]:

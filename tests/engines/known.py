@@ -21,8 +21,8 @@ class NoSettings:
 
 def standing(scene: Scene, theta: float, rate: float) -> Pose:
     """Return the pose of a block that stands on the corner on the side of its lean."""
-    half_width = math.copysign(0.5 * scene.block.width, theta)
-    half_height = 0.5 * scene.block.height
+    half_width = math.copysign(0.5 * scene.system.width, theta)
+    half_height = 0.5 * scene.system.height
     sine, cosine = math.sin(theta), math.cos(theta)
     x = half_width * (1.0 - cosine) + half_height * sine
     return Pose(x, half_width * sine + half_height * cosine, theta, rate)
@@ -49,8 +49,8 @@ class ScriptedWorld:
         rate_s = step.end_s - (1.0 - self.moment.value) * step.dt_s
         self._pose = standing(self.scene, *self.script(step.end_s, rate_s))
 
-    def pose(self) -> Pose:
-        return self._pose
+    def state(self) -> list[Pose]:
+        return [self._pose]
 
     def fault(self) -> str:
         return ""
@@ -67,7 +67,7 @@ class KnownWorld(ScriptedWorld):
         self._moment = moment
         self._ahead: dict[int, tuple[float, float]] = {}
         if stepping is Stepping.FIXED and scene.step and scene.duration:
-            dt_s = scene.step / scene.block.p
+            dt_s = scene.step / scene.system.p
             # equal steps are known before: one solution for all of them
             ends = [dt_s * (i + 1) for i in range(math.ceil(scene.duration / dt_s) + 1)]
             rated = [end - (1.0 - moment.value) * dt_s for end in ends]
@@ -82,7 +82,7 @@ class KnownWorld(ScriptedWorld):
     def _exact(self, times: list[float]) -> tuple[list[float], list[float]]:
         scene = self.scene
         long = max(scene.motion.duration, times[-1])
-        found = simulate(scene.block, scene.motion, start=scene.start, duration=long, times=times)
+        found = simulate(scene.system, scene.motion, start=scene.start, duration=long, times=times)
         assert found.history is not None
         return found.history.theta.tolist(), found.history.velocity.tolist()
 
@@ -102,9 +102,9 @@ class ElsewhereWorld(KnownWorld):
         super().__init__(scene, Moment.END, Stepping.FIXED)
         self._dt_s, self._raised_m = dt_s, raised_m
 
-    def pose(self) -> Pose:
-        at = super().pose()
-        return at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))
+    def state(self) -> list[Pose]:
+        (at,) = super().state()
+        return [at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))]
 
 
 def watched(

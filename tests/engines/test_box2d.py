@@ -37,7 +37,7 @@ SLENDER = RigidBlock(width=0.5, height=5.5)
 
 def slender_error(half_cycles: int, **settings: Any) -> float:
     motion = pulse(1.5, 5.8, half_cycles, SLENDER)
-    peak = run("box2d", Scene(block=SLENDER, motion=motion, settings=settings)).peak_ratio
+    peak = run("box2d", Scene(system=SLENDER, motion=motion, settings=settings)).peak_ratio
     return abs(peak / simulate(SLENDER, motion).peak_ratio - 1.0)
 
 
@@ -72,7 +72,7 @@ def test_blocks_of_any_size_move_alike(width: float) -> None:
     block = RigidBlock(width=width, height=3.0 * width)
     motion = pulse(1.3, 3.0, 2, block)
     for accuracy in ("loose", "standard"):
-        there = run("box2d", Scene(block=block, motion=motion, accuracy=accuracy)).peak_ratio
+        there = run("box2d", Scene(system=block, motion=motion, accuracy=accuracy)).peak_ratio
         here = run("box2d", scene(MOTION, accuracy=accuracy)).peak_ratio
         assert there == pytest.approx(here, rel=1e-4)
 
@@ -129,7 +129,7 @@ def test_a_block_that_its_skins_hold_leaning_is_at_rest() -> None:
     ever: taken for a swing, it took all the steps there are."""
     block = RigidBlock(width=0.5, height=1.0424795067181944)
     motion = SinePulse(amplitude=4.752179748449666, omega=6.671202601062823, half_cycles=1)
-    posed = Scene(block=block, motion=motion, preset="fixed", max_steps=10_000)
+    posed = Scene(system=block, motion=motion, preset="fixed", max_steps=10_000)
     response = run("box2d", posed)
     assert response.outcome is Outcome.ROCKED, response.message
     exact = simulate(block, motion).peak_ratio

@@ -26,7 +26,7 @@ def new_ones(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def asked(**options: object) -> tuple[object, ...]:
     """Return what a run answers, but for the time it took."""
-    scene = Scene(**{"block": BLOCK, "motion": PULSE, **options})  # type: ignore[arg-type]
+    scene = Scene(**{"system": BLOCK, "motion": PULSE, **options})  # type: ignore[arg-type]
     found: Response = run("pybullet", scene)
     return (found.outcome, repr(found.peak_ratio), found.message, found.steps, found.impacts)
 
@@ -46,7 +46,7 @@ def test_nothing_stays_of_any_setting(wanted: dict[str, object]) -> None:
 
 
 def test_two_worlds_at_once_have_a_client_each() -> None:
-    scene = Scene(block=BLOCK, motion=PULSE)
+    scene = Scene(system=BLOCK, motion=PULSE)
     worlds = [BulletWorld(scene, settings, 1e-3) for settings in (TUNED, LANDING)]
     for world in worlds:
         world.close()

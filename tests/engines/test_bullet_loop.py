@@ -146,7 +146,7 @@ def apart(number: int) -> Scene:
     """Return a scene in which contacts are kept up to a gap of its own."""
     block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
     pulse = SinePulse(amplitude=1.3 * block.gravity * block.width / 1.5, omega=3.0 * block.p)
-    return Scene(block=block, motion=pulse, accuracy="loose")
+    return Scene(system=block, motion=pulse, accuracy="loose")
 
 
 def answer(number: int) -> str:
@@ -185,7 +185,7 @@ ENDLESS = {"preset": "fixed", "duration": 1e5}
 
 
 def test_a_time_limit_ends_a_loop() -> None:
-    asked = Scene(block=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
+    asked = Scene(system=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
     assert driven(asked)
     response = run("pybullet", asked)
     assert response.reason is Reason.UNDECIDED
@@ -200,7 +200,7 @@ def test_a_signal_ends_a_loop() -> None:
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(InterruptedError):
-            run("pybullet", Scene(block=BLOCK, motion=pulse(0.5, 1.0), **ENDLESS))
+            run("pybullet", Scene(system=BLOCK, motion=pulse(0.5, 1.0), **ENDLESS))
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -214,7 +214,7 @@ def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
     motion = pulse(1.3, 0.1, 2, block)
     times = [0.1 * i for i in range(20)]  # the block lifts after 2.5 s
     enough, more = (
-        run("pybullet", Scene(block=block, motion=motion, times=times, **options))
+        run("pybullet", Scene(system=block, motion=motion, times=times, **options))
         for options in (
             {"compiled": compiled, "settings": {"iterations": iterations}}
             for iterations in (1000, 3000)

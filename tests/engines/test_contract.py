@@ -16,6 +16,7 @@ from analytic.record import Record
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Precision, Preset, Stepping
+from engines.parts.compiled import FloatArray
 from engines.pybullet.build import BulletWorld
 from engines.run.drive import build, run
 from engines.world import Moment, Pose
@@ -175,8 +176,8 @@ class RoundedWorld(BulletWorld):
 
     drive = None
 
-    def pose(self) -> Pose:
-        return Pose(*np.array(super().pose(), dtype=np.float32).tolist())
+    def state(self) -> FloatArray:
+        return np.array(super().state(), dtype=np.float32).astype(np.float64)
 
 
 def rounded(precision: Precision, shortest_step: float) -> Engine:
@@ -190,19 +191,20 @@ def test_single_precision_is_judged_by_what_it_tells_apart(
 ) -> None:
     """A block at rest, whose corners are 6e-8 of its height off in single precision."""
     motion = pulse(0.9, 1.0)
-    leaning = Scene(block=BLOCK, motion=motion, duration=5.0)
-    monkeypatch.setattr(RoundedWorld, "pose", trembling)
+    leaning = Scene(system=BLOCK, motion=motion, duration=5.0)
+    monkeypatch.setattr(RoundedWorld, "state", trembling)
     use(monkeypatch, rounded(Precision.DOUBLE, 1e-12))
     assert run("any", leaning).outcome is not Outcome.AT_REST
     use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
     assert run("any", leaning).outcome is Outcome.AT_REST
 
 
-def trembling(world: RoundedWorld) -> Pose:
-    """Return the pose with the noise of single precision, which is different at every look."""
-    x, z, theta, rate = BulletWorld.pose(world)
+def trembling(world: RoundedWorld) -> list[Pose]:
+    """Return the state with the noise of single precision, which is different at every look."""
+    ((x, z, theta, rate),) = BulletWorld.state(world).tolist()
     world._looks = getattr(world, "_looks", 0) + 1  # type: ignore[attr-defined]
-    return Pose(x, z * (1.0 + 6e-8 * math.sin(world._looks)), theta, rate)  # type: ignore[attr-defined]
+    raised = z * (1.0 + 6e-8 * math.sin(world._looks))  # type: ignore[attr-defined]
+    return [Pose(x, raised, theta, rate)]
 
 
 def test_single_precision_rocks(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,7 +212,7 @@ def test_single_precision_rocks(monkeypatch: pytest.MonkeyPatch) -> None:
     1e-7 of a width too early or late."""
     motion = pulse(1.3, 3.0, 2)
     use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
-    response = run("any", Scene(block=BLOCK, motion=motion))
+    response = run("any", Scene(system=BLOCK, motion=motion))
     assert response.peak_ratio == pytest.approx(simulate(BLOCK, motion).peak_ratio, rel=1e-4)
 
 
@@ -226,18 +228,19 @@ class SpringWorld:
     moment = Moment.END
 
     def __init__(self, scene: Scene, settings: SpringSettings, dt_s: float) -> None:
-        at, block = scene.beginning, scene.block
+        (body,), block = scene.bodies, scene.system
+        self._mass, self._inertia, at = body.mass, body.inertia[1], body.at
         self._scene, self._tolerance, self._time = scene, settings.tolerance, 0.0
-        self._state = [at.x, at.z, at.theta, at.velocity_x, at.velocity_z, at.rate]
+        self._at = [at.x, at.z, at.theta, at.velocity_x, at.velocity_z, at.rate]
         self._half = (0.5 * block.width, 0.5 * block.height)
-        self._spring = 1e6 * scene.mass * block.p**2
+        self._spring = 1e6 * body.mass * block.p**2
         self._damping = 300.0 / (block.p * block.width)
 
     def _rates(self, time: float, state: Any) -> list[float]:
         _, z, theta, vx, vz, rate = state
         scene, sine, cosine = self._scene, math.sin(theta), math.cos(theta)
-        along = -scene.mass * float(scene.motion.acceleration(time))
-        up = -scene.mass * scene.block.gravity
+        along = -self._mass * float(scene.motion.acceleration(time))
+        up = -self._mass * scene.system.gravity
         moment = 0.0
         for side in (-self._half[0], self._half[0]):
             arm, level = side * cosine - self._half[1] * sine, -side * sine - self._half[1] * cosine
@@ -248,19 +251,19 @@ class SpringWorld:
                 drag = -force * self._damping * (vx + rate * level)
                 along, up = along + drag, up + push
                 moment += drag * level - push * arm
-        return [vx, vz, rate, along / scene.mass, up / scene.mass, moment / scene.inertia[1]]
+        return [vx, vz, rate, along / self._mass, up / self._mass, moment / self._inertia]
 
     def advance(self, end_s: float) -> int:
         path = solve_ivp(
-            self._rates, (self._time, end_s), self._state, "RK23",
+            self._rates, (self._time, end_s), self._at, "RK23",
             rtol=self._tolerance, atol=self._tolerance,
         )  # fmt: skip
-        self._state, self._time = path.y[:, -1].tolist(), end_s
+        self._at, self._time = path.y[:, -1].tolist(), end_s
         return len(path.t) - 1
 
-    def pose(self) -> Pose:
-        x, z, theta, _, _, rate = self._state
-        return Pose(x, z, theta, rate)
+    def state(self) -> list[Pose]:
+        x, z, theta, _, _, rate = self._at
+        return [Pose(x, z, theta, rate)]
 
     def fault(self) -> str:
         return ""
@@ -275,7 +278,7 @@ def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> 
     use(monkeypatch, replace(ENGINES["pybullet"], build=SpringWorld, presets=(own,)))
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion)
-    response = run("any", Scene(block=BLOCK, motion=motion, accuracy="loose"))
+    response = run("any", Scene(system=BLOCK, motion=motion, accuracy="loose"))
     assert response.outcome is Outcome.ROCKED, response.message
     assert len(response.impacts) == 1
     # an impact on a spring of 1e6 m p^2 takes some 1e-3/p

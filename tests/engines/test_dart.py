@@ -98,7 +98,7 @@ def test_friction_is_bounded_by_normal_forces_without_friction() -> None:
     """The pulse needs a friction of 0.66, and its pivot slides away with 1: on one corner the
     library's solver allows the friction of a normal force that it finds without friction."""
     block = RigidBlock(width=0.5, height=1.0)
-    hard = Scene(block=block, motion=pulse(3.1, 2.0, 1, block), preset="naive")
+    hard = Scene(system=block, motion=pulse(3.1, 2.0, 1, block), preset="naive")
     assert 0.65 < simulate(block, hard.motion).friction_needed < 0.66
     assert run("dart", hard).reason is Reason.SLID
     for solver in ("NSGS", "FBF"):

@@ -47,7 +47,7 @@ def test_the_worst_conditioned_case_of_the_sweep() -> None:
     exact = simulate(block, motion)
     assert exact.peak_ratio == pytest.approx(0.97170219)
     for preset, largest in ((OWN_STEPS, 3e-3), ("fixed", 1e-2)):
-        response = run("drake", Scene(block=block, motion=motion, preset=preset))
+        response = run("drake", Scene(system=block, motion=motion, preset=preset))
         assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=largest)
 
 
@@ -66,7 +66,7 @@ def test_smaller_errors_of_a_step_make_smaller_errors() -> None:
 def test_looks_may_be_far_apart() -> None:
     """The base's motion is told look by look, the engine's steps are its own in between."""
     loose, standard = (
-        run("drake", Scene(block=BLOCK, motion=MOTION, accuracy=accuracy))
+        run("drake", Scene(system=BLOCK, motion=MOTION, accuracy=accuracy))
         for accuracy in ("loose", "standard")
     )
     assert loose.peak_ratio == pytest.approx(standard.peak_ratio, rel=2e-3)
@@ -98,7 +98,7 @@ def test_a_block_in_a_soft_contact_rocks_as_deep_as_it_stands(
 ) -> None:
     """With the library's own it sinks by centimetres all the while, and its rocking is seen."""
     exact = simulate(block, motion)
-    found = run("drake", Scene(block=block, motion=motion, preset="naive"))
+    found = run("drake", Scene(system=block, motion=motion, preset="naive"))
     assert exact.outcome is not Outcome.AT_REST
     assert found.outcome is exact.outcome
     if exact.outcome is Outcome.ROCKED:
@@ -156,7 +156,7 @@ def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_box_turns_out_of_the_plane_about_its_one_contact() -> None:
     """Its deepest corner alone holds it: what is seen in the plane is a pivot that slides away,
     whatever the friction. Spheres at four corners hold it, and so does a joint in the plane."""
-    hard = Scene(block=BLOCK, motion=pulse(7.0, 6.0, 2), preset="naive")
+    hard = Scene(system=BLOCK, motion=pulse(7.0, 6.0, 2), preset="naive")
     assert simulate(BLOCK, hard.motion).friction_needed < 0.7
     for friction in (1.0, 10.0):
         assert run("drake", replace(hard, settings={"friction": friction})).reason is Reason.SLID

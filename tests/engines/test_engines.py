@@ -89,7 +89,7 @@ def test_rest_stays_rest(engine: str, preset: str) -> None:
 def test_how_a_block_lies_does_not_depend_on_the_steps(engine: str, preset: str) -> None:
     """Not up to the longest ones that the engine declares for a block at rest."""
     block, declared = RigidBlock(width=0.5, height=3.0), HERE[engine]
-    asked = Scene(block=block, motion=pulse(1.2, 2.0, 1, block), preset=preset)
+    asked = Scene(system=block, motion=pulse(1.2, 2.0, 1, block), preset=preset)
     dt_s, resolved = declared.preset(preset).ordinary_step_s(asked), declared.resolution(block)
     peaks = []
     for calmest in (1.0, resolved.calmest):
@@ -174,7 +174,7 @@ def test_impacts_and_rest(engine: str) -> None:
     block = RigidBlock(width=1.0, height=1.5)
     motion = pulse(1.5, 3.0, 1, block)
     exact = simulate(block, motion, duration=6.0)
-    response = run(engine, Scene(block=block, motion=motion, preset="fixed", duration=6.0))
+    response = run(engine, Scene(system=block, motion=motion, preset="fixed", duration=6.0))
     assert response.outcome is Outcome.ROCKED
     assert len(response.uplifts) == len(response.rests) == 1
     # the time of rest is the sum of a geometric series whose ratio carries the error of the step
@@ -242,7 +242,7 @@ def test_repeats_bit_by_bit(engine: str, preset: str) -> None:
     """Whatever was simulated in between, in whichever process."""
     asked = scene(pulse(1.3, 3.0, 2), preset=preset, times=[0.1 * i for i in range(10)])
     first = run(engine, asked)
-    run(engine, Scene(block=RigidBlock(width=2.0, height=3.0), motion=pulse(1.5, 1.0)))
+    run(engine, Scene(system=RigidBlock(width=2.0, height=3.0), motion=pulse(1.5, 1.0)))
     assert everything(run(engine, asked)) == everything(first)
 
 
@@ -297,8 +297,8 @@ class Lost:
     def step(self, step: Step) -> None:
         pass
 
-    def pose(self) -> Pose:
-        return self._pose
+    def state(self) -> list[Pose]:
+        return [self._pose]
 
     def fault(self) -> str:
         return ""
@@ -384,7 +384,7 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine: str) -> None:
         "assert all(engine.presets for engine in engines.ENGINES.values())\n"
         f"assert not {libraries!r} & set(sys.modules)\n"
         "block = RigidBlock(width=0.5, height=1.5)\n"
-        "scene = engines.Scene(block=block, motion=SinePulse(amplitude=4.0, omega=20.0))\n"
+        "scene = engines.Scene(system=block, motion=SinePulse(amplitude=4.0, omega=20.0))\n"
         f"run({engine!r}, scene)\n"
         f"assert not {libraries - own!r} & set(sys.modules)\n"
     )

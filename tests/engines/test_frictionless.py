@@ -23,7 +23,7 @@ def test_a_slide_is_no_failure_where_it_is_meant(engine: str, preset: str, side:
     start, until = (side * theta, 0.0), 1.05 * time
     response = run(
         engine,
-        Scene(block=FLAT, motion=STILL, start=start, preset=preset, duration=until, friction=0.0),
+        Scene(system=FLAT, motion=STILL, start=start, preset=preset, duration=until, friction=0.0),
     )
     strike = response.impacts[0]
     # steps of p dt = 1/200 are of second order; the pivot is helped as if it stood
@@ -35,10 +35,10 @@ def test_a_slide_is_no_failure_where_it_is_meant(engine: str, preset: str, side:
 
 @pytest.mark.parametrize("engine", HERE)
 def test_a_slide_is_a_failure_where_there_is_friction(engine: str) -> None:
-    response = run(engine, Scene(block=FLAT, motion=STILL, start=(0.9, 0.0), friction=1e-6))
+    response = run(engine, Scene(system=FLAT, motion=STILL, start=(0.9, 0.0), friction=1e-6))
     assert "slid" in response.message
 
 
 def test_friction_is_not_negative() -> None:
     with pytest.raises(ValueError, match=r"friction is -0\.1; it must not be negative"):
-        Scene(block=BLOCK, motion=STILL, friction=-0.1)
+        Scene(system=BLOCK, motion=STILL, friction=-0.1)

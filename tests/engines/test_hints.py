@@ -29,13 +29,13 @@ def test_false_hints_choose_other_steps_and_not_what_happens(engine: str, hints:
     that has been made ready to let go of it, by less than what it could ever show."""
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion)
-    true, misled = (run(engine, Scene(block=BLOCK, motion=motion, hints=h)) for h in (TRUE, hints))
+    true, misled = (run(engine, Scene(system=BLOCK, motion=motion, hints=h)) for h in (TRUE, hints))
     assert misled.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-3)
     assert len(misled.impacts) == len(exact.impacts)
     if hints.onset != 1.0:
         assert misled.steps != true.steps
         assert abs(misled.peak_ratio - exact.peak_ratio) > abs(true.peak_ratio - exact.peak_ratio)
-    calm = run(engine, Scene(block=BLOCK, motion=pulse(0.9, 3.0, 2), hints=hints))
+    calm = run(engine, Scene(system=BLOCK, motion=pulse(0.9, 3.0, 2), hints=hints))
     assert calm.peak_ratio < 1e-3
 
 
@@ -44,7 +44,7 @@ def test_fixed_steps_take_no_hints(engine: str) -> None:
     motion = pulse(1.3, 3.0, 2)
     peaks = {
         run(
-            engine, Scene(block=BLOCK, motion=motion, preset="fixed", step=5e-3, hints=h)
+            engine, Scene(system=BLOCK, motion=motion, preset="fixed", step=5e-3, hints=h)
         ).peak_ratio
         for h in (TRUE, *FALSE_HINTS)
     }

@@ -69,7 +69,7 @@ def errors_of_sweep(engine: str, every: int, **options: Any) -> list[float]:
     errors = []
     for block, motion in sweep_cases()[every // 2 :: every]:
         exact = simulate(block, motion)
-        response = run(engine, Scene(block=block, motion=motion, **options))
+        response = run(engine, Scene(system=block, motion=motion, **options))
         assert response.outcome is exact.outcome, (block, motion, response.message)
         if exact.outcome is Outcome.ROCKED:
             errors.append(abs(response.peak_ratio / exact.peak_ratio - 1.0))
@@ -103,7 +103,7 @@ def compare_random_cases(engine: str, number: int) -> None:
     """Compare outcomes and peaks; an error in anything is amplified by the conditioning."""
     errors = []
     for block, motion, exact in random_cases(number):
-        response = run(engine, Scene(block=block, motion=motion))
+        response = run(engine, Scene(system=block, motion=motion))
         assert response.outcome is exact.outcome, (block, motion, response.message)
         if exact.outcome is Outcome.ROCKED:
             error = abs(response.peak_ratio / exact.peak_ratio - 1.0)
@@ -133,7 +133,7 @@ def test_second_order(engine: str) -> None:
 def test_steps_finer_by_far(engine: str, aspect: float, onsets: float, omega_over_p: float) -> None:
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(onsets, omega_over_p, 2, block)
-    found = run(engine, Scene(block=block, motion=motion, step=2e-4)).peak_ratio
+    found = run(engine, Scene(system=block, motion=motion, step=2e-4)).peak_ratio
     # 2e-4^2 = 4e-8, times a factor of order one
     assert found == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-7)
 
@@ -146,7 +146,7 @@ def test_velocity_ratio_of_an_impact(engine: str, aspect: float) -> None:
     """
     block = RigidBlock(width=1.0, height=aspect)
     motion = pulse(1.4, 3.0, 1, block)
-    response = run(engine, Scene(block=block, motion=motion, duration=6.0 / block.p))
+    response = run(engine, Scene(system=block, motion=motion, duration=6.0 / block.p))
     assert response.impacts[0].ratio == pytest.approx(block.restitution, abs=1e-4)
 
 
@@ -155,7 +155,7 @@ def test_velocity_ratio_of_small_swings(engine: str) -> None:
     reach between two of its impacts must not be drawn to where it stood."""
     block = RigidBlock(width=2.0, height=10.8)
     motion = pulse(1.027, 1.08, 4, block)
-    response = run(engine, Scene(block=block, motion=motion))
+    response = run(engine, Scene(system=block, motion=motion))
     ratios = [impact.ratio for impact in response.impacts[:12]]
     assert response.peak_ratio < 1e-2
     assert ratios == pytest.approx([block.restitution] * 12, abs=5e-5)
@@ -166,7 +166,7 @@ def test_impacts_by_the_dozen(engine: str) -> None:
     motion = pulse(1.5, 2.0)
     duration = 12.0 / BLOCK.p
     exact = simulate(BLOCK, motion, duration=duration)
-    response = run(engine, Scene(block=BLOCK, motion=motion, duration=duration))
+    response = run(engine, Scene(system=BLOCK, motion=motion, duration=duration))
     assert len(exact.impacts) > 20
     for seen, true in zip(response.impacts[:20], exact.impacts, strict=False):
         assert BLOCK.p * abs(seen.time - true.time) < 1e-3
@@ -178,7 +178,7 @@ def test_free_rocking(engine: str) -> None:
     motion = pulse(1.5, 3.0)
     times = np.linspace(0.0, 8.0 / BLOCK.p, 4001)
     response = run(
-        engine, Scene(block=BLOCK, motion=motion, duration=8.0 / BLOCK.p, times=list(times))
+        engine, Scene(system=BLOCK, motion=motion, duration=8.0 / BLOCK.p, times=list(times))
     )
     assert response.history is not None
     hits = [impact.time for impact in response.impacts if impact.time > motion.duration]
@@ -195,7 +195,7 @@ def test_energy_never_grows(engine: str) -> None:
     motion = pulse(1.5, 3.0)
     duration = 12.0 / BLOCK.p
     times = list(np.linspace(motion.duration, duration, 3000))
-    response = run(engine, Scene(block=BLOCK, motion=motion, duration=duration, times=times))
+    response = run(engine, Scene(system=BLOCK, motion=motion, duration=duration, times=times))
     assert response.history is not None
     theta, rate = np.abs(response.history.theta), response.history.velocity
     energy = (rate / BLOCK.p) ** 2 / 2.0 + np.cos(BLOCK.alpha - theta) - math.cos(BLOCK.alpha)
@@ -209,7 +209,7 @@ def test_rest_and_uplift_again(engine: str) -> None:
     block = RigidBlock(width=0.5, height=0.75)
     motion = pulse(1.03, 0.4, 2, block)
     exact = simulate(block, motion)
-    response = run(engine, Scene(block=block, motion=motion))
+    response = run(engine, Scene(system=block, motion=motion))
     assert len(exact.uplifts) == 2
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2e-5)
     # an uplift is told from the steps after it, a rest lacks the last of its bounces
@@ -220,7 +220,7 @@ def test_rest_and_uplift_again(engine: str) -> None:
 def test_histories(engine: str) -> None:
     motion = pulse(1.3, 3.0, 2)
     times = [0.01 * i for i in range(300)]
-    response = run(engine, Scene(block=BLOCK, motion=motion, duration=3.0, times=times))
+    response = run(engine, Scene(system=BLOCK, motion=motion, duration=3.0, times=times))
     exact = simulate(BLOCK, motion, duration=3.0, times=times)
     assert response.history is not None
     assert exact.history is not None
@@ -232,7 +232,7 @@ def test_frames(engine: str, width: float) -> None:
     block = RigidBlock(width=width, height=3.0 * width)
     motion = pulse(1.3, 3.0, 2, block)
     base, world = (
-        run(engine, Scene(block=block, motion=motion, frame=frame)).peak_ratio for frame in FRAMES
+        run(engine, Scene(system=block, motion=motion, frame=frame)).peak_ratio for frame in FRAMES
     )
     assert base == pytest.approx(world, rel=1e-6)
 
@@ -243,7 +243,9 @@ def test_mirror(engine: str, aspect: float, frame: str) -> None:
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.3, 3.0, 2, block)
     there, back = (
-        run(engine, Scene(block=block, motion=replace(motion, amplitude=a), frame=frame)).peak_ratio
+        run(
+            engine, Scene(system=block, motion=replace(motion, amplitude=a), frame=frame)
+        ).peak_ratio
         for a in (motion.amplitude, -motion.amplitude)
     )
     assert there == pytest.approx(back, rel=1e-9)
@@ -254,7 +256,7 @@ def test_friction_that_suffices_is_as_good_as_any(engine: str, friction: float) 
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion)
     assert exact.friction_needed < friction
-    response = run(engine, Scene(block=BLOCK, motion=motion, friction=friction))
+    response = run(engine, Scene(system=BLOCK, motion=motion, friction=friction))
     # the band of the sweep
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
 
@@ -265,7 +267,7 @@ def test_size(engine: str) -> None:
     for width in (0.02, 20.0):
         block = RigidBlock(width=width, height=3.0 * width)
         motion = pulse(1.3, 3.0, 2, block)
-        peaks.append(run(engine, Scene(block=block, motion=motion)).peak_ratio)
+        peaks.append(run(engine, Scene(system=block, motion=motion)).peak_ratio)
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
 
 
@@ -273,8 +275,8 @@ def test_size(engine: str) -> None:
 def test_onset(engine: str, omega_over_p: float) -> None:
     """Also where the whole peak is some 1e-5 of alpha, and goes with the cube of an excess of
     0.02, so that an error of 2e-5 in anything is one of 3e-3 in the peak."""
-    below = run(engine, Scene(block=BLOCK, motion=pulse(0.95, omega_over_p)))
-    above = run(engine, Scene(block=BLOCK, motion=pulse(1.02, omega_over_p)))
+    below = run(engine, Scene(system=BLOCK, motion=pulse(0.95, omega_over_p)))
+    above = run(engine, Scene(system=BLOCK, motion=pulse(1.02, omega_over_p)))
     exact = simulate(BLOCK, pulse(1.02, omega_over_p))
     assert (below.outcome, below.peak_ratio) == (Outcome.AT_REST, 0.0)
     assert above.peak_ratio == pytest.approx(exact.peak_ratio, rel=3e-3)
@@ -284,7 +286,7 @@ def test_onset(engine: str, omega_over_p: float) -> None:
 def test_a_minute_of_rest(engine: str) -> None:
     times = [1.0, 59.0]
     motion = pulse(0.5, 1.0)
-    response = run(engine, Scene(block=BLOCK, motion=motion, duration=60.0, times=times))
+    response = run(engine, Scene(system=BLOCK, motion=motion, duration=60.0, times=times))
     assert response.outcome is Outcome.AT_REST
     assert response.history is not None
     assert np.abs(response.history.theta).max() < 1e-9
@@ -296,7 +298,8 @@ def test_accuracies(engine: str) -> None:
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion).peak_ratio
     loose, standard, tight = (
-        run(engine, Scene(block=BLOCK, motion=motion, accuracy=accuracy)) for accuracy in ACCURACIES
+        run(engine, Scene(system=BLOCK, motion=motion, accuracy=accuracy))
+        for accuracy in ACCURACIES
     )
     assert 3.0 * loose.steps < standard.steps < tight.steps / 3.0
     assert loose.peak_ratio == pytest.approx(exact, rel=2e-4)
@@ -311,10 +314,10 @@ def test_processes_agree_bit_by_bit(engine: str) -> None:
         "from engines import Scene\n"
         "from engines.run.drive import run\n"
         f"block, motion = {BLOCK!r}, {motion!r}\n"
-        f"print(run({engine!r}, Scene(block=block, motion=motion)).peak_ratio.hex())\n"
+        f"print(run({engine!r}, Scene(system=block, motion=motion)).peak_ratio.hex())\n"
     )
     there = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True)
-    here = run(engine, Scene(block=BLOCK, motion=motion))
+    here = run(engine, Scene(system=BLOCK, motion=motion))
     assert there.stdout.decode().strip() == here.peak_ratio.hex()
 
 
@@ -325,7 +328,7 @@ def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.Mon
     if engine == "pybullet":
         monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, step: None)
     settings = {"base_velocity": False}
-    asked = Scene(block=BLOCK, motion=pulse(1.5, 1.0), frame="world", settings=settings)
+    asked = Scene(system=BLOCK, motion=pulse(1.5, 1.0), frame="world", settings=settings)
     response = run(engine, asked)
     assert response.outcome is not Outcome.ROCKED
     assert response.outcome is not Outcome.OVERTURNED
@@ -334,8 +337,8 @@ def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.Mon
 def test_out_of_the_plane(engine: str) -> None:
     """Four corners in space, free to leave the plane, move as two corners in the plane."""
     motion = pulse(1.3, 3.0, 2)
-    plane = run(engine, Scene(block=BLOCK, motion=motion))
-    space = run(engine, Scene(block=BLOCK, motion=motion, settings={"planar": False}))
+    plane = run(engine, Scene(system=BLOCK, motion=motion))
+    space = run(engine, Scene(system=BLOCK, motion=motion, settings={"planar": False}))
     assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=2e-4)
 
 
@@ -344,7 +347,7 @@ def test_slender_blocks(engine: str, aspect: float) -> None:
     """Their two corners share the weight by a solver that needs the more iterations."""
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.3, 3.0, 1, block)
-    response = run(engine, Scene(block=block, motion=motion))
+    response = run(engine, Scene(system=block, motion=motion))
     exact = simulate(block, motion)
     assert response.outcome is exact.outcome is Outcome.ROCKED
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
@@ -362,7 +365,7 @@ def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
     onset = math.asin(1.0 / 1.01) / motion.omega
     # a slender block in PyBullet takes some steps to settle
     times = list(np.linspace(0.2, 1.0, 200) * onset)
-    response = run(engine, Scene(block=block, motion=motion, times=times))
+    response = run(engine, Scene(system=block, motion=motion, times=times))
     assert response.history is not None
     leans = np.abs(response.history.theta) / block.alpha
     # long steps feel the load of the one before, and the more so the farther off the onset is

@@ -145,7 +145,7 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(
 
 def test_a_run_has_room_for_all_that_it_writes_down() -> None:
     """Rows and events outgrow what there is room for at first."""
-    asked = Scene(block=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
+    asked = Scene(system=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
     response = run("mujoco", asked)
     assert response.outcome is Outcome.ROCKED
     assert response.steps > 4 * LOOK_AROUND

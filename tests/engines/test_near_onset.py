@@ -49,7 +49,7 @@ def test_hardly_above_the_onset(
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.0 + excess, omega, half_cycles, block)
     exact = simulate(block, motion)
-    response = run(engine, Scene(block=block, motion=motion, preset=preset, max_steps=MOST))
+    response = run(engine, Scene(system=block, motion=motion, preset=preset, max_steps=MOST))
     assert response.outcome in (Outcome.AT_REST, Outcome.ROCKED), response.message
     least, part = MISSED["naive" if preset == "naive" else HERE[engine].preset(preset).stepping]
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=part, abs=least)

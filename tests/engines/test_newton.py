@@ -45,7 +45,7 @@ def test_a_corrected_depth_spoils_short_steps() -> None:
     """The library's own hundredth of it in a step is a velocity that grows as the step shrinks."""
     block = RigidBlock(width=1.0, height=1.5)
     motion = pulse(1.5, 3.0, 1, block)
-    shaken = Scene(block=block, motion=motion, preset="fixed", duration=1.5, step=2.5e-4)
+    shaken = Scene(system=block, motion=motion, preset="fixed", duration=1.5, step=2.5e-4)
     exact = simulate(block, motion).peak_ratio
     assert run("newton", shaken).peak_ratio == pytest.approx(exact, rel=1e-3)
     corrected = replace(shaken, settings={"baumgarte": 0.01})
@@ -75,7 +75,7 @@ def test_a_recorded_step_has_its_length_for_good() -> None:
     world: Any = build(HERE["newton"], motion)
     look = Look(motion, world._dt, Stepping.FIXED)
     look.make_room(1)
-    step = look.next(world.pose())
+    step = look.next(world.state())
     world.step(step)
     assert not world.fault()
     world.step(step._replace(dt_s=2.0 * step.dt_s))
@@ -89,8 +89,8 @@ def test_a_trial_step_leaves_no_trace() -> None:
     start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
     asked = scene(MOTION, start=start)
     world = build(HERE["newton"], asked)
-    begin = asked.beginning
-    assert world.pose() == pytest.approx((begin.x, begin.z, begin.theta, begin.rate), rel=1e-6)
+    begin = asked.bodies[0].at
+    assert world.state()[0] == pytest.approx((begin.x, begin.z, begin.theta, begin.rate), rel=1e-6)
     world.close()
 
 
@@ -114,12 +114,12 @@ def test_a_model_is_as_good_as_new_for_the_next_run(solver: str) -> None:
 @installed
 def test_two_runs_at_once_have_a_model_each() -> None:
     first, second = (build(HERE["newton"], scene(MOTION)) for _ in range(2))
-    before = second.pose()
+    before = second.state()
     look = Look(scene(MOTION), HERE["newton"].best.ordinary_step_s(scene(MOTION)), Stepping.FIXED)
     look.make_room(1)
-    first.step(look.next(first.pose()))  # type: ignore[attr-defined]
-    assert first.pose() != before
-    assert second.pose() == before
+    first.step(look.next(first.state()))  # type: ignore[attr-defined]
+    assert first.state() != before
+    assert second.state() == before
     for world in (first, second):
         world.close()
 

@@ -60,7 +60,7 @@ def test_equal_steps_come_to_rest_on_both_corners() -> None:
     block = RigidBlock(width=1.0, height=1.5)
     motion = pulse(1.5, 3.0, 1, block)
     exact = simulate(block, motion, duration=4.0)
-    asked = Scene(block=block, motion=motion, preset="fixed", duration=4.0, step=1e-3)
+    asked = Scene(system=block, motion=motion, preset="fixed", duration=4.0, step=1e-3)
     response = run("pymunk", asked)
     assert response.rests == pytest.approx(exact.rests, abs=0.05)
 
@@ -68,7 +68,7 @@ def test_equal_steps_come_to_rest_on_both_corners() -> None:
 @pytest.mark.parametrize("aspect", [2.0, 10.0])
 def test_it_iterates_as_slender_blocks_need(aspect: float) -> None:
     block = RigidBlock(width=1.0, height=aspect)
-    world: Any = build(HERE["pymunk"], Scene(block=block, motion=pulse(1.3, 3.0, 2, block)))
+    world: Any = build(HERE["pymunk"], Scene(system=block, motion=pulse(1.3, 3.0, 2, block)))
     assert world._space.iterations == pytest.approx(20.0 * (1.0 + aspect**2), abs=1)
     world.close()
 

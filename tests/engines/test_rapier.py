@@ -42,7 +42,7 @@ def test_other_blocks_than_the_papers() -> None:
     cases = {case.case: case for case in islice(draw(1), 78)}
     for number in (7, 14, 72, 77):
         block, motion = cases[number].block, cases[number].motion
-        exact, found = simulate(block, motion), run("rapier", Scene(block=block, motion=motion))
+        exact, found = simulate(block, motion), run("rapier", Scene(system=block, motion=motion))
         assert found.outcome is exact.outcome
         assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=equal_to("rapier"))
 
@@ -55,7 +55,7 @@ def test_the_size_of_a_block_hardly_matters(width: float) -> None:
         block = RigidBlock(width=width, height=width * case.aspect)
         omega = case.omega_over_p * block.p
         motion = replace(case.motion, omega=omega)
-        found = run("rapier", Scene(block=block, motion=motion, settings=settings))
+        found = run("rapier", Scene(system=block, motion=motion, settings=settings))
         return abs(found.peak_ratio / simulate(block, motion).peak_ratio - 1.0)
 
     cases = {case.case: case for case in islice(draw(1), 832)}
@@ -70,7 +70,7 @@ def test_a_ball_whose_centre_rounds_onto_a_deep_base_loses_its_contact() -> None
     exact = simulate(case.block, case.motion).peak_ratio
 
     def error(**settings: float) -> float:
-        asked = Scene(block=case.block, motion=case.motion, settings=settings)
+        asked = Scene(system=case.block, motion=case.motion, settings=settings)
         return abs(run("rapier", asked).peak_ratio / exact - 1.0)
 
     assert error(corner_radius=1e-7, base_depth=1.0) > 30.0 * equal_to("rapier")
@@ -112,5 +112,5 @@ def test_a_soft_contact_and_the_stabilization_cost_all_accuracy() -> None:
 def test_swings_that_rounding_hides_are_left_to_the_contacts() -> None:
     """Below 1e-6 of the height a swing cannot be told from rest, and need not be followed."""
     start = (1e-3 * BLOCK.alpha, 0.0)
-    asked = Scene(block=BLOCK, motion=Still(), start=start, duration=8.0 / BLOCK.p)
+    asked = Scene(system=BLOCK, motion=Still(), start=start, duration=8.0 / BLOCK.p)
     assert run("rapier", asked).steps < 10_000

@@ -33,7 +33,7 @@ LANDING_IN_FRAMES = [(*use, frame) for use in LANDING for frame in HERE[use[0]].
 
 
 def released(start: tuple[float, float], **options: Any) -> Scene:
-    return Scene(block=BLOCK, motion=STILL, start=start, duration=8.0 / BLOCK.p, **options)
+    return Scene(system=BLOCK, motion=STILL, start=start, duration=8.0 / BLOCK.p, **options)
 
 
 def top(theta: float, rate: float) -> float:
@@ -119,7 +119,7 @@ def test_start_then_pulse(engine: str, preset: str, frame: str, side: float) -> 
     response = run(
         engine,
         Scene(
-            block=BLOCK,
+            system=BLOCK,
             motion=motion,
             start=start,
             preset=preset,
@@ -148,7 +148,7 @@ def test_lifted_at_once(engine: str, preset: str, frame: str, side: float) -> No
     motion = SinePulse(amplitude=4.0 * side, omega=8.0, half_cycles=2, phase=0.5 * math.pi)
     exact = simulate(BLOCK, motion)
     assert exact.uplifts[0] == 0.0
-    found = run(engine, Scene(block=BLOCK, motion=motion, preset=preset, frame=frame))
+    found = run(engine, Scene(system=BLOCK, motion=motion, preset=preset, frame=frame))
     assert found.outcome is exact.outcome
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=band(engine))
     assert found.uplifts[0] == pytest.approx(0.0, abs=1e-9)
@@ -159,7 +159,7 @@ def test_lifted_at_once_is_of_second_order(engine: str) -> None:
     motion = SinePulse(amplitude=4.0, omega=8.0, half_cycles=2, phase=0.5 * math.pi)
     exact = simulate(BLOCK, motion).peak_ratio
     coarse, fine = (
-        abs(run(engine, Scene(block=BLOCK, motion=motion, accuracy=name)).peak_ratio / exact - 1.0)
+        abs(run(engine, Scene(system=BLOCK, motion=motion, accuracy=name)).peak_ratio / exact - 1.0)
         for name in ("loose", "standard")
     )
     # steps of a fifth: an error of first order would keep a fifth
@@ -200,7 +200,7 @@ def test_a_small_release_comes_to_rest(engine: str) -> None:
 def test_bad_starts_are_refused(start: Any, message: str) -> None:
     """By the engines in the words of the exact solution."""
     with pytest.raises(ValueError, match=message):
-        Scene(block=BLOCK, motion=STILL, start=start)
+        Scene(system=BLOCK, motion=STILL, start=start)
     with pytest.raises(ValueError, match=message):
         simulate(BLOCK, STILL, start=start)
 
@@ -211,15 +211,15 @@ def test_a_balanced_block_may_be_shaken() -> None:
     start = (BLOCK.alpha, 0.0)
     exact = simulate(BLOCK, motion, start=start)
     for engine in core_engines():
-        assert run(engine, Scene(block=BLOCK, motion=motion, start=start)).outcome is exact.outcome
+        assert run(engine, Scene(system=BLOCK, motion=motion, start=start)).outcome is exact.outcome
 
 
 def test_the_corner_stays_where_it_stands() -> None:
     """Place and velocity of the start leave the corner that carries the block at rest."""
     cases = itertools.product((0.2, -0.2, 0.0), (0.7, -0.7))
     for theta, rate in cases:
-        scene = Scene(block=BLOCK, motion=STILL, start=(theta, rate))
-        at = scene.beginning
+        scene = Scene(system=BLOCK, motion=STILL, start=(theta, rate))
+        at = scene.bodies[0].at
         sine, cosine = math.sin(theta), math.cos(theta)
         x, z = 0.5 * scene.side * BLOCK.width, -0.5 * BLOCK.height
         corner = (at.x + x * cosine + z * sine, at.z - x * sine + z * cosine)

@@ -146,7 +146,7 @@ def test_a_block_that_came_to_rest_lifts_again(monkeypatch: pytest.MonkeyPatch) 
     block = RigidBlock(width=0.5, height=0.75)
     motion = pulse(1.03, 0.4, 2, block)
     exact = simulate(block, motion)
-    asked = Scene(block=block, motion=motion, duration=motion.duration, step=0.01)
+    asked = Scene(system=block, motion=motion, duration=motion.duration, step=0.01)
     response, _ = exactly(monkeypatch, asked, Moment.MIDDLE, Stepping.FIXED)
     assert len(response.uplifts) == len(exact.uplifts) == 2
     late = (np.array(response.uplifts) - exact.uplifts) * block.p

@@ -80,4 +80,4 @@ def pulse(
 
 
 def scene(motion: SinePulse, **options: object) -> Scene:
-    return Scene(block=BLOCK, motion=motion, **options)  # type: ignore[arg-type]
+    return Scene(system=BLOCK, motion=motion, **options)  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from engines.declaration import Stepping
-from engines.world import Moment, Pose
+from engines.world import Moment
 
 NOTE = "HOSTILE_NOTE"
 """Environment variable: a file in which worlds write down the processes that they have started."""
@@ -25,13 +25,13 @@ class Calm:
     moment, stepping = Moment.END, Stepping.LANDING
 
     def __init__(self, scene, settings, dt_s):
-        self.at = scene.beginning
+        self.at = scene.bodies[0].at
 
     def step(self, step):
         pass
 
-    def pose(self):
-        return Pose(self.at.x, self.at.z, 0.0, 0.0)
+    def state(self):
+        return [(self.at.x, self.at.z, 0.0, 0.0)]
 
     def fault(self):
         return ""
@@ -164,17 +164,17 @@ class GoesBack(Calm):
 
 
 class IsNowhere(Calm):
-    def pose(self):
-        return Pose(np.nan, np.nan, np.nan, np.nan)
+    def state(self):
+        return [(np.nan, np.nan, np.nan, np.nan)]
 
 
 class IsShort(Calm):
-    def pose(self):
+    def state(self):
         return np.zeros(3)
 
 
 class IsMany(Calm):
-    def pose(self):
+    def state(self):
         return np.zeros((4, 4))
 
 

@@ -2,15 +2,16 @@
 
 import pymunk
 
-from engines.world import Moment, Pose
+from engines.world import Moment
 
 
 class World:
     moment = Moment.NEXT  # pymunk moves a body first, and then changes its velocity
 
     def __init__(self, scene, settings, dt_s):
-        block, at = scene.block, scene.beginning
-        self.space, self.body = pymunk.Space(), pymunk.Body(scene.mass, scene.inertia[1])
+        (block,) = scene.bodies
+        at, self.space = block.at, pymunk.Space()
+        self.body = pymunk.Body(block.mass, block.inertia[1])
         self.body.position, self.body.angle = (at.x, at.z), -at.theta
         self.body.velocity, self.body.angular_velocity = (at.velocity_x, at.velocity_z), -at.rate
         box = pymunk.Poly.create_box(self.body, (block.width, block.height))
@@ -22,8 +23,8 @@ class World:
         self.space.gravity = step.pull_x, step.pull_z
         self.space.step(step.dt_s)
 
-    def pose(self):
-        return Pose(*self.body.position, -self.body.angle, -self.body.angular_velocity)
+    def state(self):
+        return [(*self.body.position, -self.body.angle, -self.body.angular_velocity)]
 
     def fault(self):
         return ""

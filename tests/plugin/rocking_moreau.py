@@ -62,12 +62,13 @@ class MoreauWorld:
     moment = Moment.END
 
     def __init__(self, scene: Scene, settings: MoreauSettings, dt_s: float) -> None:
-        at = scene.beginning
+        (body,) = scene.bodies
+        at = body.at
         self._s, self._way = settings, ((0, 1), 0)
         self._place = (at.x, at.z, at.theta)
         self._velocity = (at.velocity_x, at.velocity_z, at.rate)
-        self._light = (1.0 / scene.mass, 1.0 / scene.mass, 1.0 / scene.inertia[1])
-        x, z = 0.5 * scene.block.width, 0.5 * scene.block.height
+        self._light = (1.0 / body.mass, 1.0 / body.mass, 1.0 / body.inertia[1])
+        x, z = 0.5 * body.width, 0.5 * body.height
         self._corners = ((-x, -z), (x, -z))
 
     def step(self, step: Step) -> None:
@@ -76,8 +77,8 @@ class MoreauWorld:
         self._velocity = self._after_contact(free, step.dt_s)
         self._place = moved(self._place, 0.5 * step.dt_s, self._velocity)
 
-    def pose(self) -> Pose:
-        return Pose(*self._place, self._velocity[2])
+    def state(self) -> list[Pose]:
+        return [Pose(*self._place, self._velocity[2])]
 
     def fault(self) -> str:
         return ""

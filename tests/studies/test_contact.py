@@ -44,7 +44,7 @@ MUJOCO_TUNED = functools.partial(replace, TUNED)
 
 
 def scene(**options):
-    return Scene(block=CASE.block, motion=CASE.motion, **{"step": STEP, **options})
+    return Scene(system=CASE.block, motion=CASE.motion, **{"step": STEP, **options})
 
 
 def of(engine, preset, name):
@@ -129,7 +129,7 @@ def test_solref_and_margin_reach_the_library():
     world = build(ENGINES["mujoco"], asked)
     look = Look(asked, dt_s, Stepping.FIXED)
     look.make_room(1)
-    world.step(look.next(world.pose()))
+    world.step(look.next(world.state()))
     assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
     assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()

@@ -28,7 +28,7 @@ from studies.precision.repeats import LEAST_S
 from studies.precision.shares import clocks, pose_case, share_table
 
 BLOCK, MOTION = pose_case()
-SCENE = Scene(block=BLOCK, motion=MOTION)
+SCENE = Scene(system=BLOCK, motion=MOTION)
 ONE_CONTACT = {"drake": 0.6}
 """What a box costs whose face touches a plane in one point, whatever its rotation."""
 
@@ -56,7 +56,7 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
 
 @pytest.mark.parametrize("engine", core_engines())
 def test_clocks_see_every_part_and_go_away(engine):
-    scene = Scene(block=BLOCK, motion=MOTION, compiled=False)
+    scene = Scene(system=BLOCK, motion=MOTION, compiled=False)
     plain = run(engine, scene)
     with clocks(engine) as spent:
         watched = run(engine, scene)
@@ -74,7 +74,7 @@ def test_the_parts_of_a_step_add_up(known, monkeypatch):
     parts = {"step": 6.0, "pose": 1.0, "look": 2.0}
     if known:
         parts["engine"] = 4.0
-    steps = run("pybullet", Scene(block=BLOCK, motion=MOTION)).steps
+    steps = run("pybullet", Scene(system=BLOCK, motion=MOTION)).steps
 
     @contextlib.contextmanager
     def known_times(engine):

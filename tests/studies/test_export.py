@@ -37,7 +37,7 @@ ALONE = (
 
 
 def scene(motion, preset, **options):
-    return Scene(block=BLOCK, motion=motion, preset=preset, duration=WINDOW, **options)
+    return Scene(system=BLOCK, motion=motion, preset=preset, duration=WINDOW, **options)
 
 
 def written(folder, engine, what, expected):

@@ -46,8 +46,8 @@ REASONS = {
     "Fills": "MemoryError; a process may take 4 GB",
     "GoesBack": "ValueError: the engine says that it took -1 steps",
     "IsNowhere": "the engine's state is not finite",
-    "IsShort": "ValueError: not enough values to unpack",
-    "IsMany": "TypeError: only ",
+    "IsShort": "ValueError: the engine's state has the shape (3,)",
+    "IsMany": "ValueError: the engine's state has the shape (4, 4)",
     "TellsNoWords": r"b'\xff\xff",
     "Closes": "the process ended by itself with exit code 1",
 }
@@ -60,7 +60,7 @@ ANSWERING = (
 
 
 def asked(block, motion, *, duration, times, world):
-    scene = Scene(block=block, motion=motion)
+    scene = Scene(system=block, motion=motion)
     there = getattr(hostile, world)(scene, None, 1e-3)
     try:
         return simulate_world(there, scene, 1e-3, there.stepping)

@@ -124,7 +124,7 @@ CASES = [case for kind, case in cases(False) if kind == "typical" and case.block
 def exported(engine, case, step, settings):
     """Return the files of the defaults, which expect what the settings give, and that peak."""
     window = free_rocking_window(case.block, case.motion)
-    asked = {"block": case.block, "motion": case.motion, "preset": DEFAULT, "duration": window}
+    asked = {"system": case.block, "motion": case.motion, "preset": DEFAULT, "duration": window}
     peak = run(engine, Scene(**asked, step=step, settings=settings)).peak_ratio
     what = Exported(
         engine=ENGINES[engine],

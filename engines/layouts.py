@@ -1,0 +1,245 @@
+"""Bodies and contacts: what each system that can be posed is, to an engine.
+
+A system is a class of `analytic`, with its sizes; an engine sees boxes, where they begin, and which
+faces touch. A further system is one more function here.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple, Protocol
+
+from analytic.block import RigidBlock
+
+Start = tuple[float, float]
+"""How a system begins: theta [rad] and theta' [rad/s], or what its own class says."""
+
+BASE = -1
+"""Number of the base, where a contact names the body below."""
+
+LOWER, UPPER = -1, 1
+"""Faces of a body."""
+
+
+class System(Protocol):
+    """What every system says of itself: the sizes of what rocks, and its equation's numbers.
+
+    width, height [m], alpha [rad], p [rad/s], gravity [m/s2].
+    """
+
+    @property
+    def width(self) -> float:
+        """Width of what rocks [m]."""
+
+    @property
+    def height(self) -> float:
+        """Its height [m]."""
+
+    @property
+    def alpha(self) -> float:
+        """Its critical rotation [rad]."""
+
+    @property
+    def p(self) -> float:
+        """Frequency of the equation that it rocks by [rad/s]."""
+
+    @property
+    def gravity(self) -> float:
+        """Gravity [m/s2]."""
+
+
+class Ability(Enum):
+    """What a scene may ask of an engine beyond one body; the value is what a reader is told."""
+
+    SEVERAL = "several bodies on one base"
+    STACKED = "bodies that rest on other bodies"
+
+
+class Beginning(NamedTuple):
+    """Place [m, rad] and velocities [m/s, rad/s] of a body's centre at t = 0.
+
+    They are relative to the base, which is at rest then.
+    """
+
+    x: float
+    z: float
+    theta: float
+    velocity_x: float
+    velocity_z: float
+    rate: float
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the body stands upright and still."""
+        return self.theta == 0.0 == self.rate == self.velocity_x
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A homogeneous box, upright where its rotation is zero.
+
+    Attributes
+    ----------
+    width, height, depth : float
+        Full sizes [m] along x, z and y, which is out of the plane.
+    mass : float
+        [kg].
+    home : (float, float)
+        Where its centre is at rest, along the base and above it [m].
+    at : Beginning
+        Where it begins.
+    """
+
+    width: float
+    height: float
+    depth: float
+    mass: float
+    home: tuple[float, float]
+    at: Beginning
+
+    @property
+    def inertia(self) -> tuple[float, float, float]:
+        """Moments of inertia [kg m2] about the centre of mass and the axes x, y, z."""
+        x, y, z = self.width, self.depth, self.height
+        twelfth = self.mass / 12.0
+        return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
+
+
+class Contact(NamedTuple):
+    """Corners of a body's face, which touch the flat face of another body or the base.
+
+    body and on are numbers of bodies, on may be `BASE`; face is `LOWER` or `UPPER`.
+    """
+
+    body: int
+    face: int
+    on: int
+
+
+class Layout(NamedTuple):
+    """What stands on what.
+
+    Attributes
+    ----------
+    bodies : tuple of Body
+    contacts : tuple of Contact
+    rocking : int
+        How many bodies, from the first on, rock about their lower corners as the system's one
+        equation says; 0 where nothing rocks.
+    """
+
+    bodies: tuple[Body, ...]
+    contacts: tuple[Contact, ...]
+    rocking: int
+
+    def carried(self, contact: Contact) -> float:
+        """Return the mass [kg] that a contact carries: what its lower body's share is of all above.
+
+        A body that rests on others is carried by all of them alike.
+        """
+        tops = [top for top in self.contacts if top[:2] == (contact.body, UPPER)]
+        shares = [sum(each.on == top.on for each in self.contacts) for top in tops]
+        loads = [self.bodies[top.on].mass / n for top, n in zip(tops, shares, strict=True)]
+        return sum(loads, self.bodies[contact.body].mass if contact.face == LOWER else 0.0)
+
+    @property
+    def asks(self) -> tuple[Ability, ...]:
+        """What an engine must be able to do for it."""
+        several = (Ability.SEVERAL,) if len(self.bodies) > 1 else ()
+        stacked = any(contact.on != BASE for contact in self.contacts)
+        return (*several, Ability.STACKED) if stacked else several
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SideBySide:
+    """Equal blocks that stand apart on one base: each rocks as it would alone.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    count : int, optional
+        How many.
+    """
+
+    block: RigidBlock
+    count: int = 2
+
+    def __post_init__(self) -> None:
+        if self.count != int(self.count) or self.count < 1:
+            raise ValueError(f"count is {self.count!r}; it must be a whole number from 1 on")
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.block, name)
+
+
+def tilted(width: float, height: float, side: float, theta: float, rate: float) -> Beginning:
+    """Return where the centre of a box is, and how fast, that turns about its corner at a side.
+
+    Parameters
+    ----------
+    width, height : float
+        Of the box [m].
+    side : float
+        -1 or 1, the corner that stays on the base; 0 where both do.
+    theta, rate : float
+        Rotation [rad] and angular velocity [rad/s].
+    """
+    half_width, half_height = 0.5 * side * width, 0.5 * height
+    sine, cosine = math.sin(theta), math.cos(theta)
+    return Beginning(
+        x=half_width * (1.0 - cosine) + half_height * sine,
+        z=half_width * sine + half_height * cosine,
+        theta=theta,
+        velocity_x=rate * (half_width * sine + half_height * cosine),
+        velocity_z=rate * (half_width * cosine - half_height * sine),
+        rate=rate,
+    )
+
+
+def _standing(system: Any, density: float, depth: float | None, start: Start, home: float) -> Body:
+    """Return a box of the system's size that rocks, its centre at rest at `home` [m]."""
+    theta, rate = start
+    side = math.copysign(1.0, theta or rate) if theta or rate else 0.0
+    at = tilted(system.width, system.height, side, theta, rate)
+    out = system.width if depth is None else depth
+    mass = density * system.width * system.height * out
+    there = home, 0.5 * system.height
+    return Body(system.width, system.height, out, mass, there, at._replace(x=home + at.x))
+
+
+def one_block(system: RigidBlock, density: float, depth: float | None, start: Start) -> Layout:
+    """Return one block on the base."""
+    block = _standing(system, density, depth, start, 0.0)
+    return Layout((block,), (Contact(0, LOWER, BASE),), 1)
+
+
+def side_by_side(system: SideBySide, density: float, depth: float | None, start: Start) -> Layout:
+    """Return equal blocks apart on the base, the first one at its middle."""
+    apart = 4.0 * system.height
+    homes = [apart * number for number in range(system.count)]
+    bodies = tuple(_standing(system, density, depth, start, home) for home in homes)
+    contacts = tuple(Contact(number, LOWER, BASE) for number in range(system.count))
+    return Layout(bodies, contacts, system.count)
+
+
+LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
+    RigidBlock: one_block,
+    SideBySide: side_by_side,
+}
+"""Class of a system -> what makes its layout of it, a density [kg/m3], a depth [m] and a start."""
+
+
+def layout_of(system: Any, density: float, depth: float | None, start: Start) -> Layout:
+    """Return the layout of a system.
+
+    Raises
+    ------
+    TypeError
+        If no layout is known for its class.
+    """
+    made = LAYOUTS.get(type(system))
+    if made is None:
+        known = ", ".join(kind.__name__ for kind in LAYOUTS)
+        raise TypeError(f"system is a {type(system).__name__}; it must be one of {known}")
+    return made(system, density, depth, start)

@@ -1,0 +1,59 @@
+"""What a frame shows beside its columns: they turn together, and the beam rides without turning."""
+
+from collections.abc import Mapping
+
+from engines.layouts import Layout
+from engines.parts.compiled import FloatArray, State, fill, shared
+
+
+class Spread(State):
+    """How far the bodies of a frame came apart.
+
+    Attributes
+    ----------
+    columns : int
+        How many there are, and the number of the beam's row; 0 where there is no beam.
+    homes : float
+        Where the beam's centre is while a column's is at 0 [m].
+    parting, tilt, drift : float
+        Largest difference of two columns' rotations [rad], largest rotation of the beam [rad], and
+        the largest distance by which it slid along the tops [m].
+    """
+
+    columns: int
+    homes: float
+    parting: float
+    tilt: float
+    drift: float
+
+
+def begin_spread(spread: Spread, layout: Layout) -> None:
+    """Begin where nothing has parted; the body after those that rock is a beam."""
+    if 0 < layout.rocking < len(layout.bodies):
+        beam, first = layout.bodies[layout.rocking], layout.bodies[0]
+        fill(spread, columns=layout.rocking, homes=beam.home[0] - 2.0 * first.home[0])
+
+
+@shared
+def see_spread(spread: Spread, state: FloatArray) -> None:
+    """Take in a state."""
+    columns = spread.columns
+    if columns == 0:
+        return
+    for column in range(1, columns):
+        spread.parting = max(spread.parting, abs(state[column, 2] - state[0, 2]))
+    spread.tilt = max(spread.tilt, abs(state[columns, 2]))
+    # a corner on top of a column moves twice as far as the column's centre
+    slid = state[columns, 0] - 2.0 * state[0, 0] - spread.homes
+    spread.drift = max(spread.drift, abs(slid))
+
+
+def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:
+    """Return what was seen, angles over alpha [rad]; nothing where there is no beam."""
+    if not spread.columns:
+        return {}
+    return {
+        "parting": float(spread.parting) / alpha,
+        "tilt": float(spread.tilt) / alpha,
+        "drift_m": float(spread.drift),
+    }

@@ -1,0 +1,129 @@
+"""States in, slips out: what is seen of a box that slides flat along its base."""
+
+import math
+from collections.abc import Mapping
+
+from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.scene import Scene
+from engines.watching.observe import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
+from engines.world import Pose
+
+SLIP_RATE = 3e-4
+"""A box slides when it is faster than this part of sqrt(g B): what it still goes when it is slower,
+v^2/(2 mu g), is below 1e-7 B/mu."""
+
+STILL_TIME = 0.05
+"""A box is at rest when it has not slid for this time, in units of sqrt(B/g)."""
+
+WHEN, DISTANCE, SINCE = range(3)
+"""Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
+
+
+class Slide(State):
+    """What was seen of a box until now.
+
+    Attributes
+    ----------
+    on : bool
+        Whether there is one.
+    home, half_height, width : float
+        Of the box [m].
+    slow, still : float
+        Velocity up to which it does not slide [m/s], and how long not to be at rest [s].
+    motion_end, end : float
+        End of the motion and of the observation [s].
+    slips : int
+        How many have ended.
+    place, time : float
+        Last place relative to the base [m], and when [s].
+    way : float
+        Which way it slides, 0 while it does not.
+    since, origin : float
+        When and where it last began to slide, or else came to rest.
+    lift, turn, depth : float
+        How high and how deep its centre was seen beyond where it rests [m], and how far it turned
+        [rad].
+    overturned, done : bool
+    problem : int
+        See `observe`, and by how much [m]: far.
+    """
+
+    on: bool
+    home: float
+    half_height: float
+    width: float
+    slow: float
+    still: float
+    motion_end: float
+    end: float
+    slips: int
+    place: float
+    time: float
+    way: float
+    since: float
+    origin: float
+    lift: float
+    turn: float
+    depth: float
+    overturned: bool
+    done: bool
+    problem: int
+    far: float
+
+
+def begin_slide(slide: Slide, scene: Scene) -> None:
+    """Begin where the scene does."""
+    body, gravity = scene.bodies[0], scene.system.gravity
+    fill(
+        slide,
+        on=True,
+        home=body.home[0],
+        half_height=0.5 * body.height,
+        width=body.width,
+        slow=SLIP_RATE * math.sqrt(gravity * body.width),
+        still=STILL_TIME * math.sqrt(body.width / gravity),
+        motion_end=scene.motion.duration,
+        end=math.inf if scene.duration is None else scene.duration,
+        place=body.at.x - body.home[0],
+        origin=body.at.x - body.home[0],
+    )
+
+
+@shared
+def see_slide(slide: Slide, slips: FloatArray, time: float, pose: Pose) -> None:
+    """Take in the pose at `time` [s]."""
+    if not math.isfinite(pose.x + pose.z + pose.theta + pose.rate):
+        slide.problem = DIVERGED
+        return
+    place = pose.x - slide.home
+    velocity = (place - slide.place) / (time - slide.time)
+    way = math.copysign(1.0, velocity) if abs(velocity) > slide.slow else 0.0
+    if way != slide.way:
+        if slide.way != 0.0:
+            slips[slide.slips, WHEN], slips[slide.slips, SINCE] = time, slide.since
+            slips[slide.slips, DISTANCE] = place - slide.origin
+            slide.slips += 1
+        slide.since, slide.origin, slide.way = slide.time, slide.place, way
+        if way == 0.0:
+            slide.since, slide.origin = time, place
+    slide.place, slide.time = place, time
+    raised = pose.z - slide.half_height
+    slide.lift, slide.depth = max(slide.lift, raised), max(slide.depth, -raised)
+    slide.turn = max(slide.turn, abs(pose.theta))
+    if pose.z < 0.0:
+        slide.problem, slide.far = SANK, slide.depth
+    elif raised > THROWN_WIDTHS * slide.width + slide.half_height:
+        slide.problem, slide.far = THROWN, raised
+    slide.overturned = abs(pose.theta) > LYING_PART * LYING
+    rests = slide.way == 0.0 and time - slide.since >= slide.still
+    over = time >= slide.motion_end and slide.end == math.inf and rests
+    slide.done = slide.overturned or over or time >= slide.end
+
+
+def observables_of(slide: Slide) -> Mapping[str, float]:
+    """Return what was seen beside the slips: lift [m], turn [rad], place [m] at the end."""
+    return {
+        "lift_m": float(slide.lift),
+        "turn_rad": float(slide.turn),
+        "place_m": float(slide.place),
+    }
