@@ -6,11 +6,13 @@ faces touch. A further system is one more function here.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, NamedTuple, Protocol
 
 from analytic.block import RigidBlock
+from analytic.frame import RockingFrame
+from analytic.slide import SlidingBlock
 
 Start = tuple[float, float]
 """How a system begins: theta [rad] and theta' [rad/s], or what its own class says."""
@@ -20,6 +22,13 @@ BASE = -1
 
 LOWER, UPPER = -1, 1
 """Faces of a body."""
+
+
+SPACING = 2.0
+"""Distance of a frame's columns, in their heights."""
+
+BEAM_DEPTH = 0.2
+"""Depth of its beam, likewise."""
 
 
 class System(Protocol):
@@ -39,6 +48,10 @@ class System(Protocol):
     @property
     def alpha(self) -> float:
         """Its critical rotation [rad]."""
+
+    @property
+    def R(self) -> float:  # noqa: N802
+        """Half of its diagonal [m]."""
 
     @property
     def p(self) -> float:
@@ -223,8 +236,43 @@ def side_by_side(system: SideBySide, density: float, depth: float | None, start:
     return Layout(bodies, contacts, system.count)
 
 
+def frame(system: RockingFrame, density: float, depth: float | None, start: Start) -> Layout:
+    """Return columns on the base and a beam on their tops, in all of them the middle at 0."""
+    count, apart = system.columns, SPACING * system.height
+    homes = [(number - 0.5 * (count - 1)) * apart for number in range(count)]
+    columns = [_standing(system, density, depth, start, home) for home in homes]
+    first, thick = columns[0], BEAM_DEPTH * system.height
+    level = system.height + 0.5 * thick
+    at = first.at
+    rides = Beginning(
+        # a corner at the top of a column moves twice as far as its centre
+        x=2.0 * (at.x - first.home[0]),
+        z=level + 2.0 * (at.z - first.home[1]),
+        theta=0.0,
+        velocity_x=2.0 * at.velocity_x,
+        velocity_z=2.0 * at.velocity_z,
+        rate=0.0,
+    )
+    width = (count - 1) * apart + 2.0 * system.width
+    mass = system.load * count * first.mass
+    beam = Body(width, thick, first.depth, mass, (0.0, level), rides)
+    below = [Contact(number, LOWER, BASE) for number in range(count)]
+    above = [Contact(number, UPPER, count) for number in range(count)]
+    return Layout((*columns, beam), (*below, *above), count)
+
+
+def sliding(system: SlidingBlock, density: float, depth: float | None, start: Start) -> Layout:
+    """Return one block on the base that begins at a place with a velocity."""
+    place, velocity = start
+    block = _standing(system, density, depth, (0.0, 0.0), 0.0)
+    at = block.at._replace(x=place, velocity_x=velocity)
+    return Layout((replace(block, at=at),), (Contact(0, LOWER, BASE),), 0)
+
+
 LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
     RigidBlock: one_block,
+    RockingFrame: frame,
+    SlidingBlock: sliding,
     SideBySide: side_by_side,
 }
 """Class of a system -> what makes its layout of it, a density [kg/m3], a depth [m] and a start."""

@@ -308,8 +308,9 @@ def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
             margin[i] = max(sag, min(held.carry, 0.5 * held.width * abs(theta)))
         elif pairs[i, PIVOT] == step.side:
             hold_pivot(held, arrays, step, i)
-        elif held.stacked and step.grip == Grip.STRIKE:
-            margin[i] = held.carry  # below and above, all close in the same step
+        elif held.stacked and step.grip >= Grip.APPROACH:
+            # a rounding apart, those above would close a step before those below, or after
+            margin[i] = held.carry if step.grip == Grip.STRIKE else -held.carry
 
 
 @shared
