@@ -5,20 +5,24 @@ block about its corner O, and a positive ground acceleration drives it to theta 
 are ground times, from the start of the base motion.
 """
 
-from analytic.block import GRAVITY, RigidBlock, housner_restitution
+from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
+from analytic.first_mode import FirstMode, first_mode, rocking_friction
+from analytic.frame import RockingFrame, frame_restitution
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
+from analytic.slide import SlidingBlock
 from analytic.steppers import integrate
 from analytic.synthetic import kanai_tajimi, near_fault, ricker
 
 __all__ = [
     "GRAVITY",
     "MODELS",
+    "FirstMode",
     "History",
     "Impact",
     "Modes",
@@ -27,10 +31,15 @@ __all__ = [
     "Record",
     "Response",
     "RigidBlock",
+    "Rocker",
+    "RockingFrame",
     "SinePulse",
+    "SlidingBlock",
     "Still",
     "condition_numbers",
     "conditioning",
+    "first_mode",
+    "frame_restitution",
     "housner_restitution",
     "integrate",
     "kanai_tajimi",
@@ -38,6 +47,7 @@ __all__ = [
     "overturning_modes",
     "peak_ratios",
     "ricker",
+    "rocking_friction",
     "sensitivities",
     "sensitivity",
     "simulate",

@@ -2,11 +2,40 @@
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 from analytic.checks import LEAST, measurable
 
 GRAVITY = 9.81
 """g [m/s2] of every block, amplitude and record: rounded, not the standard gravity of 9.80665."""
+
+
+class Rocker(Protocol):
+    """What rocks as a block does: alpha, p and the restitution say all of its motion."""
+
+    @property
+    def width(self) -> float:
+        """B [m], of what turns."""
+
+    @property
+    def height(self) -> float:
+        """H [m], of what turns."""
+
+    @property
+    def gravity(self) -> float:
+        """G [m/s2]."""
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle [rad]; also the critical rotation."""
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s]."""
+
+    @property
+    def restitution(self) -> float:
+        """Ratio of the angular velocities after and before an impact."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

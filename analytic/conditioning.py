@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import RigidBlock
+from analytic.block import Rocker
 from analytic.cases import housner_restitutions, law_of, pose, write_pulse
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import kernel
@@ -82,7 +82,7 @@ def condition_numbers(
 
 
 def conditioning(
-    block: RigidBlock,
+    block: Rocker,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
@@ -128,7 +128,7 @@ def sensitivities(
 
 
 def sensitivity(
-    block: RigidBlock,
+    block: Rocker,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,

@@ -11,11 +11,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkinc
 
-from analytic.block import RigidBlock
+from analytic.block import RigidBlock, Rocker
 from analytic.models import find_model
 
 
-def quarter_period(block: RigidBlock, theta: float, model: str = "exact") -> float:
+def quarter_period(block: Rocker, theta: float, model: str = "exact") -> float:
     """Return the time [s] that a block released at rest at `theta` [rad] takes to its impact.
 
     Linear models: acosh(c/(c - theta))/k, the exact one by elliptic integrals (Housner 1963 gives
@@ -36,7 +36,7 @@ def quarter_period(block: RigidBlock, theta: float, model: str = "exact") -> flo
     return float(ellipk(modulus**2) - ellipkinc(angle, modulus**2)) / block.p
 
 
-def free_amplitude(block: RigidBlock, theta: float, impacts: int) -> float:
+def free_amplitude(block: Rocker, theta: float, impacts: int) -> float:
     """Return the rotation [rad] a block released at `theta` reaches after a number of impacts.
 
     The exact model's energy: cos(alpha - theta_n) = cos alpha + eta^2n [cos(alpha - theta) - cos

@@ -15,6 +15,7 @@ class Outcome(enum.Enum):
     AT_REST = "at rest"
     ROCKED = "rocked"
     OVERTURNED = "overturned"
+    SLID = "slid"
     FAILED = "failed"
     SLID = "slid"
 
@@ -28,6 +29,7 @@ _SENTENCES = {
     Outcome.AT_REST: "the block never lifted off the base",
     Outcome.ROCKED: "the block rocked and survived",
     Outcome.OVERTURNED: "the block overturned",
+    Outcome.SLID: "the block slid and did not rock",
     Outcome.FAILED: "no usable result",
     Outcome.SLID: "the box slid along the base",
 }
@@ -73,7 +75,8 @@ class Impact(NamedTuple):
 class History:
     """A sampled response: time [s], rotation theta [rad], angular velocity [rad/s], equal lengths.
 
-    A history ends where its response ends, for instance when the block lies on its side.
+    A history ends where its response ends, for instance when the block lies on its side. Of a
+    `SlidingBlock`, theta holds its place [m] and velocity its rate [m/s], relative to the base.
     """
 
     time: NDArray[np.float64]
@@ -88,9 +91,9 @@ class Response:
     Attributes
     ----------
     outcome : Outcome
-        At rest, rocked, overturned or failed.
+        At rest, rocked, overturned, slid or failed.
     peak_ratio : float
-        Largest abs(theta)/alpha; inf when overturned, 0 at rest, nan when failed.
+        Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed.
     crossed : bool
         Whether abs(theta) exceeded alpha at some time; such a block may still survive.
     impacts : tuple of Impact
@@ -98,6 +101,11 @@ class Response:
         infinitely many impacts before a rest, those that were resolved.
     uplifts, rests : tuple of float
         Times [s] at which the block leaves its rest, and comes to rest again.
+    slips : tuple of float
+        Displacements [m] relative to the base, signed, one a slip: from where the rate relative to
+        the base leaves zero to where it vanishes.
+    slip_times : tuple of (float, float)
+        Begin and end [s] of each slip.
     steps : int
         Steps of the integrator or engine.
     wall_s : float
@@ -135,6 +143,8 @@ class Response:
     impacts: tuple[Impact, ...] = ()
     uplifts: tuple[float, ...] = ()
     rests: tuple[float, ...] = ()
+    slips: tuple[float, ...] = ()
+    slip_times: tuple[tuple[float, float], ...] = ()
     steps: int = 0
     wall_s: float = 0.0
     setup_s: float = 0.0

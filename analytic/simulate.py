@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import RigidBlock
+from analytic.block import RigidBlock, Rocker
 from analytic.cases import law_of, pose, write_pulse
 from analytic.checks import finite
 from analytic.kernels.compiled import kernel
@@ -30,9 +30,17 @@ from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
+from analytic.slide import SlidingBlock
+from analytic.slipping import slid
 from analytic.start import REST, folded
 
-OUTCOMES = (*list(Outcome), Outcome.FAILED)
+OUTCOMES = (
+    Outcome.AT_REST,
+    Outcome.ROCKED,
+    Outcome.OVERTURNED,
+    Outcome.FAILED,
+    Outcome.FAILED,
+)
 """In the order of the codes in `analytic.kernels.excursions`."""
 FAILURES = {
     TOO_LONG: Problem(Reason.UNDECIDED, "the response takes too many steps"),
@@ -48,7 +56,7 @@ LOOSEST = 1e-2
 
 
 def simulate(
-    block: RigidBlock,
+    block: Rocker | SlidingBlock,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
@@ -61,18 +69,20 @@ def simulate(
 
     Parameters
     ----------
-    block : RigidBlock
+    block : RigidBlock, RockingFrame or SlidingBlock
     motion : Motion
         Ground motion, for instance a `SinePulse`; `Still()` where there is none.
     model : {"exact", "housner", "modified", "onset-matched"}
     start : (float, float), optional
         Rotation theta [rad] and angular velocity theta' [rad/s] at time zero; at rest by default.
         The sign of theta says which corner carries the block, that of the rate where theta is 0.
-        Beyond the critical rotation the motion may bring a block back.
+        Beyond the critical rotation the motion may bring a block back. Of a sliding block, place
+        [m] and rate [m/s] relative to the base.
     duration : float, optional
         Follow the response until this time [s], at least the duration of the motion. Without it
         the response is followed to the end of the motion only; outcome and peak of the free
-        rocking after that come from its energy in either case.
+        rocking after that come from its energy in either case. A sliding block is followed until it
+        stands.
     times : array_like, optional
         Ground times [s], increasing, at which to sample `Response.history`; it ends with the
         response.
@@ -84,14 +94,15 @@ def simulate(
     Returns
     -------
     Response
-        With `min_normal` and `friction_needed` for the exact model. Its peak is at least that of
-        the start.
+        With `min_normal` and `friction_needed` for the exact model of a block
+        (`analytic.frame_forces` has a frame's). Its peak is at least that of the start.
 
     Raises
     ------
     ValueError
-        If the model is unknown, the duration shorter than the motion, the times not increasing or
-        the tolerance out of range, or the start none (`analytic.start.folded` says which).
+        If the model is unknown, or linear and the block a sliding one; if the duration is shorter
+        than the motion, the times are not increasing or the tolerance is out of range, or the start
+        is none (`analytic.start.folded` says which).
 
     Notes
     -----
@@ -106,6 +117,12 @@ def simulate(
     >>> simulate(block, Still(), start=(0.5 * block.alpha, 0.0), duration=5.0).outcome
     <Outcome.ROCKED: 'rocked'>
     """
+    if isinstance(block, SlidingBlock):
+        if find_model(model).linear:
+            raise ValueError(f"model is {model!r}; a sliding block has no other than 'exact'")
+        until, sampled = check_window(motion, duration, times)
+        after = None if duration is None else until
+        return slid(block, motion, start, after, None if times is None else sampled)
     law = find_model(model).law(block.alpha, block.restitution)
     if not TOLERANCE <= tolerance <= LOOSEST:
         allowed = f"from {TOLERANCE} to {LOOSEST}"
@@ -115,10 +132,12 @@ def simulate(
     begin = folded(block, law, motion, start, sampled)
     segments = scaled_segments(block, motion)
 
+    watched = isinstance(block, RigidBlock) and not law.linear
+
     def solve(notes: Notes) -> End:
         return march(law, exactly, segments, begin, until * block.p, notes, workspace())
 
-    return as_response(block, solve, sampled, times is not None, watched=not law.linear)
+    return as_response(block, solve, sampled, times is not None, watched)
 
 
 def strongest(motion: Motion) -> float:
@@ -127,7 +146,7 @@ def strongest(motion: Motion) -> float:
 
 
 def as_response(
-    block: RigidBlock,
+    block: Rocker,
     solve: Callable[[Notes], End],
     sampled: FloatArray,
     recorded: bool,
@@ -256,7 +275,7 @@ def solve_pulses(
             peaks[i] = math.nan
 
 
-def scaled_segments(block: RigidBlock, motion: Motion) -> FloatArray:
+def scaled_segments(block: Rocker, motion: Motion) -> FloatArray:
     """Return the segments of a motion in units of 1/p and g; not finite where they overflow."""
     p, g = np.float64(block.p), np.float64(block.gravity)
     with np.errstate(all="ignore"):

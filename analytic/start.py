@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from analytic.block import RigidBlock
+from analytic.block import Rocker
 from analytic.checks import finite
 from analytic.kernels.law import Law, Start
 from analytic.kernels.rest import strongest_between
@@ -14,7 +14,7 @@ REST = (0.0, 0.0)
 
 
 def folded(
-    block: RigidBlock,
+    block: Rocker,
     law: Law,
     motion: Motion,
     start: tuple[float, float],

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from analytic.block import RigidBlock
+from analytic.block import Rocker
 from analytic.checks import positive
 from analytic.kernels.closed_form import free_peak
 from analytic.kernels.compiled import inner, kernel
@@ -57,7 +57,7 @@ MAX_STEPS = 50_000_000
 
 
 def integrate(
-    block: RigidBlock,
+    block: Rocker,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,

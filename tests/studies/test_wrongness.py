@@ -21,7 +21,7 @@ from studies.measures.wrongness import (
 )
 from studies.sweep import claims as sweep
 
-REST_WORD, ROCKED, OVER, FAILED = (outcome.value for outcome in Outcome)
+REST_WORD, ROCKED, OVER, _, FAILED = (outcome.value for outcome in Outcome)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,109 @@
+"""The rocking frame: a beam on two or more free-standing columns."""
+
+import math
+from dataclasses import dataclass
+
+from analytic.block import GRAVITY, RigidBlock
+from analytic.checks import finite, measurable
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RockingFrame:
+    """Equal free-standing columns that carry a free beam; every contact can only press.
+
+    The columns turn together and the beam moves without turning, whatever their distance; theta is
+    the rotation of the columns. What takes a block takes a frame.
+
+    Parameters
+    ----------
+    width, height : float
+        Full dimensions B and H of a column [m].
+    columns : int, optional
+        N, 2 or more. The motion does not depend on it.
+    load : float
+        gamma, the mass of the beam over that of all columns.
+    gravity : float, optional
+        g [m/s2].
+    restitution : float, optional
+        Ratio of the angular velocities after and before an impact, in [0, 1]. The default is that
+        of an ideally inelastic one, or 0 where that is negative (`frame_restitution`).
+
+    Raises
+    ------
+    ValueError
+        If columns is not a whole number of 2 or more, the load not positive and finite, or a
+        number is not what `RigidBlock` takes.
+
+    References
+    ----------
+    Makris and Vassiliou (2013), Earthquake Engineering and Structural Dynamics 42; EQUATIONS.md.
+    """
+
+    width: float
+    height: float
+    columns: int = 2
+    load: float
+    gravity: float = GRAVITY
+    restitution: float = math.nan
+
+    def __post_init__(self) -> None:
+        count = finite("columns", self.columns)
+        if count < 2 or count != int(count):
+            allowed = "a whole number of 2 or more (the beam of a single column turns)"
+            raise ValueError(f"columns is {self.columns!r}; it must be {allowed}")
+        object.__setattr__(self, "columns", int(count))
+        object.__setattr__(self, "load", measurable("load", self.load))
+        column = RigidBlock(
+            width=self.width,
+            height=self.height,
+            gravity=self.gravity,
+            restitution=self.restitution,
+        )
+        for name in ("width", "height", "gravity"):
+            object.__setattr__(self, name, getattr(column, name))
+        if math.isnan(self.restitution):
+            eta = max(frame_restitution(column.alpha, self.load), 0.0)
+            object.__setattr__(self, "restitution", eta)
+
+    @property
+    def column(self) -> RigidBlock:
+        """A column on its own."""
+        return RigidBlock(width=self.width, height=self.height, gravity=self.gravity)
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle atan(B/H) of a column [rad]; also the critical rotation."""
+        return math.atan2(self.width, self.height)
+
+    @property
+    def R(self) -> float:  # noqa: N802
+        """Half of the diagonal of a column [m]."""
+        return 0.5 * math.hypot(self.width, self.height)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s]: sqrt(3g/4R (1 + 2 gamma)/(1 + 3 gamma))."""
+        return math.sqrt(0.75 * self.gravity / (self.R * self._growth))
+
+    @property
+    def equivalent(self) -> RigidBlock:
+        """The block whose rotation is that of the columns: (1 + 3 gamma)/(1 + 2 gamma) as large."""
+        return RigidBlock(
+            width=self._growth * self.width,
+            height=self._growth * self.height,
+            gravity=self.gravity,
+            restitution=self.restitution,
+        )
+
+    @property
+    def _growth(self) -> float:
+        return (1.0 + 3.0 * self.load) / (1.0 + 2.0 * self.load)
+
+
+def frame_restitution(alpha: float, load: float) -> float:
+    """Velocity ratio of an ideally inelastic impact of a frame, at the bases and tops at once.
+
+    [1 - 3/2 sin(alpha)^2 + 3 gamma cos(2 alpha)]/(1 + 3 gamma); not clipped, as Housner's.
+    """
+    kept = 1.0 - 1.5 * math.sin(alpha) ** 2 + 3.0 * load * math.cos(2.0 * alpha)
+    return kept / (1.0 + 3.0 * load)

@@ -1,0 +1,266 @@
+"""The slips of a block on a base that moves, in closed form leg by leg (Newmark 1965).
+
+Relative to the base x'' = -u'' - mu g sgn x' while the block slides. It starts where abs(u'')
+exceeds mu g, and a slip ends where x' vanishes. On a segment of the motion x and x' are elementary;
+between two crests of u'' the rate x' has one stationary point at most, so that every root is
+bracketed.
+"""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from analytic.checks import finite
+from analytic.kernels.rest import EQUAL
+from analytic.motion import FloatArray, Motion
+from analytic.response import History, Outcome, Reason, Response
+from analytic.slide import SlidingBlock
+
+MOST_PIECES = 20_000
+"""Pieces between crests, beside one a segment, after which a response counts as endless."""
+LAST_DIGIT = 4.0 * np.finfo(np.float64).eps
+
+
+class Leg(NamedTuple):
+    """A part of a slip, or of a stick, on one segment of the motion.
+
+    It starts at the time `begin` [s] from the place x [m] at the rate v [m/s], both relative to the
+    base; side is the sign of the rate, 0 while the block sticks. phase, offset [m/s2] are those of
+    the motion at the begin; brake is mu g [m/s2].
+    """
+
+    begin: float
+    x: float
+    v: float
+    side: float
+    amplitude: float
+    omega: float
+    phase: float
+    offset: float
+    slope: float
+    brake: float
+
+    def ground(self, t: float) -> float:
+        """Acceleration of the base [m/s2], t seconds after the begin."""
+        wave = self.amplitude * math.sin(self.phase + self.omega * t)
+        return wave + self.offset + self.slope * t
+
+    def rate(self, t: float) -> float:
+        """Rate x' [m/s], t seconds after the begin."""
+        if self.side == 0.0:
+            return 0.0
+        gained = t * (self.offset + 0.5 * self.slope * t)
+        if self.amplitude != 0.0:
+            half = 0.5 * self.omega * t
+            wave = math.sin(self.phase + half) * math.sin(half)
+            gained += 2.0 * self.amplitude / self.omega * wave
+        return self.v - gained - self.side * self.brake * t
+
+    def place(self, t: float) -> float:
+        """Place x [m], t seconds after the begin."""
+        if self.side == 0.0:
+            return self.x
+        moved = t * t * (0.5 * self.offset + self.slope * t / 6.0)
+        if self.amplitude != 0.0:
+            turned = self.omega * t
+            ahead = math.cos(self.phase) * (turned - math.sin(turned))
+            across = 2.0 * math.sin(self.phase) * math.sin(0.5 * turned) ** 2
+            moved += self.amplitude / self.omega**2 * (ahead + across)
+        return self.x + t * (self.v - 0.5 * self.side * self.brake * t) - moved
+
+    def crests(self, length: float) -> Iterator[float]:
+        """Yield the times after the begin at which u'' is stationary, then the length [s]."""
+        if abs(self.slope) < abs(self.amplitude * self.omega):
+            level = math.acos(-self.slope / (self.amplitude * self.omega))
+            turn = math.floor(self.phase / (2.0 * math.pi))
+            while True:
+                for angle in (level, 2.0 * math.pi - level):
+                    t = (angle + 2.0 * math.pi * turn - self.phase) / self.omega
+                    if t >= length:
+                        yield length
+                        return
+                    if t > 0.0:
+                        yield t
+                turn += 1
+        yield length
+
+
+class EndlessError(Exception):
+    """A response with more pieces than MOST_PIECES."""
+
+
+def slid(
+    block: SlidingBlock,
+    motion: Motion,
+    start: tuple[float, float],
+    until: float | None,
+    sampled: FloatArray | None,
+) -> Response:
+    """Solve the response of a sliding block.
+
+    Parameters
+    ----------
+    block : SlidingBlock
+    motion : Motion
+    start : (float, float)
+        Place x [m] and rate x' [m/s] at time zero, relative to the base.
+    until : float or None
+        Time [s] to follow it to; by default, until the motion has ended and the block stands.
+    sampled : ndarray or None
+        Times [s] at which to sample the history, of x and x'.
+
+    Returns
+    -------
+    Response
+        With a slip for every time that x' vanishes, and the last as far as it got.
+    """
+    began = time.perf_counter()
+    x, v = _checked(start)
+    legs: list[Leg] = []
+    try:
+        end = _follow(block, motion.segments(), x, v, math.inf if until is None else until, legs)
+    except EndlessError:
+        return Response.failure("the block slides too often", reason=Reason.UNDECIDED)
+    slips, slip_times = _slips(legs, end)
+    wall_s = time.perf_counter() - began
+    return Response(
+        outcome=Outcome.SLID if slips else Outcome.AT_REST,
+        peak_ratio=0.0,
+        slips=slips,
+        slip_times=slip_times,
+        steps=len(legs),
+        wall_s=wall_s,
+        history=None if sampled is None else _history(legs, sampled),
+    )
+
+
+def _checked(start: tuple[float, float]) -> tuple[float, float]:
+    try:
+        x, v = start
+    except (TypeError, ValueError):
+        raise ValueError(f"start is {start!r}; it must be x [m] and x' [m/s]") from None
+    return finite("x of the start", x), finite("x' of the start", v)
+
+
+def _follow(
+    block: SlidingBlock, segments: FloatArray, x: float, v: float, until: float, legs: list[Leg]
+) -> float:
+    """Write the legs of a response; return the time [s] at which it ends."""
+    still = np.array([[segments[-1, 1], math.inf, 0.0, 1.0, 0.0, 0.0, 0.0]])
+    side, pieces = (math.copysign(1.0, v) if v != 0.0 else 0.0), -len(segments)
+    for row in np.concatenate((segments, still)).tolist():
+        first, last, amplitude, omega, phase, offset, slope = row
+        now, last = first, min(last, until)
+        while now < last:
+            gone = now - first
+            angle, level = phase + omega * gone, offset + slope * gone
+            shape = (amplitude, omega, angle, level, slope, block.limit)
+            leg = Leg(now, x, v, side, *shape)
+            legs.append(leg)
+            length, following, used = (_stop if side != 0.0 else _start)(leg, last - now)
+            pieces += used
+            if pieces > MOST_PIECES:
+                raise EndlessError
+            if length == math.inf:
+                return now
+            x, v = leg.place(length), (leg.rate(length) if following == side else 0.0)
+            side = following
+            now = last if length >= last - now else now + length
+    return until
+
+
+def _start(leg: Leg, length: float) -> tuple[float, float, int]:
+    """Return when a block that stands starts to slide, to which side, and the pieces looked at.
+
+    The length and side 0 where it does not.
+    """
+    limit = leg.brake * (1.0 + EQUAL)
+    strongest = abs(leg.amplitude) + abs(leg.offset)
+    if leg.slope == 0.0 and strongest <= limit:
+        return length, 0.0, 1
+    low, pieces = 0.0, 0
+    for high in leg.crests(length):
+        pieces += 1
+        if abs(leg.ground(low)) > limit:
+            return low, -math.copysign(1.0, leg.ground(low)), pieces
+        if abs(leg.ground(high)) > limit:
+            sign = math.copysign(1.0, leg.ground(high))
+            excess = partial(_excess, leg, sign, limit)
+            return _root(excess, low, high), -sign, pieces
+        if pieces > MOST_PIECES:
+            break
+        low = high
+    return length, 0.0, pieces
+
+
+def _excess(leg: Leg, sign: float, limit: float, t: float) -> float:
+    return sign * leg.ground(t) - limit
+
+
+def _stop(leg: Leg, length: float) -> tuple[float, float, int]:
+    """Return when a block that slides stops, 0, and the pieces looked at.
+
+    The length and its side where it does not.
+    """
+
+    def speed(t: float) -> float:
+        return leg.side * leg.rate(t)
+
+    def gain(t: float) -> float:
+        return -leg.side * leg.ground(t) - leg.brake
+
+    if length == math.inf:
+        return speed(0.0) / leg.brake, 0.0, 1
+    low, pieces = 0.0, 0
+    for high in leg.crests(length):
+        pieces += 1
+        middle = _root(gain, low, high) if gain(low) * gain(high) < 0.0 else high
+        for begin, end in ((low, middle), (middle, high)):
+            if speed(begin) > 0.0 >= speed(end):
+                return _root(speed, begin, end), 0.0, pieces
+        if pieces > MOST_PIECES:
+            break
+        low = high
+    return length, leg.side, pieces
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return a bracketed root to the last digit of its bracket."""
+    return float(brentq(function, low, high, xtol=LAST_DIGIT * (high - low), rtol=LAST_DIGIT))
+
+
+def _slips(
+    legs: list[Leg], end: float
+) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...]]:
+    """Return the slips [m] and their times of begin and end [s] from the legs of a response."""
+    slips: list[float] = []
+    times: list[tuple[float, float]] = []
+    begin: Leg | None = None
+    for leg in legs:
+        if begin is not None and leg.side != begin.side:
+            slips.append(leg.x - begin.x)
+            times.append((begin.begin, leg.begin))
+            begin = None
+        if begin is None and leg.side != 0.0:
+            begin = leg
+    if begin is not None:
+        slips.append(legs[-1].place(end - legs[-1].begin) - begin.x)
+        times.append((begin.begin, end))
+    return tuple(slips), tuple(times)
+
+
+def _history(legs: list[Leg], sampled: FloatArray) -> History:
+    """Sample the place [m] and rate [m/s] of a block at times [s]; before its start, at rest."""
+    begins = np.array([leg.begin for leg in legs])
+    places = np.searchsorted(begins, sampled, side="right") - 1
+    x, v = np.zeros(sampled.size), np.zeros(sampled.size)
+    for i, (n, t) in enumerate(zip(places.tolist(), sampled.tolist(), strict=True)):
+        leg = legs[max(n, 0)]
+        since = max(t - leg.begin, 0.0)
+        x[i], v[i] = leg.place(since), leg.rate(since)
+    return History(sampled, x, v)
