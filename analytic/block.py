@@ -22,6 +22,10 @@ class Rocker(Protocol):
         """H [m], of what turns."""
 
     @property
+    def R(self) -> float:  # noqa: N802
+        """Half of its diagonal [m]."""
+
+    @property
     def gravity(self) -> float:
         """G [m/s2]."""
 

@@ -17,7 +17,6 @@ class Outcome(enum.Enum):
     OVERTURNED = "overturned"
     SLID = "slid"
     FAILED = "failed"
-    SLID = "slid"
 
     @property
     def sentence(self) -> str:
@@ -31,7 +30,6 @@ _SENTENCES = {
     Outcome.OVERTURNED: "the block overturned",
     Outcome.SLID: "the block slid and did not rock",
     Outcome.FAILED: "no usable result",
-    Outcome.SLID: "the box slid along the base",
 }
 
 
@@ -131,8 +129,6 @@ class Response:
         Largest depth [m] of an engine's lowest corner in the base; nan for the reference.
     hop_m : float
         Largest height [m] of an engine's lowest corner above the base; nan for the reference.
-    slips : tuple of float
-        Distances [m] relative to the base by which a box slid, one a slip, with their signs.
     observables : mapping
         Name -> value of what else its scene shows: of a frame how far its bodies came apart, ...
     """
@@ -157,7 +153,6 @@ class Response:
     slip_m: float = float("nan")
     sink_m: float = float("nan")
     hop_m: float = float("nan")
-    slips: tuple[float, ...] = ()
     observables: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod

@@ -45,6 +45,16 @@ class SlidingBlock:
         return math.atan2(self.width, self.height)
 
     @property
+    def R(self) -> float:  # noqa: N802
+        """Half of the diagonal [m]."""
+        return 0.5 * math.hypot(self.width, self.height)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter sqrt(3g / 4R) [rad/s] of the block, were it to rock."""
+        return math.sqrt(0.75 * self.gravity / self.R)
+
+    @property
     def limit(self) -> float:
         """The acceleration mu g [m/s2] beyond which the base leaves the block behind."""
         return self.friction * self.gravity

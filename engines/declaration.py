@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from analytic.block import RigidBlock
-from engines.layouts import Ability
+from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
@@ -84,6 +83,9 @@ class Preset:
         What helps -> the settings that leave it out; None where it is the preset itself.
     misses : tuple of Miss
         What the library's defaults get wrong; no tuned preset may miss anything.
+    stacked : mapping or None
+        Settings in place of some of these where bodies rest on others; None where it cannot be used
+        for such a scene.
     own : mapping
         Of "naive", settings that are not the library's own -> what the library has by itself.
     """
@@ -99,6 +101,7 @@ class Preset:
     dial: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
     misses: tuple[Miss, ...] = ()
+    stacked: Mapping[str, Any] | None = field(default_factory=dict)
     own: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -109,6 +112,17 @@ class Preset:
                 f"step, step_s of preset {self.name!r} are {self.step!r}, {self.step_s!r}; "
                 "equal steps need one of them, other steps none"
             )
+
+    def chosen(self, scene: Scene) -> Any:
+        """Return its settings for a scene, with the scene's own in their place.
+
+        Raises
+        ------
+        ValueError
+            If a setting of the scene is not one of the engine's.
+        """
+        stacked = (Ability.STACKED in scene.layout.asks and self.stacked) or {}
+        return scene.choose(replace(self.settings, **stacked))
 
     def takes(self, **settings: Any) -> bool:
         """Return whether its settings can be changed so."""
@@ -237,7 +251,7 @@ class Engine:
         """The largest coefficient of friction that it takes."""
         return largest(self.best.settings, "friction")
 
-    def resolution(self, block: RigidBlock) -> Resolution:
+    def resolution(self, block: System) -> Resolution:
         """Return what its numbers tell apart about a block."""
         part = ROUNDINGS * self.precision.value
         return Resolution(part * block.height, self.shortest_step / block.p, part, self.calmest)
@@ -249,6 +263,11 @@ class Engine:
 
     def lacks(self, scene: Scene) -> str:
         """Say what of a scene the engine cannot do, or return an empty string."""
+        preset = self.preset(scene.preset)
+        if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
+            return f"{preset.title}, and here nothing rocks: ask {self.name}:fixed"
+        if preset.stacked is None and Ability.STACKED in scene.layout.asks:
+            return f"{self.title}:{preset.name} is not built here for {Ability.STACKED.value}"
         wanted = scene.settings.get("geometry")
         for asked in scene.layout.asks:
             if asked not in self.abilities:

@@ -8,9 +8,9 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
-from analytic.block import RigidBlock
+from analytic.block import RigidBlock, Rocker
 from analytic.frame import RockingFrame
 from analytic.slide import SlidingBlock
 
@@ -29,37 +29,6 @@ SPACING = 2.0
 
 BEAM_DEPTH = 0.2
 """Depth of its beam, likewise."""
-
-
-class System(Protocol):
-    """What every system says of itself: the sizes of what rocks, and its equation's numbers.
-
-    width, height [m], alpha [rad], p [rad/s], gravity [m/s2].
-    """
-
-    @property
-    def width(self) -> float:
-        """Width of what rocks [m]."""
-
-    @property
-    def height(self) -> float:
-        """Its height [m]."""
-
-    @property
-    def alpha(self) -> float:
-        """Its critical rotation [rad]."""
-
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of its diagonal [m]."""
-
-    @property
-    def p(self) -> float:
-        """Frequency of the equation that it rocks by [rad/s]."""
-
-    @property
-    def gravity(self) -> float:
-        """Gravity [m/s2]."""
 
 
 class Ability(Enum):
@@ -184,6 +153,10 @@ class SideBySide:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.block, name)
+
+
+System = Rocker | SlidingBlock | SideBySide
+"""What can be posed; its width, height, alpha, p and gravity are those of what rocks or slides."""
 
 
 def tilted(width: float, height: float, side: float, theta: float, rate: float) -> Beginning:

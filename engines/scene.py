@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from analytic.checks import finite, positive
 from analytic.motion import SEGMENT_COLUMNS, Motion
+from analytic.slide import SlidingBlock
 from engines.hints import TRUE, Hints
 from engines.layouts import Body, Layout, System, layout_of
 
@@ -52,8 +53,8 @@ class Scene:
     depth : float, optional
         Size of the block out of the plane [m]; its width by default.
     friction : float, optional
-        Coefficient between block and base; the preset's by default. Where it is 0 the block is
-        meant to slide, and a slide is no failure.
+        Coefficient between block and base; by default the system's, where it has one, or the
+        preset's. Where it is 0 the block is meant to slide, and a slide is no failure.
     step : float, optional
         p dt, the ordinary step in units of 1/p; the preset's by default.
     duration : float, optional
@@ -105,7 +106,9 @@ class Scene:
         for name in ("density", "depth", "step", "time_limit_s", "max_steps"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, positive(name, getattr(self, name)))
-        if self.friction is not None:
+        if self.friction is None:
+            object.__setattr__(self, "friction", getattr(self.system, "friction", None))
+        else:
             object.__setattr__(self, "friction", _not_negative("friction", self.friction))
         object.__setattr__(self, "max_steps", int(self.max_steps))
         if self.duration is not None:
@@ -121,6 +124,8 @@ class Scene:
             words = "it must be theta [rad] and theta' [rad/s]"
             raise ValueError(f"start is {start!r}; {words}") from None
         theta, rate = finite("theta of the start", theta), finite("rate of the start", rate)
+        if isinstance(self.system, SlidingBlock):
+            return theta, rate  # place [m] and velocity [m/s]
         if abs(theta) >= 0.5 * math.pi:
             words = "it must be between -pi/2 and pi/2 rad"
             raise ValueError(f"theta of the start is {theta!r}; {words}")
@@ -149,9 +154,10 @@ class Scene:
 
     @property
     def side(self) -> float:
-        """Corner about which the block turns at first: -1 or 1, or 0 if it is at rest."""
+        """Corner about which what rocks turns at first: -1 or 1, or 0 if it is at rest."""
         theta, rate = self.start
-        return math.copysign(1.0, theta or rate) if theta or rate else 0.0
+        turns = self.layout.rocking and (theta or rate)
+        return math.copysign(1.0, theta or rate) if turns else 0.0
 
     def choose(self, settings: SettingsT) -> SettingsT:
         """Return an engine's settings with this scene's own in their place.

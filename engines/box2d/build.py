@@ -122,7 +122,7 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         settings=(step.format(repr(dt_s)), *settings_of(lines)),
         build=tuple(line.text for line in lines),
         step=(f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}", step.format("DT")),
-        pose=("theta, rate = -block.angle, -block.angularVelocity",),
+        pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),
     )
 
 

@@ -9,6 +9,7 @@ from engines.mujoco.settings import (
     FACTORS,
     LANDING,
     RULES,
+    STACKED,
     TUNED,
     MujocoSettings,
     spring,
@@ -31,7 +32,7 @@ ENGINE = Engine(
             step_source="the library's own timestep, 0.002 s",
             contact_s=DEFAULT_CONTACT_S,
         ),
-        Preset(name="fixed", settings=TUNED, step=2.5e-4),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
         Preset(
             name="landing",
             settings=LANDING,

@@ -13,7 +13,7 @@ from engines.mujoco.contact import (
     read_now,
 )
 from engines.mujoco.fast import drive, memory_of, obstacle
-from engines.mujoco.model import OPTIONS, coordinates, model_xml
+from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
 from engines.mujoco.models import given_back, taken
 from engines.mujoco.settings import (
     MujocoSettings,
@@ -42,10 +42,10 @@ class MujocoWorld:
         self._s = s = settings
         self._mj = import_module("mujoco")
         self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
-        self._built = taken(self._mj, model_xml(scene, s))
+        self._built = taken(self._mj, model_xml(scene, s, dt_s))
         self._model, self._data = self._built.model, self._built.data
         self._option = self._model.opt
-        self._fault = self._read_back(scene)
+        self._fault = self._read_back(scene, dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
         self._holds = Hold.blank()
@@ -98,7 +98,7 @@ class MujocoWorld:
         self._mj.set_mju_user_warning(None)
         given_back(self._mj, self._built)
 
-    def _read_back(self, scene: Scene) -> str:
+    def _read_back(self, scene: Scene, dt_s: float) -> str:
         s, model = self._s, self._model
         pairs: dict[str, tuple[Any, Any]] = {
             "timestep": (LIBRARY_STEP_S, self._option.timestep),
@@ -109,10 +109,11 @@ class MujocoWorld:
             found = model.body_inertia[number]
             pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}
         pairs |= {name: self._read_option(name) for name in OPTIONS}
-        if s.impedance is not None:
+        impedance = impedance_of(scene, s, dt_s)
+        if impedance is not None:
             pairs |= {
                 f"impedance {i}": (value, model.pair_solimp[0, i])
-                for i, value in enumerate(s.impedance)
+                for i, value in enumerate(impedance)
             }
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
         return disagreement(pairs)

@@ -28,14 +28,14 @@ PLANAR_JOINTS = (
 )
 
 
-def model_xml(scene: Scene, s: MujocoSettings) -> str:
-    """Return the model of a scene in MuJoCo's own language."""
+def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
+    """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s]."""
     margin = (s.margin or 0.0) * scene.system.width
     named = ((name, getattr(s, name)) for name in OPTIONS)
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
     common = f'{_friction(s)} margin="{margin}"'
     bodies = "".join(_body(scene, number, s, common) for number in range(len(scene.bodies)))
-    contact = f' margin="{margin}" solimp="{_row(impedance_of(scene, s) or ())}" '
+    contact = f' margin="{margin}" solimp="{_row(impedance_of(scene, s, dt_s) or ())}" '
     pairs = "" if s.impedance is None else "".join(_pairs(scene, s, contact))
     return (
         f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}{bodies}"
@@ -91,7 +91,8 @@ def _geoms(scene: Scene, number: int, s: MujocoSettings) -> dict[str, str]:
     if s.geometry == "box":
         return box
     radius = s.corner_radius * scene.system.width
-    shape, geoms = f'type="sphere" size="{radius}"', {}
+    shape = f'type="sphere" size="{radius}"'
+    geoms: dict[str, str] = {}
     for order, contact in enumerate(scene.layout.contacts):
         if contact.body == number:
             corners = corner_spheres(body, radius, planar=s.planar, face=contact.face)
@@ -114,9 +115,12 @@ def surface_name(body: int, s: MujocoSettings) -> str:
     return "base" if body == BASE else named("hull" if s.geometry == "hull" else "box", body)
 
 
-def impedance_of(scene: Scene, s: MujocoSettings) -> tuple[float, ...] | None:
+def impedance_of(scene: Scene, s: MujocoSettings, dt_s: float) -> tuple[float, ...] | None:
     """Return the five numbers of solimp, the width [m] of the soft surface among them."""
-    return s.impedance
+    if s.impedance is None or s.soft_surface is None:
+        return s.impedance
+    surface, whole, _, *curve = s.impedance
+    return surface, whole, s.soft_surface * scene.system.gravity * dt_s**2, *curve
 
 
 def _friction(s: MujocoSettings) -> str:
@@ -166,7 +170,7 @@ def direct_reference(
 
 def stepped_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     """Return the model of a scene with what the adapter sets at a step dt_s [s], a line each."""
-    root = ElementTree.fromstring(model_xml(scene, s))
+    root = ElementTree.fromstring(model_xml(scene, s, dt_s))
     option = root.find("option")
     if option is not None:
         option.set("timestep", repr(dt_s))

@@ -57,6 +57,9 @@ class MujocoSettings:
         k dt^2, wherever damping is set.
     impedance : tuple of float or None
         The five numbers of solimp; needed wherever damping is set.
+    soft_surface : float or None
+        Depth over g dt^2 within which a contact grows from the first of the impedances to the
+        second, in place of their width; it keeps contacts that close together from parting.
     solref : tuple of float or None
         The contact in the library's other form, in place of damping and stiffness: its time
         constant over dt and its damping ratio. Both should be positive: the library takes a pair
@@ -92,6 +95,7 @@ class MujocoSettings:
     sliding_damping: float | None = setting(above=0.0)
     stiffness: float | None = setting(above=0.0)
     impedance: tuple[float, ...] | None = None
+    soft_surface: float | None = setting(above=0.0)
     by_phase: bool = False
     reflection: bool = False
     carry: float | None = setting(above=0.0)
@@ -138,6 +142,15 @@ LANDING = replace(
     carry=1e-4,
     preload=True,
 )
+
+STACKED: dict[str, Any] = {
+    "friction": 2.0,
+    "impratio": 100.0,
+    "tolerance": 0.0,
+    "impedance": (0.9, 0.9999, 0.001, 0.5, 2.0),
+    "soft_surface": 0.1,
+}
+"""Where bodies rest on others: with the block's own contact they part at an impact."""
 
 STEEP = "a pyramid this steep leaves too little normal force"
 ZERO = "one zero makes it the default, 0.02 s 1"

@@ -9,6 +9,7 @@ from engines.pybullet.settings import (
     LANDING,
     LIBRARY_STEP_S,
     RULES,
+    STACKED,
     TUNED,
     BulletSettings,
     spring,
@@ -31,11 +32,12 @@ ENGINE = Engine(
             step_source="the library's own time step, 1/240 s",
             own={"friction": 0.5},
         ),
-        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=5e-4, stacked=STACKED),
         Preset(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
+            stacked=None,
             helped_by={
                 Help.STEPS: None,
                 Help.PHASES: {"by_phase": False},

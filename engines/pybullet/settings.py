@@ -158,6 +158,9 @@ LANDING = replace(
     TUNED, residual=1e-32, friction_erp=1.0, friction_anchor=True, gap_by_step=True, by_phase=True
 )
 
+STACKED: dict[str, Any] = {"geometry": "box", "base_geometry": "box", "iterations": 250}
+"""Where bodies rest on others: corner spheres under a body that moves throw it."""
+
 DRAG = "drag that nobody asked for"
 SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"

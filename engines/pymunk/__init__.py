@@ -32,6 +32,7 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
+            stacked=None,
             helped_by={
                 Help.STEPS: None,
                 Help.POSITIONS: {"positions": False},

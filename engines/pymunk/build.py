@@ -127,10 +127,10 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
         settings=(f"space.step({dt_s!r})", *settings_of(lines)),
         build=tuple(line.text for line in (*lines, *held)),
         step=(
-            *("hold(floors, -block.angle)",) * bool(held),
+            *("hold(floors, -bodies[0].angle)",) * bool(held),
             *("space.gravity = pull_x, pull_z", "space.step(DT)"),
         ),
-        pose=("theta, rate = -block.angle, -block.angular_velocity",),
+        pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
         moment=Moment.MIDDLE if settings.positions else Moment.NEXT,
     )
 

@@ -86,7 +86,7 @@ def build(engine: Engine, scene: Scene) -> World:
     lacking = engine.lacks(scene)
     if lacking:
         raise NotAvailableError(f"not available: {lacking}")
-    settings = scene.choose(preset.settings)
+    settings = preset.chosen(scene)
     try:
         return engine.build(scene, settings, preset.ordinary_step_s(scene))
     except ImportError as error:

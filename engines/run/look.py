@@ -5,6 +5,7 @@ write: `look` is called once a step for any world, or from within a world's own 
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -206,20 +207,22 @@ class Look:
     @property
     def problem(self) -> Problem | None:
         """Why the response is no longer that of what was posed."""
-        seen = [self.runs[0].slide, *self.watches]
+        seen: list[Watch | Slide] = [self.runs[0].slide, *self.watches]
         return next((problem_of(each) for each in seen if each.problem), None)
 
     def response(self, *, steps: int, wall_s: float) -> Response:
         """Return what was seen until now."""
         *_, rows, events = self.lists
-        first, cost = self.runs[0], {"steps": steps, "wall_s": wall_s}
+        first = self.runs[0]
         if first.slide.on:
-            return slide_response(first.slide, events[0], **cost)
-        responses = [
-            response_of(run.watch, events[number], self._history(run.watch, rows[number]), **cost)
-            for number, run in enumerate(self.runs)
-        ]
-        return together(responses, observables_of(first.spread, self._alpha))
+            found = slide_response(first.slide, events[0])
+        else:
+            each = [
+                response_of(run.watch, events[number], self._history(run.watch, rows[number]))
+                for number, run in enumerate(self.runs)
+            ]
+            found = together(each, observables_of(first.spread, self._alpha))
+        return replace(found, steps=steps, wall_s=wall_s)
 
     def _history(self, watch: Watch, rows: FloatArray) -> History | None:
         return None if self._times is None else sample(rows[: watch.rows], self._times)

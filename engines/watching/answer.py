@@ -19,7 +19,7 @@ from engines.watching.observe import (
     Watch,
     complete,
 )
-from engines.watching.sliding import DISTANCE, Slide
+from engines.watching.sliding import DISTANCE, SINCE, Slide
 from engines.watching.sliding import WHEN as STOP
 from engines.watching.sliding import observables_of as observables_of_slide
 
@@ -38,9 +38,7 @@ def problem_of(watch: Watch | Slide) -> Problem:
     return Problem(*words[int(watch.problem)])
 
 
-def response_of(
-    watch: Watch, events: FloatArray, history: History | None, *, steps: int, wall_s: float
-) -> Response:
+def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
     """Return what was seen until now; `events` has room for one more."""
     complete(watch, events)
     if watch.overturned:
@@ -58,8 +56,6 @@ def response_of(
         impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
         uplifts=tuple(uplifts[:, WHEN].tolist()),
         rests=tuple(rests[:, WHEN].tolist()),
-        steps=steps,
-        wall_s=wall_s,
         message=_remark(watch),
         history=history,
         slip_m=float(watch.slide),
@@ -95,7 +91,7 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
     )
 
 
-def slide_response(slide: Slide, slips: FloatArray, *, steps: int, wall_s: float) -> Response:
+def slide_response(slide: Slide, slips: FloatArray) -> Response:
     """Return what was seen of a box that slides."""
     seen = slips[: slide.slips]
     slid = Outcome.SLID if slide.slips else Outcome.AT_REST
@@ -103,9 +99,8 @@ def slide_response(slide: Slide, slips: FloatArray, *, steps: int, wall_s: float
         outcome=Outcome.OVERTURNED if slide.overturned else slid,
         peak_ratio=math.inf if slide.overturned else 0.0,
         slips=tuple(seen[:, DISTANCE].tolist()),
-        steps=steps,
-        wall_s=wall_s,
+        slip_times=tuple(map(tuple, seen[:, [SINCE, STOP]].tolist())),
         slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
         sink_m=float(slide.depth),
-        observables={**observables_of_slide(slide), "stop_s": float(max(seen[:, STOP], default=0))},
+        observables=observables_of_slide(slide),
     )

@@ -12,6 +12,9 @@ SLIP_RATE = 3e-4
 """A box slides when it is faster than this part of sqrt(g B): what it still goes when it is slower,
 v^2/(2 mu g), is below 1e-7 B/mu."""
 
+LEAST_SLIP = 1e-5
+"""A slip shorter than this part of the width is a tremor of the contact."""
+
 STILL_TIME = 0.05
 """A box is at rest when it has not slid for this time, in units of sqrt(B/g)."""
 
@@ -99,7 +102,7 @@ def see_slide(slide: Slide, slips: FloatArray, time: float, pose: Pose) -> None:
     velocity = (place - slide.place) / (time - slide.time)
     way = math.copysign(1.0, velocity) if abs(velocity) > slide.slow else 0.0
     if way != slide.way:
-        if slide.way != 0.0:
+        if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
             slips[slide.slips, WHEN], slips[slide.slips, SINCE] = time, slide.since
             slips[slide.slips, DISTANCE] = place - slide.origin
             slide.slips += 1

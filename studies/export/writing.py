@@ -82,7 +82,7 @@ def script_of(engine: Engine, preset: Preset, scene: Scene) -> Script:
     """
     if engine.script is None:
         raise ValueError(f"{engine.title} writes no scripts")
-    return engine.script(scene, scene.choose(preset.settings), preset.ordinary_step_s(scene))
+    return engine.script(scene, preset.chosen(scene), preset.ordinary_step_s(scene))
 
 
 def block_text(what: Exported, script: Script) -> str:

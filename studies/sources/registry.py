@@ -65,7 +65,7 @@ class Source:
         taken = inspect.signature(self.call).parameters
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
-            scene_of(block, motion, self.preset, **asked).choose(self.used.settings)
+            self.used.chosen(scene_of(block, motion, self.preset, **asked))
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
             for name in options:
                 one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
