@@ -30,8 +30,9 @@ from studies.kit.options import (
     Yours,
     refuse_two_steps,
 )
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.standing import ONE_BLOCK, Standing
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
@@ -50,6 +51,7 @@ def command(
     width: Positive,
     height: Positive,
     excitation: Excitation = DEFAULT_EXCITATION,
+    standing: Standing = ONE_BLOCK,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     duration: Positive | None = None,
     effort: EffortOptions = OWN_EFFORT,
@@ -59,14 +61,14 @@ def command(
     json: bool = False,
     computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
-    """Compare the sources on one block, and one pulse, record or release.
+    """Compare the sources on one block, frame or slide, and one pulse, record or release.
 
     Parameters
     ----------
     width
-        Full width B of the block [m].
+        Full width B of the block or of each column [m].
     height
-        Full height H of the block [m].
+        Its full height H [m].
     sources
         Who is asked.
     duration
@@ -83,7 +85,7 @@ def command(
     """
     check_sources(sources)
     check_plot(plot)
-    block = posed_block(width, height)
+    block = standing.system(width, height, yours.friction)
     posed = excitation.pose(block)
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
