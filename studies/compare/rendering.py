@@ -10,7 +10,6 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse, Still
-from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.simulate import strongest
 from studies.cases.paper import PULSES
@@ -19,10 +18,6 @@ from studies.kit.posing import Posed
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
-
-DRIFT = 1e-6
-"""Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
-
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")
@@ -181,19 +176,6 @@ def motion_details(motion: Motion) -> str:
     speed = float(np.abs(motion.velocity(times)).max())
     step = motion.duration / (times.size - 1)
     return f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s, {motion.duration:.4g} s"
-
-
-def baseline_note(record: Record, baseline: str | None) -> str:
-    """Say how a record was corrected, and what velocity it leaves the base with; or nothing."""
-    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
-    largest = float(np.abs(record.velocity(record.breakpoints)).max())
-    if abs(record.final_velocity) > DRIFT * largest:
-        part = abs(record.final_velocity) / largest
-        words.append(
-            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
-            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
-        )
-    return "; ".join(words)
 
 
 def _peak(row: Row, scale: float) -> str:

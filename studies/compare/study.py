@@ -9,13 +9,14 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic import conditioning, sensitivity, simulate
+from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
+from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
-from studies.compare.rendering import baseline_note, draw, json_lines, records, table_text
+from studies.compare.rendering import draw, json_lines, records, table_text
 from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, ask, summary
@@ -29,9 +30,11 @@ from studies.kit.options import (
     EffortOptions,
     Yours,
     refuse_two_steps,
+    slides,
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
+from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
@@ -113,11 +116,8 @@ def command(
 
 def conditioned(rows: Sequence[Row], block: RigidBlock, posed: Posed) -> list[Row]:
     """Add kappa and sensitivity of the exact peak to every row, where there is one."""
-    kappa = moved = math.nan
-    if rows[0]["exact"].outcome is not Outcome.FAILED:
-        kappa, _ = conditioning(block, posed.motion, start=posed.start)
-        moved = sensitivity(block, posed.motion, start=posed.start)
-    return [{**row, "kappa": kappa, "sensitivity": moved} for row in rows]
+    known = conditioning_of_one(block, posed.motion, posed.start, rows[0]["exact"])
+    return [{**row, **known} for row in rows]
 
 
 def hanging(block: RigidBlock, posed: Posed, window: float, exact: Response) -> str:
@@ -200,10 +200,8 @@ def compare(
         rows = with_estimates(rows, halves, own_steps=effort.own and yours.dt is None)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
-    if yours.friction is not None and yours.friction < exact.friction_needed:
-        words = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"
-        said = compared["exact"]["message"]
-        compared["exact"]["message"] = "; ".join(filter(None, (said, words)))
+    said = (compared["exact"]["message"], slides(exact, yours.friction))
+    compared["exact"]["message"] = "; ".join(filter(None, said))
     return [compared[name] for name in sources]
 
 

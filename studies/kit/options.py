@@ -196,3 +196,10 @@ def refuse_two_steps(step: float | None, yours: Yours) -> None:
     """Raise BadInputError if a step is given both in units of 1/p and in seconds."""
     if None not in (step, yours.dt):
         raise BadInputError(f"--dt is {yours.dt:g} and --step is {step:g}; give one or the other")
+
+
+def slides(exact: Response, friction: float | None) -> str:
+    """Say that a block slides where the exact solution, which does not, needs more friction."""
+    if friction is None or not friction < exact.friction_needed:
+        return ""
+    return f"slides: needs {exact.friction_needed:.3g}, has {friction:.3g}"
