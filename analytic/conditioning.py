@@ -134,17 +134,31 @@ def sensitivity(
     start: tuple[float, float] = REST,
 ) -> float:
     """Return what `sensitivities` does, of one peak; the start is the same for all moves."""
+    return float(_largest_move(scaled(block, motion, model, start)))
+
+
+def scaled(
+    block: Rocker,
+    motion: Motion,
+    model: str | Model = "exact",
+    start: tuple[float, float] = REST,
+) -> Callable[[float, float], tuple[float, Outcome]]:
+    """Return what solves one response with its motion and eta multiplied, eta to at most 1.
+
+    It takes both factors, returns the largest rotation [rad] and the outcome, writes nothing else
+    down and may be called from several threads.
+    """
     law = find_model(model).law(block.alpha, block.restitution)
     begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
 
     def solve(stronger: float, livelier: float) -> tuple[float, Outcome]:
-        scaled = segments * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
+        harder = segments * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
         moved = law._replace(eta=min(livelier * law.eta, 1.0))
-        end = march(moved, accuracy(TOLERANCE), scaled, begin, 0.0, notes, workspace())
+        end = march(moved, accuracy(TOLERANCE), harder, begin, 0.0, notes, workspace())
         return end.peak, OUTCOMES[end.outcome]
 
-    return float(_largest_move(solve))
+    return solve
 
 
 def _largest_move(solve: Callable[[float, float], tuple[Any, Any]]) -> FloatArray:

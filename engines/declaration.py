@@ -261,17 +261,29 @@ class Engine:
         """Whether its library is there."""
         return importlib.util.find_spec(self.library) is not None
 
-    def lacks(self, scene: Scene) -> str:
-        """Say what of a scene the engine cannot do, or return an empty string."""
-        preset = self.preset(scene.preset)
-        if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
-            return f"{preset.title}, and here nothing rocks: ask {self.name}:fixed"
-        if preset.stacked is None and Ability.STACKED in scene.layout.asks:
-            return f"{self.title}:{preset.name} is not built here for {Ability.STACKED.value}"
-        wanted = scene.settings.get("geometry")
-        for asked in scene.layout.asks:
+    def used_for(self, scene: Scene) -> Preset:
+        """Return the preset that a scene names, or else the best that can be used for it.
+
+        Raises
+        ------
+        ValueError
+            If there is none of that name.
+        """
+        if scene.preset is not None:
+            return self.preset(scene.preset)
+        fit = [preset for preset in self.presets if not self.lacks(scene, preset)]
+        return fit[-1] if fit else self.best
+
+    def lacks(self, scene: Scene, preset: Preset) -> str:
+        """Say what of a scene a preset of the engine cannot do, or return an empty string."""
+        wanted, asks = scene.settings.get("geometry"), scene.layout.asks
+        for asked in asks:
             if asked not in self.abilities:
                 return f"{self.title} is not built here for {asked.value}"
+        if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
+            return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
+        if preset.stacked is None and Ability.STACKED in asks:
+            return f"{self.name}:{preset.name} is not built here for {Ability.STACKED.value}"
         if scene.frame not in self.frames:
             return f"{self.title} has no frame {scene.frame!r}"
         if wanted in GEOMETRIES and wanted not in self.geometries:

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
-    from analytic.block import RigidBlock
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
+    from engines.layouts import System
 
 __all__ = ["respond", "side_by_side"]
 
 
 def respond(
     source: str,
-    block: RigidBlock,
+    block: System,
     motion: Motion,
     *,
     start: tuple[float, float] = (0.0, 0.0),
@@ -37,7 +37,8 @@ def respond(
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
-    block : RigidBlock
+    block : RigidBlock, RockingFrame or SlidingBlock
+        What stands on the base.
     motion : Motion
         For instance a `SinePulse`; `analytic.Still()` where the ground does not move.
     start : (float, float), optional
@@ -65,7 +66,7 @@ def respond(
 
 
 def side_by_side(
-    block: RigidBlock,
+    block: System,
     motion: Motion,
     sources: Sequence[str],
     *,
@@ -78,7 +79,7 @@ def side_by_side(
 
     Parameters
     ----------
-    block, motion, start : RigidBlock, Motion, (float, float)
+    block, motion, start
         As in `respond`.
     sources : sequence of str
         Their names, each as in `respond`.

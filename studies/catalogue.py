@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from studies import (
     advise,
     animate,
+    blocks,
     compare,
     contact,
     defaults,
@@ -33,6 +34,7 @@ from studies.kit.study import Chapter, Study
 STUDIES: tuple[Study, ...] = (
     advise.STUDY,
     compare.STUDY,
+    blocks.STUDY,
     animate.STUDY,
     export.STUDY,
     sweep.STUDY,
@@ -68,6 +70,7 @@ CHAPTERS: tuple[tuple[Study, Chapter], ...] = tuple(
 if TYPE_CHECKING:
     from studies.advise import steps as _steps
     from studies.advise import study as _advise
+    from studies.blocks import study as _blocks
     from studies.contact import study as _contact
     from studies.defaults import study as _defaults
     from studies.ensemble import study as _ensemble
@@ -95,4 +98,5 @@ if TYPE_CHECKING:
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
         *(_advise, _steps, _defaults, _estimate, _symptoms, _restitution, _score, _versions),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
+        _blocks,
     )

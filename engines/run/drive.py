@@ -52,7 +52,7 @@ def run(engine: str, scene: Scene) -> Response:
     """
     began = perf_counter()
     asked = find(engine)
-    preset = asked.preset(scene.preset)
+    preset = asked.used_for(scene)
     try:
         world = build(asked, scene)
     except NotAvailableError as error:
@@ -69,7 +69,9 @@ def run(engine: str, scene: Scene) -> Response:
         driver = driver_of(world, scene)
     finally:
         world.close()
-    return replace(response, setup_s=built - began, driver=driver)
+    said = [] if scene.preset or preset is asked.best else [f"as {engine}:{preset.name}"]
+    message = "; ".join(filter(None, (*said, response.message)))
+    return replace(response, setup_s=built - began, driver=driver, message=message)
 
 
 def build(engine: Engine, scene: Scene) -> World:
@@ -82,8 +84,8 @@ def build(engine: Engine, scene: Scene) -> World:
     ValueError
         If a preset or setting is not one of the engine's.
     """
-    preset = engine.preset(scene.preset)
-    lacking = engine.lacks(scene)
+    preset = engine.used_for(scene)
+    lacking = engine.lacks(scene, preset)
     if lacking:
         raise NotAvailableError(f"not available: {lacking}")
     settings = preset.chosen(scene)

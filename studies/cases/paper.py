@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse
+from engines.layouts import System
 
 PULSES = {"half-sine": 1, "full-sine": 2}
 """Half cycles of each pulse."""
@@ -132,6 +133,6 @@ def sweep_cases(figures: Iterable[int]) -> Iterator[Case]:
                     )
 
 
-def free_rocking_window(block: RigidBlock, motion: Motion) -> float:
+def free_rocking_window(block: System, motion: Motion) -> float:
     """Time [s] of an observation: the motion and 8/p of free rocking, a few impacts."""
     return motion.duration + 8.0 / block.p

@@ -8,21 +8,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse, Still
-from analytic.record import Record
-from analytic.response import Outcome, Response
 from analytic.simulate import strongest
+from engines.layouts import System
 from studies.cases.paper import PULSES
+from studies.compare.columns import columns_of, duration, first_line, meanings, part, valid
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
-from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
-
-DRIFT = 1e-6
-"""Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
-
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")
@@ -43,7 +37,8 @@ def json_lines(rows: list[Row], note: str = "") -> str:
 def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
     """Return what is told of each row, by name, with a note in each message.
 
-    The last three, `valid` among them, say what the exact solution needs, and are alike in all.
+    `valid` and what stands before it say what the exact solution needs, alike in all; slips [m]
+    and the observables of a scene follow where there are any.
     """
     objects: list[dict[str, Any]] = []
     for row in rows:
@@ -53,7 +48,10 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
         }
         item["message"] = "; ".join(words for words in (item["message"], note) if words)
         item |= {name: getattr(exact, name) for name in ("min_normal", "friction_needed")}
-        objects.append({**item, "valid": valid(exact)})
+        response = row["response"]
+        if response.slips:
+            item["slips"] = list(response.slips)
+        objects.append({**item, "valid": valid(exact), **response.observables})
     return objects
 
 
@@ -62,7 +60,7 @@ def _finite_or_null(value: Any) -> Any:
 
 
 def table_text(
-    block: RigidBlock,
+    block: System,
     posed: Posed,
     window: float,
     rows: list[Row],
@@ -80,30 +78,20 @@ def table_text(
         {
             "source": [row["source"] for row in rows],
             "outcome": [row["outcome"] for row in rows],
-            "θmax [°]" if degrees else "θmax/θcr": [_peak(row, scale) for row in rows],
-            "vs exact": [_difference(row) for row in rows],
+            **columns_of(block, rows, scale, degrees),
             **_estimates(rows),
-            "impacts": [row["impacts"] for row in rows],
-            "late·p": [_part(row["impact_error"]) for row in rows],
-            "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
-            "slip/B": [_part(row["response"].slip_m / block.width) for row in rows],
             "steps": [row["steps"] for row in rows],
-            "time": [_duration(row["wall_s"]) for row in rows],
+            "time": [duration(row["wall_s"]) for row in rows],
         }
     )
     notes = [f"{row['source']}: {row['message']}" for row in rows if row["message"]]
-    alpha = f"{math.degrees(block.alpha):.5g}°" if degrees else f"{block.alpha:.5g} rad"
     return "\n".join(
         [
-            f"block   B = {block.width:g} m, H = {block.height:g} m: "
-            f"α = θcr = {alpha}, p = {block.p:.5g} rad/s",
+            first_line(block, degrees),
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            "late    largest error of the first five impact times, times p",
-            f"ratio   velocity after over before an impact, the median; Housner's η = "
-            f"{block.restitution:.6g}",
-            f"valid   {validity(rows[0]['exact'])}",
+            *meanings(block, rows[0]["exact"]),
             "",
             table.to_string(index=False),
             *notes,
@@ -117,38 +105,20 @@ def _estimates(rows: list[Row]) -> dict[str, list[str]]:
     if "estimate" not in rows[0]:
         return {}
     return {
-        "estimate": [_part(row["estimate"]) for row in rows],
+        "estimate": [part(row["estimate"]) for row in rows],
         "bound 95 %": [_bound(row["estimate"], row["bound"]) for row in rows],
     }
 
 
 def _bound(estimate: float, bound: float) -> str:
-    return NO_BOUND if math.isnan(bound) and not math.isnan(estimate) else _part(bound)
+    return NO_BOUND if math.isnan(bound) and not math.isnan(estimate) else part(bound)
 
 
-def _start(block: RigidBlock, posed: Posed, degrees: bool) -> str:
+def _start(block: System, posed: Posed, degrees: bool) -> str:
     theta, rate = posed.start
     if degrees:
         return f"θ = {math.degrees(theta):.6g}°, θ' = {math.degrees(rate):.6g}°/s"
     return f"θ = {theta / block.alpha:.6g} α, θ' = {rate / (block.alpha * block.p):.6g} αp"
-
-
-def valid(exact: Response) -> bool | None:
-    """Say whether the pivot stays on the base in the exact solution; None if there is none."""
-    if exact.outcome is Outcome.FAILED:
-        return None
-    return exact.min_normal >= 0.0
-
-
-def validity(exact: Response) -> str:
-    """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
-    holds = valid(exact)
-    if holds is None:
-        return "unknown: there is no exact solution to tell"
-    if not holds:
-        return "not here: the pivot would lift off, and an engine is right to differ"
-    least = f"the normal force stays above {exact.min_normal:.3g} of the weight"
-    return f"with friction of {exact.friction_needed:.3g} or more; {least}"
 
 
 def pulse_name(half_cycles: int) -> str:
@@ -157,7 +127,7 @@ def pulse_name(half_cycles: int) -> str:
     return names.get(half_cycles, f"{half_cycles} half cycles")
 
 
-def ground(motion: Motion, block: RigidBlock) -> str:
+def ground(motion: Motion, block: System) -> str:
     """Return a ground motion in words: its name, its peak and its details."""
     if isinstance(motion, Still):
         return motion_name(motion)
@@ -183,41 +153,7 @@ def motion_details(motion: Motion) -> str:
     return f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s, {motion.duration:.4g} s"
 
 
-def baseline_note(record: Record, baseline: str | None) -> str:
-    """Say how a record was corrected, and what velocity it leaves the base with; or nothing."""
-    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
-    largest = float(np.abs(record.velocity(record.breakpoints)).max())
-    if abs(record.final_velocity) > DRIFT * largest:
-        part = abs(record.final_velocity) / largest
-        words.append(
-            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
-            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
-        )
-    return "; ".join(words)
-
-
-def _peak(row: Row, scale: float) -> str:
-    return f"{scale * row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
-
-
-def _difference(row: Row) -> str:
-    value = row["error"]
-    return ("" if value < 0 else "+") + scientific(value) if math.isfinite(value) else "-"
-
-
-def _fixed(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.6f}"
-
-
-def _part(value: float) -> str:
-    return "-" if math.isnan(value) else scientific(value)
-
-
-def _duration(seconds: float) -> str:
-    return f"{seconds * 1e6:.0f} µs" if seconds < 1e-3 else f"{seconds * 1e3:.1f} ms"
-
-
-def draw(rows: list[Row], block: RigidBlock, motion: Motion, path: Path) -> None:
+def draw(rows: list[Row], block: Any, motion: Motion, path: Path) -> None:
     """Draw the histories of the rows over each other."""
     from studies.drawing.figures import draw_histories, save
 

@@ -9,13 +9,16 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic import conditioning, sensitivity, simulate
-from analytic.block import RigidBlock
+from analytic import simulate
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
+from analytic.slide import SlidingBlock
+from engines.layouts import System
+from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
-from studies.compare.rendering import baseline_note, draw, json_lines, records, table_text
+from studies.compare.columns import slip_error
+from studies.compare.rendering import draw, json_lines, records, table_text
 from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, ask, summary
@@ -29,10 +32,12 @@ from studies.kit.options import (
     EffortOptions,
     Yours,
     refuse_two_steps,
+    slides,
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
 from studies.kit.standing import ONE_BLOCK, Standing
+from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
@@ -113,18 +118,17 @@ def command(
     return exit_code(rows)
 
 
-def conditioned(rows: Sequence[Row], block: RigidBlock, posed: Posed) -> list[Row]:
+def conditioned(rows: Sequence[Row], block: Any, posed: Posed) -> list[Row]:
     """Add kappa and sensitivity of the exact peak to every row, where there is one."""
-    kappa = moved = math.nan
-    if rows[0]["exact"].outcome is not Outcome.FAILED:
-        kappa, _ = conditioning(block, posed.motion, start=posed.start)
-        moved = sensitivity(block, posed.motion, start=posed.start)
-    return [{**row, "kappa": kappa, "sensitivity": moved} for row in rows]
+    if isinstance(block, SlidingBlock):
+        return list(rows)
+    known = conditioning_of_one(block, posed.motion, posed.start, rows[0]["exact"])
+    return [{**row, **known} for row in rows]
 
 
-def hanging(block: RigidBlock, posed: Posed, window: float, exact: Response) -> str:
+def hanging(block: System, posed: Posed, window: float, exact: Response) -> str:
     """Say where less than a hundredth of the amplitude decides whether the block overturns."""
-    for factor in (1.0 + EDGE, 1.0 - EDGE):
+    for factor in () if isinstance(block, SlidingBlock) else (1.0 + EDGE, 1.0 - EDGE):
         motion = _scaled(posed.motion, factor)
         other = simulate(block, motion, start=posed.start, duration=window).outcome
         outcomes = {exact.outcome, other} - {Outcome.OVERTURNED}
@@ -146,7 +150,7 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     return motion
 
 
-def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
+def _window(block: System, motion: Motion, duration: float | None) -> float:
     if duration is None:
         return free_rocking_window(block, motion)
     if duration < motion.duration:
@@ -158,7 +162,7 @@ def _window(block: RigidBlock, motion: Motion, duration: float | None) -> float:
 
 
 def compare(
-    block: RigidBlock,
+    block: System,
     posed: Posed,
     sources: Sequence[str],
     window: float,
@@ -202,15 +206,13 @@ def compare(
         rows = with_estimates(rows, halves, own_steps=effort.own and yours.dt is None)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
-    if yours.friction is not None and yours.friction < exact.friction_needed:
-        words = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"
-        said = compared["exact"]["message"]
-        compared["exact"]["message"] = "; ".join(filter(None, (said, words)))
+    said = (compared["exact"]["message"], slides(exact, yours.friction))
+    compared["exact"]["message"] = "; ".join(filter(None, said))
     return [compared[name] for name in sources]
 
 
 def frame(
-    block: RigidBlock,
+    block: System,
     motion: Motion,
     sources: Sequence[str],
     *,
@@ -240,10 +242,11 @@ def _reduce(job: Job, response: Response) -> Row:
     }
 
 
-def _beside(response: Response, exact: Response, block: RigidBlock) -> dict[str, Any]:
+def _beside(response: Response, exact: Response, block: System) -> dict[str, Any]:
     both = response.outcome is Outcome.ROCKED is exact.outcome
+    error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
     return {
-        "error": response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan,
+        "error": slip_error(response, exact) if exact.slips else error,
         "impact_error": _impact_error(response, exact) * block.p,
         "exact": exact,
     }

@@ -10,7 +10,7 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.record import Record
-from studies.cases.accelerograms import Baseline, Units, corrected, read_record
+from studies.cases.accelerograms import Baseline, Units, recorded
 from studies.cases.motions import FAMILIES
 from studies.ensemble import STUDY
 from studies.ensemble.agreement import confusion, settled
@@ -18,7 +18,6 @@ from studies.ensemble.claims import first_claim, verdict
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
 from studies.kit.arguments import (
-    BadInputError,
     Count,
     Place,
     check_sources,
@@ -91,30 +90,6 @@ class EnsembleCase:
 def drawn(family: str, count: int, seed: int) -> list[Record]:
     """Draw motions of a family; motion i of a seed has the seed 10^6 seed + i."""
     return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
-
-
-def recorded(
-    paths: Sequence[Path], units: str | None, baseline: Baseline | None = None
-) -> list[Record]:
-    """Read records, all of the same units where they state none, and correct them.
-
-    Raises
-    ------
-    BadInputError
-        If one cannot be read, does not move, or is nothing but its trend.
-    """
-    motions = []
-    for path in paths:
-        motion = read_record(path, units, "--records")
-        if motion.peak == 0.0:
-            raise BadInputError(
-                f"--records is {str(path)!r}; it is zero throughout, and must not be"
-            )
-        try:
-            motions.append(corrected(motion, baseline))
-        except ValueError as error:
-            raise BadInputError(f"--records is {str(path)!r}; {error}") from error
-    return motions
 
 
 def ensemble_cases(

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
 from studies.cases.refusal import BadInputError
@@ -42,7 +41,8 @@ class Job:
     ----------
     labels : mapping
         The first columns of the row.
-    block, motion : RigidBlock, Motion
+    block, motion
+        What stands on the base (`engines.layouts.System`), and how that moves.
     source : str
         A source's name, as the user wrote it.
     duration, times
@@ -61,7 +61,7 @@ class Job:
     """
 
     labels: Mapping[str, Any]
-    block: RigidBlock
+    block: Any
     motion: Motion
     source: str
     duration: float | None = None

@@ -6,9 +6,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from analytic.block import RigidBlock
 from analytic.response import Response
+from analytic.slide import SlidingBlock
 from engines.declaration import Stepping
+from engines.layouts import System
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -150,7 +151,7 @@ class Yours:
     friction: NotNegative | None = None
     dt: Positive | None = None
 
-    def options(self, sources: Sequence[str], block: RigidBlock) -> dict[str, dict[str, float]]:
+    def options(self, sources: Sequence[str], block: System) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source.
 
         Raises
@@ -159,7 +160,7 @@ class Yours:
             If one takes no step of its own, or none takes what is given.
         """
         asked = {name: resolve(name) for name in sources}
-        self._refuse_idle(asked.values())
+        self._refuse_idle(asked.values(), block)
         chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
         for name, source in asked.items():
             if self.friction is not None and source.engine:
@@ -169,8 +170,9 @@ class Yours:
                 chosen[name]["step"] = self.dt * block.p
         return chosen
 
-    def _refuse_idle(self, asked: Collection[Source]) -> None:
-        if self.friction is not None and not any(source.engine for source in asked):
+    def _refuse_idle(self, asked: Collection[Source], block: System) -> None:
+        idle = not any(source.engine for source in asked)
+        if self.friction is not None and idle and not isinstance(block, SlidingBlock):
             raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
         if self.dt is not None and not any(source.stepping for source in asked):
             words = "a solver or an engine that takes equal steps"
@@ -196,3 +198,10 @@ def refuse_two_steps(step: float | None, yours: Yours) -> None:
     """Raise BadInputError if a step is given both in units of 1/p and in seconds."""
     if None not in (step, yours.dt):
         raise BadInputError(f"--dt is {yours.dt:g} and --step is {step:g}; give one or the other")
+
+
+def slides(exact: Response, friction: float | None) -> str:
+    """Say that a block slides where the exact solution, which does not, needs more friction."""
+    if friction is None or not friction < exact.friction_needed:
+        return ""
+    return f"slides: needs {exact.friction_needed:.3g}, has {friction:.3g}"

@@ -12,6 +12,7 @@ from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
+from engines.layouts import System
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import (
@@ -98,7 +99,7 @@ class Excitation:
     rate: Finite | None = None
     degrees: bool = False
 
-    def pose(self, block: RigidBlock) -> Posed:
+    def pose(self, block: System) -> Posed:
         """Return the motion and the start that the options mean for a block.
 
         Raises
@@ -146,7 +147,7 @@ class Excitation:
                 phase=self._angle(self.phase or 0.0, 1.0),
             )
 
-    def _start(self, block: RigidBlock, motion: Motion) -> tuple[float, float]:
+    def _start(self, block: System, motion: Motion) -> tuple[float, float]:
         theta = self._angle(self.tilt or 0.0, block.alpha)
         rate = self._angle(self.rate or 0.0, block.alpha * block.p)
         if not abs(theta) < 0.5 * math.pi:
@@ -174,7 +175,7 @@ DEFAULT_EXCITATION = Excitation()
 
 
 def refuse_endless(
-    block: RigidBlock,
+    block: System,
     watched_s: float,
     *,
     duration: float | None = None,

@@ -13,7 +13,10 @@ from studies.kit.jobs import Job
 from studies.kit.journal import Journal, Row
 from studies.kit.streams import say
 
-_LABELS = ("figure", "panel", "case", "aspect", "width_m", "omega_over_p")
+_LABELS = (
+    *("name", "record", "scale"),
+    *("figure", "panel", "case", "aspect", "width_m", "omega_over_p"),
+)
 """Columns that name a failed case."""
 
 

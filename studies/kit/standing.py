@@ -55,8 +55,9 @@ class Standing:
 
     def _frame(self, width: float, height: float) -> RockingFrame:
         if self.load is None:
-            raise BadInputError("--load missing; a frame requires the mass of its beam, over that "
-                                "of all columns")
+            raise BadInputError(
+                "--load missing; a frame requires the mass of its beam, over that of all columns"
+            )
         columns = LEAST_COLUMNS if self.columns is None else self.columns
         return RockingFrame(width=width, height=height, columns=columns, load=self.load)
 

@@ -7,8 +7,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analytic import condition_numbers, peak_ratios, sensitivities
-from analytic.motion import FloatArray
+from analytic import (
+    condition_numbers,
+    conditioning,
+    peak_ratios,
+    sensitivities,
+    sensitivity,
+)
+from analytic.block import Rocker
+from analytic.motion import FloatArray, Motion
+from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES
 from studies.measures.wrongness import KINDS, NO_ANSWER, REST, counted, kinds_of, wrong_in
 
@@ -82,6 +90,16 @@ def posed_cases(
 def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
     """Return the exact peaks and outcomes of the cases."""
     return peak_ratios(*posed_cases(cases))
+
+
+def conditioning_of_one(
+    block: Rocker, motion: Motion, start: tuple[float, float], exact: Response
+) -> dict[str, float]:
+    """Return kappa and sensitivity of an exact response; nan where there is none."""
+    if exact.outcome is Outcome.FAILED:
+        return {"kappa": math.nan, "sensitivity": math.nan}
+    kappa, _ = conditioning(block, motion, start=start)
+    return {"kappa": kappa, "sensitivity": sensitivity(block, motion, start=start)}
 
 
 def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:

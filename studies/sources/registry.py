@@ -7,11 +7,11 @@ from functools import partial
 from typing import Any, Literal
 
 from analytic import MODELS, integrate, simulate
-from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from engines import ENGINES
 from engines.declaration import Engine, Preset, Stepping
+from engines.layouts import System
 from engines.scene import Scene, one_of
 from studies.sources.scipy_peers import solve_ivp_response
 
@@ -48,7 +48,7 @@ class Source:
 
     def check(
         self,
-        block: RigidBlock,
+        block: System,
         motion: Motion,
         *,
         duration: float | None,
@@ -92,11 +92,11 @@ class Source:
 
 
 def run_engine(
-    block: RigidBlock,
+    block: System,
     motion: Motion,
     *,
     engine: str,
-    preset: str,
+    preset: str | None,
     duration: float | None = None,
     times: FloatArray | None = None,
     **options: Any,
@@ -108,9 +108,9 @@ def run_engine(
 
 
 def scene_of(
-    block: RigidBlock,
+    block: System,
     motion: Motion,
-    preset: str,
+    preset: str | None,
     *,
     times: FloatArray | None = None,
     **options: Any,
@@ -130,7 +130,7 @@ def scene_of(
 
 
 def _engine(name: str, preset: str) -> Source:
-    call = partial(run_engine, engine=name, preset=preset)
+    call = partial(run_engine, engine=name, preset=None)  # the best that a scene allows
     return Source("engine", call, name, preset, stepping=True)
 
 

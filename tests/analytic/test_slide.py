@@ -18,7 +18,7 @@ def box(friction, **more):
 
 
 def stepped(block, motion, end, v=0.0):
-    """Return slips, final place and time by steps of constant acceleration, each parted where v is 0.
+    """Return slips, final place and time by steps of constant acceleration, parted where v is 0.
 
     A smooth part errs by u''' dt^2, a start or a stop by the friction that a step misplaces, dt^2.
     """

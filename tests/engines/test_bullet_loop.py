@@ -161,7 +161,7 @@ def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
     world = build(ENGINES["pybullet"], asked)
     other = build(ENGINES["pybullet"], replace(asked, preset="naive"))
     engine = ENGINES["pybullet"]
-    dt_s, resolution = engine.best.ordinary_step_s(asked), engine.resolution(asked.block)
+    dt_s, resolution = engine.best.ordinary_step_s(asked), engine.resolution(asked.system)
     response = simulate_world(world, asked, dt_s, resolution=resolution)
     world.close()
     other.close()

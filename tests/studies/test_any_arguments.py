@@ -36,6 +36,7 @@ BEGINNINGS = {
         (*RECORD, "--sources", "exact"),
         (*RELEASE, "--sources", "exact"),
     ],
+    "blocks": [("CABINETS", "--record", "RECORD", "--units", "g", "--out", "FOLDER")],
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
@@ -87,6 +88,7 @@ def place(tmp_path_factory):
     """A folder with an ordinary record, a named pipe, and nothing that can be computed for long."""
     folder = tmp_path_factory.mktemp("any")
     (folder / "RECORD").write_text(PEER)
+    (folder / "CABINETS").write_text("name,width,height\nA,0.5,1.5\n")
     (folder / "FOLDER").mkdir()
     os.mkfifo(folder / "PIPE")
     kept = Path.cwd()

@@ -7,17 +7,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from analytic.record import Record
 from studies.cases.accelerograms import asc, at2, foreign, table
 from studies.cases.accelerograms.text import lines_of
 from studies.cases.accelerograms.units import UNITS, Units
 from studies.cases.refusal import BadInputError
 
-__all__ = ["UNITS", "Baseline", "Units", "corrected", "read_record"]
+__all__ = ["UNITS", "Baseline", "Units", "baseline_note", "corrected", "read_record", "recorded"]
 
 Baseline = Literal["none", "constant", "linear"]
 """How a record is corrected: not at all, or by what its samples lose."""
 
+
+DRIFT = 1e-6
+"""Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
 
 OTHER_SUFFIXES = (".vt2", ".dt2")
 """Of PEER's files of velocity and of displacement."""
@@ -66,3 +71,43 @@ def corrected(record: Record, baseline: Baseline | None) -> Record:
     if baseline is None or baseline == "none":
         return record
     return record.detrended(baseline)
+
+
+def recorded(
+    paths: Sequence[Path],
+    units: str | None,
+    baseline: Baseline | None = None,
+    argument: str = "--records",
+) -> list[Record]:
+    """Read records, all of the same units where they state none, and correct them.
+
+    Raises
+    ------
+    BadInputError
+        If one cannot be read, does not move, or is nothing but its trend.
+    """
+    motions = []
+    for path in paths:
+        motion = read_record(path, units, argument)
+        if motion.peak == 0.0:
+            raise BadInputError(
+                f"{argument} is {str(path)!r}; it is zero throughout, and must not be"
+            )
+        try:
+            motions.append(corrected(motion, baseline))
+        except ValueError as error:
+            raise BadInputError(f"{argument} is {str(path)!r}; {error}") from error
+    return motions
+
+
+def baseline_note(record: Record, baseline: str | None) -> str:
+    """Say how a record was corrected, and what velocity it leaves the base with; or nothing."""
+    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
+    largest = float(np.abs(record.velocity(record.breakpoints)).max())
+    if abs(record.final_velocity) > DRIFT * largest:
+        part = abs(record.final_velocity) / largest
+        words.append(
+            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
+            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
+        )
+    return "; ".join(words)

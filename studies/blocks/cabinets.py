@@ -1,0 +1,154 @@
+"""A list of blocks as a table: name, width and height, and perhaps friction and tilt."""
+
+import csv
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from analytic.block import RigidBlock
+from studies.cases.accelerograms.text import lines_of, number, shown
+from studies.cases.refusal import BadInputError
+
+COLUMNS = ("name", "width", "height", "friction", "tilt")
+NEEDED = COLUMNS[:3]
+LEAST_M, MOST_M = 1e-3, 100.0
+"""Sizes [m] of blocks of a list; a larger one was meant in millimetres."""
+SEPARATORS = (",", ";", "\t")
+SHOWN = 40
+"""Bad values that a refusal names; it is one line."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cabinet:
+    """A block of a list, in metres; friction of its base and a tilt over α where they are given."""
+
+    name: str
+    width_m: float
+    height_m: float
+    friction: float | None = None
+    tilt: float | None = None
+
+    @property
+    def block(self) -> RigidBlock:
+        """The block."""
+        return RigidBlock(width=self.width_m, height=self.height_m)
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Rotation [rad] and rate [rad/s] from which it starts."""
+        return (self.tilt or 0.0) * self.block.alpha, 0.0
+
+
+class Bad(NamedTuple):
+    """A value of a list that cannot be used: its column, what is allowed there, and where."""
+
+    column: str
+    allowed: str
+    line: int
+    value: str
+
+
+def read_cabinets(path: Path) -> list[Cabinet]:
+    """Read a list of blocks: a table with a line of names, separated by commas, semicolons or tabs.
+
+    Raises
+    ------
+    BadInputError
+        One line that names all that is wrong: each line, column and value, and what is allowed.
+    """
+    try:
+        lines = lines_of(path)
+        heads, rows = _table(lines)
+    except (ValueError, csv.Error) as error:
+        raise BadInputError(f"the list is {str(path)!r}; {error}") from error
+    bad: list[Bad] = []
+    cabinets = [cabinet for at, row in rows if (cabinet := _cabinet(at, row, heads, bad))]
+    bad += _repeated(rows, heads)
+    if bad:
+        raise BadInputError(f"the list is {str(path)!r}; {_said(bad)}")
+    return cabinets
+
+
+def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the names of the columns, and the rows that are not empty with their lines."""
+    head = next((line for line in lines if line.strip()), "")
+    separator = max(SEPARATORS, key=head.count)
+    reader = csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True)
+    rows = [(reader.line_num, [word.strip() for word in row]) for row in reader if any(row)]
+    heads = [name.lower() for name in rows[0][1]] if rows else []
+    for name in heads:
+        if name not in COLUMNS:
+            words = f"{', '.join(NEEDED)}, and may be friction and tilt"
+            raise ValueError(f"it has a column {shown(name)}; its columns must be {words}")
+        if heads.count(name) > 1:
+            raise ValueError(f"it has the column {name} twice; each may be there once")
+    if missing := [name for name in NEEDED if name not in heads]:
+        words = "its first line must name name, width and height, in metres"
+        raise ValueError(f"it has no column {' and '.join(missing)}; {words}")
+    if len(rows) < 2:
+        raise ValueError("it has no rows; it must have a block a line below the names")
+    return heads, rows[1:]
+
+
+def _cabinet(at: int, row: list[str], heads: Sequence[str], bad: list[Bad]) -> Cabinet | None:
+    """Return the block of a row; what is wrong with it is noted, and then there is none."""
+    if len(row) != len(heads):
+        bad.append(Bad("the number of values", f"{len(heads)}, one a column", at, str(len(row))))
+        return None
+    cells = dict(zip(heads, row, strict=True))
+    found = list(_problems(at, cells))
+    bad += found
+    if found:
+        return None
+    values = {name: float(cells[name]) for name in ("friction", "tilt") if cells.get(name)}
+    width_m, height_m = float(cells["width"]), float(cells["height"])
+    return Cabinet(name=cells["name"], width_m=width_m, height_m=height_m, **values)
+
+
+def _problems(at: int, cells: Mapping[str, str]) -> Iterator[Bad]:
+    if not cells["name"]:
+        yield Bad("name", "a word", at, "")
+    sizes = {name: _number(cells[name]) for name in ("width", "height")}
+    for name, size in sizes.items():
+        if not LEAST_M <= size <= MOST_M:
+            meant = f" ({1e-3 * size:g} for {size:g} mm?)" if MOST_M < size < math.inf else ""
+            yield Bad(name, f"from {LEAST_M:g} to {MOST_M:g} m{meant}", at, cells[name])
+    if cells.get("friction") and not 0.0 <= _number(cells["friction"]) < math.inf:
+        yield Bad("friction", "a finite number, 0 or more, or empty", at, cells["friction"])
+    if not cells.get("tilt"):
+        return
+    # where a size is bad, too, it is not known how far the block could lean
+    lying = 0.5 * math.pi / (math.atan2(sizes["width"], sizes["height"]) or math.nan)
+    if not abs(_number(cells["tilt"])) < (math.inf if math.isnan(lying) else lying):
+        most = "" if math.isnan(lying) else f" between -{lying:.6g} and {lying:.6g} α"
+        yield Bad("tilt", f"a finite number{most}, or empty", at, cells["tilt"])
+
+
+def _number(word: str) -> float:
+    try:
+        return number(word, 0)
+    except ValueError:
+        return math.nan
+
+
+def _repeated(rows: Sequence[tuple[int, list[str]]], heads: Sequence[str]) -> Iterator[Bad]:
+    place, seen = heads.index("name"), dict[str, int]()
+    for at, row in rows:
+        if place < len(row) and row[place] and seen.setdefault(row[place], at) != at:
+            yield Bad("name", "each block's own", at, row[place])
+
+
+def _said(bad: Sequence[Bad]) -> str:
+    """Return what is wrong, once for all values of a column of which the same is allowed."""
+    groups: dict[tuple[str, str], list[Bad]] = {}
+    for item in sorted(bad[:SHOWN], key=lambda item: item.line):
+        groups.setdefault((item.column, item.allowed), []).append(item)
+    words = [
+        f"{', '.join(f'line {item.line}: {column} is {shown(item.value)}' for item in items)}; "
+        f"it must be {allowed}"
+        for (column, allowed), items in groups.items()
+    ]
+    more = [f"{len(bad) - SHOWN} more values cannot be used"] if len(bad) > SHOWN else []
+    return "; ".join([*words, *more])

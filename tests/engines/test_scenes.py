@@ -1,0 +1,149 @@
+"""Scenes of other things than one block: side by side, a frame, a slide."""
+
+import math
+from dataclasses import dataclass, replace
+
+import pytest
+from declared import equal_to
+from uses import BLOCK, HERE, pulse
+
+from analytic import RockingFrame, SlidingBlock, Still, simulate
+from analytic.motion import SinePulse
+from analytic.response import Outcome, Reason
+from engines import Scene
+from engines.declaration import Stepping
+from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
+from engines.run.drive import run
+
+SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
+
+STACKING = [name for name, engine in HERE.items() if Ability.STACKED in engine.abilities]
+APART = [
+    (name, preset.name)
+    for name, engine in HERE.items()
+    if Ability.SEVERAL in engine.abilities
+    for preset in engine.presets
+    if preset.name != "naive"
+]
+
+
+@pytest.mark.parametrize(("engine", "preset"), APART)
+def test_blocks_apart_rock_as_one_alone(engine: str, preset: str) -> None:
+    """To the rounding of the engine; as they come, pymunk's ten sweeps do not converge, and what
+    comes out depends on the order of its contacts."""
+    alone = run(engine, Scene(system=BLOCK, motion=pulse(1.2, 2.0, 2), preset=preset))
+    both = run(
+        engine, Scene(system=SideBySide(block=BLOCK), motion=pulse(1.2, 2.0, 2), preset=preset)
+    )
+    peaks = [both.observables["peak_1"], both.observables["peak_2"]]
+    assert peaks == pytest.approx([alone.peak_ratio] * 2, rel=equal_to(engine))
+
+
+def frame(load: float, columns: int = 2) -> RockingFrame:
+    return RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
+
+
+@pytest.mark.parametrize("columns", [2, 3, 5])
+@pytest.mark.parametrize("load", [0.1, 1.0, 10.0])
+def test_mujoco_lands_a_frame_as_a_block(load: float, columns: int) -> None:
+    """Of second order in p dt = 5e-3; the library's contact yields by a part 1e-4 of what it carries,
+    so that a heavy beam lifts a little early at any step."""
+    system, exactly = frame(load, columns), 1e-5 * (1.0 + load)
+    response = run("mujoco", Scene(system=system, motion=SINE))
+    assert response.peak_ratio == pytest.approx(simulate(system, SINE).peak_ratio, rel=exactly)
+    seen = response.observables
+    assert max(seen["parting"], seen["tilt"]) < 1e-5
+    assert seen["drift_m"] < 1e-6 * system.width
+    ratios = [impact.ratio for impact in response.impacts]
+    assert ratios == pytest.approx([system.restitution] * len(ratios), rel=1e-4)
+
+
+@pytest.mark.parametrize("engine", STACKING)
+def test_a_frame_rocks_at_equal_steps(engine: str) -> None:
+    """Where in a step an impact falls costs half a per cent; PyBullet's boxes lose one more."""
+    response = run(engine, Scene(system=frame(2.0), motion=SINE, preset="fixed"))
+    assert response.peak_ratio == pytest.approx(simulate(frame(2.0), SINE).peak_ratio, rel=1.5e-2)
+    assert response.observables["parting"] < 1e-4
+
+
+def test_the_released_frame_swings_back() -> None:
+    start = (0.4 * BLOCK.alpha, 0.0)
+    system = frame(1.0)
+    scene = Scene(system=system, motion=Still(), start=start, duration=2.0)
+    found, exact = run("mujoco", scene), simulate(system, Still(), start=start, duration=2.0)
+    times = [impact.time for impact in exact.impacts[:3]]
+    assert [impact.time for impact in found.impacts[:3]] == pytest.approx(times, rel=1e-4)
+
+
+@pytest.mark.parametrize("engine", [name for name in HERE if name not in ("drake", "newton")])
+@pytest.mark.parametrize("friction", [0.1, 0.2])
+def test_a_slide_ends_where_it_should(engine: str, friction: float) -> None:
+    """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
+    single precision a part 1e-4 of its end."""
+    box = SlidingBlock(width=1.0, height=0.5, friction=friction)
+    found = run(engine, Scene(system=box, motion=SINE, preset="fixed"))
+    assert found.outcome is Outcome.SLID
+    assert found.slips == pytest.approx(simulate(box, SINE).slips, abs=5e-4)
+
+
+def test_a_launched_box_stops() -> None:
+    box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
+    for engine in ("pymunk", "pybullet"):
+        scene = Scene(system=box, motion=Still(), start=(0.0, 6.0), preset="fixed")
+        found = run(engine, scene)
+        assert found.slips == pytest.approx((36.0 / 9.81,), rel=1e-6), engine
+        assert found.slip_times[0][1] == pytest.approx(12.0 / 9.81, rel=1e-3)
+
+
+def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:
+    response = run("dart", Scene(system=frame(1.0), motion=SINE))
+    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+    assert (
+        response.message == "not available: DART is not built here for several bodies on one base"
+    )
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    landing = run("mujoco", Scene(system=box, motion=SINE, preset="landing"))
+    assert landing.reason is Reason.UNAVAILABLE
+    assert "nothing rocks here" in landing.message
+
+
+def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which() -> None:
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    best, fixed = (
+        run("pymunk", Scene(system=box, motion=SINE, preset=preset)) for preset in (None, "fixed")
+    )
+    assert best.message == "as pymunk:fixed"
+    assert best.slips == fixed.slips
+    assert not run("pymunk", Scene(system=BLOCK, motion=SINE)).message
+
+
+def test_a_frame_is_columns_that_share_their_beam() -> None:
+    layout = layout_of(frame(2.0, 3), 1000.0, 1.0, (0.0, 0.0))
+    *columns, beam = layout.bodies
+    assert beam.mass == pytest.approx(2.0 * sum(column.mass for column in columns))
+    assert [contact.on for contact in layout.contacts] == [BASE] * 3 + [3] * 3
+    tops = [layout.carried(contact) for contact in layout.contacts if contact.face == UPPER]
+    feet = [layout.carried(contact) for contact in layout.contacts if contact.face == LOWER]
+    assert tops == pytest.approx([beam.mass / 3.0] * 3)
+    assert sum(feet) == pytest.approx(sum(body.mass for body in layout.bodies))
+
+
+@dataclass(frozen=True)
+class Nothing:
+    width = height = alpha = p = gravity = 1.0
+
+
+def test_what_has_no_layout_is_named() -> None:
+    with pytest.raises(TypeError, match="system is a Nothing; it must be one of RigidBlock, "):
+        layout_of(Nothing(), 1000.0, None, (0.0, 0.0))
+    with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 on"):
+        SideBySide(block=BLOCK, count=0)
+
+
+def test_landing_steps_need_something_that_rocks() -> None:
+    landing = HERE["pymunk"].preset("landing")
+    assert landing.stepping is Stepping.LANDING
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    scene = Scene(system=box, motion=SINE)
+    assert HERE["pymunk"].lacks(scene, landing)
+    assert not HERE["pymunk"].lacks(replace(scene, system=BLOCK), landing)

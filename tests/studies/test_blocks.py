@@ -1,0 +1,312 @@
+"""A list of blocks under records: the rows of `compare`, the margin, what is refused, the page."""
+
+import csv
+import html
+import json
+import math
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
+from analytic.criteria import overturning_velocity
+from studies.__main__ import run
+from studies.blocks.report import read
+from studies.blocks.strength import BEYOND, WIDTH, grid, strength
+from studies.blocks.study import joined
+from studies.kit.journal import JOURNAL
+
+ROOT = Path(__file__).parents[2]
+REST = (0.0, 0.0)
+HEAD = "name,width,height,friction,tilt\n"
+LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"
+SHAKEN = kanai_tajimi(3, peak=3.0, duration=6.0, omega=10.0, rise=1.0, fall=3.0)
+
+
+def write_record(path, record):
+    words = " ".join(repr(float(a)) for a in record.samples / 9.81)
+    count, dt = record.samples.size, float(record.dt)
+    path.write_text(
+        f"PEER\nA\nACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {dt!r} SEC\n{words}\n"
+    )
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_record(tmp_path / "X.AT2", SHAKEN)
+    write_record(tmp_path / "Y.AT2", SHAKEN.scaled(-1.5))
+    (tmp_path / "list.csv").write_text(LIST)
+    return tmp_path
+
+
+def compared(capsys, *options):
+    capsys.readouterr()
+    code = run(["compare", *options, "--json"])
+    rows = map(json.loads, capsys.readouterr().out.splitlines())
+    return code, {row["source"]: row for row in rows}
+
+
+def test_rows_are_those_of_compare_to_the_last_digit(place, capsys):
+    sources = ["exact", "housner", "pymunk:naive"]
+    asked = ["--record", "Y.AT2", "--scale", "0.8", "2", "--baseline", "linear"]
+    code = run(["blocks", "list.csv", *asked, "--out", "out", "--sources", *sources])
+    failed = 0
+    with (place / "out" / "blocks.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 3 * 2 * len(sources)
+    for case in range(0, len(rows), len(sources)):
+        first = rows[case]
+        options = ["--width", first["width_m"], "--height", first["height_m"]]
+        options += ["--record", first["record"], "--scale", first["scale"], "--baseline", "linear"]
+        for name in ("friction", "tilt"):
+            options += [] if first[name] == "nan" else [f"--{name}", first[name]]
+        ended, expected = compared(capsys, *options, "--sources", *sources)
+        failed |= ended
+        for row in rows[case : case + len(sources)]:
+            same = expected[row["source"]]
+            assert (row["outcome"], row["message"]) == (same["outcome"], same["message"])
+            for name in ("impacts", "steps"):
+                assert int(row[name]) == same[name]
+            for name in ("peak_ratio", "kappa", "sensitivity", "min_normal", "friction_needed"):
+                value = float(row[name])
+                assert (value if math.isfinite(value) else None) == same[name], name
+    assert code == failed
+    assert {row["outcome"] for row in rows} >= {"rocked", "overturned"}
+    assert any("slides: needs" in row["message"] for row in rows if row["friction"] == "0.2")
+
+
+@pytest.mark.parametrize(("width", "height"), [(0.5, 1.5), (0.4, 2.0), (1.0, 2.5)])
+def test_the_margin_is_the_first_factor_of_the_grid_that_overturns(width, height):
+    """Solved one by one by `simulate`, another way to the same march."""
+    block = RigidBlock(width=width, height=height)
+
+    def falls(factor):
+        return simulate(block, SHAKEN.scaled(factor)).outcome is Outcome.OVERTURNED
+
+    found = strength(block, SHAKEN, REST)
+    onset = 9.81 * width / height / SHAKEN.peak
+    assert found.lifts == pytest.approx(onset, rel=1e-14)
+    assert simulate(block, SHAKEN.scaled(0.999 * onset)).outcome is Outcome.AT_REST
+    assert falls(found.margin) and not falls(found.margin * (1.0 - 1.01 * WIDTH))
+    factors = onset * 1.01 ** np.arange(1, 1 + math.log(BEYOND * found.margin / onset) / 0.0099)
+    answers = [(factor, falls(factor)) for factor in factors]
+    assert not any(fell for factor, fell in answers if factor < found.margin)
+    again = [f for f, fell in answers if not fell and found.margin < f <= BEYOND * found.margin]
+    inside = [any(low * 0.9999 <= f <= high * 1.0001 for low, high in found.islands) for f in again]
+    assert all(inside)
+    for low, high in found.islands:
+        assert not falls(low) and not falls(high)
+
+
+def test_the_margin_of_a_jolt_is_that_of_a_sudden_velocity():
+    """In a jolt of a over the onset a part onset/a of the velocity goes into lifting the block."""
+    block = RigidBlock(width=0.5, height=2.0)
+    onset, velocity = 9.81 * block.width / block.height, overturning_velocity(block)
+    strong = 40.0
+    jolt = Record(dt=velocity / (strong * onset), samples=[strong * onset] * 2)
+    margin = strength(block, jolt, REST).margin
+    assert 1.0 < margin < 1.0 + 2.0 / strong
+
+
+def test_a_block_that_leans_has_a_margin_from_zero():
+    block = RigidBlock(width=0.5, height=1.5)
+    leaning = strength(block, SHAKEN, (0.9 * block.alpha, 0.0))
+    assert leaning.lifts == 0.0
+    assert 0.0 < leaning.margin < strength(block, SHAKEN, REST).margin
+    fallen = strength(block, SHAKEN, (1.2 * block.alpha, 0.0))
+    assert fallen.margin == 0.0
+    steps = np.diff(grid(2.0, at_rest=False))
+    assert steps.min() > 0.0 and steps.max() < 2.0 * 0.011 * 100.0
+
+
+def test_what_no_factor_overturns_has_no_margin_and_what_does_not_move_is_refused():
+    block = RigidBlock(width=50.0, height=60.0)
+    buzz = Record(dt=1e-3, samples=[1.0, -1.0] * 20)
+    assert strength(block, buzz, REST).margin == math.inf
+    with pytest.raises(ValueError, match="zero throughout"):
+        strength(block, Record(dt=0.1, samples=[0.0, 0.0]), REST)
+
+
+def test_a_scale_that_overturns_in_a_sliver_counts_for_the_margin():
+    case = {"name": "A", "record": "X", "outcome": "rocked"}
+    facts = dict.fromkeys(("kappa", "sensitivity", "min_normal", "friction_needed"), 1.0)
+    exact = {**case, "table": "answers", "source": "exact", **facts}
+    rows = [
+        {**exact, "scale": 0.9, "outcome": "overturned"},
+        {**exact, "scale": 1.0},
+        {**case, "table": "answers", "source": "rk4", "scale": 0.9},
+        {**case, "table": "margins", "scale": 0.0, "lifts": 0.5, "margin": 1.2, "islands": ""},
+    ]
+    assert joined(rows)["margin"].tolist() == [0.9, 0.9, 0.9]
+
+
+BAD = [
+    (HEAD + "A,-1,1.5,,\n", "line 2: width is '-1'; it must be from 0.001 to 100 m"),
+    (HEAD + "A,500,1500,,\n", "line 2: width is '500'; .* (0.5 for 500 mm?)"),
+    (HEAD + "A,0.5,nan,,\n", "line 2: height is 'nan'"),
+    (HEAD + 'A,"0,5",1.5,,\n', "line 2: width is '0,5'"),
+    (HEAD + "A,0.5,1_5,,\n", "line 2: height is '1_5'"),
+    (HEAD + "A,0.5,1.5,-0.1,\n", "line 2: friction is '-0.1'; it must be a finite number, 0 or"),
+    (HEAD + "A,0.5,1.5,,5\n", "line 2: tilt is '5'; it must be a finite number between -4.88203"),
+    (HEAD + ",0.5,1.5,,\n", "line 2: name is ''; it must be a word"),
+    (HEAD + "A,0.5,1.5,,\n\nA,0.4,1.5,,\n", "line 4: name is 'A'; it must be each block's own"),
+    (HEAD + "A,0.5\n", "line 2: the number of values is '2'; it must be 5, one a column"),
+    (HEAD, "it has no rows"),
+    ("", "it has no column name and width and height"),
+    ("name,width\nA,1\n", "it has no column height"),
+    ("name,width,height,frictoin\nA,1,1,1\n", "it has a column 'frictoin'; its columns must be"),
+    ("name,width,height,width\nA,1,1,1\n", "it has the column width twice"),
+    ('name,width,height\n"A,1,1\n', "unexpected end of data"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "problem"), BAD)
+def test_a_bad_list_is_one_line(text, problem, place, capsys):
+    (place / "list.csv").write_text(text)
+    assert run(["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "the list is 'list.csv'; " in line
+    assert re.search(re.escape(problem).replace(r"\.\*", ".*"), line)
+    assert not (place / "out").exists()
+
+
+def test_all_bad_rows_are_named_at_once(place, capsys):
+    bad = {2: "0", 3: "x", 5: "-3", 7: "1e9"}
+    rows = [f"N{at},{bad.get(at, '0.5')},1.5" for at in range(2, 9)]
+    (place / "list.csv").write_text("\n".join(["name,width,height", *rows]))
+    assert run(["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.findall(r"line (\d): width is '([^']+)'", line) == [
+        (str(at), value) for at, value in bad.items()
+    ]
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--record", "X.AT2", "--scale", "0"], "--scale is '0'; it must be a positive finite"),
+        (["--record", "X.AT2", "--scale", "1", "x"], "--scale is 'x'"),
+        (["--record", "X.AT2", "--scale", "2", "2"], "--scale names 2.0 twice"),
+        (["--record", "X.AT2", "--scale", "inf"], "--scale is 'inf'"),
+        (["--record", "X.AT2", "--scale"], "--scale"),
+        (["--record", "none.AT2"], "--record is 'none.AT2'; it must be a file that can be read"),
+        (["--record", "X.AT2", "./X.AT2"], "--record names 'X.AT2' twice"),
+        (["--record", "list.csv"], "--record is 'list.csv'"),
+        (["--record", "X.AT2", "--units", "m/s2"], "it states g; --units must not be m/s2"),
+        (["--record", "X.AT2", "--baseline", "cubic"], "--baseline is 'cubic'"),
+        (["--record", "X.AT2", "--sources", "exat"], "--sources: source is 'exat', perhaps|exat"),
+        (["--record", "X.AT2", "--sources", "exact", "exact"], "--sources names 'exact' twice"),
+        (["--record", "still.csv", "--units", "g"], "it is zero throughout, and must not be"),
+        ([], "--record requires an argument"),
+    ],
+)
+def test_bad_options_are_one_line(options, problem, place, capsys):
+    (place / "still.csv").write_text("time_s,acceleration\n0,0\n0.1,0\n0.2,0\n")
+    assert run(["blocks", "list.csv", *options, "--out", "out"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(problem, line)
+    assert not (place / "out").exists()
+
+
+NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300]
+
+
+def test_names_are_what_they_are(place, capsys):
+    lines = [f"{name};0.5;{1.2 + 0.1 * n}" for n, name in enumerate(NAMES)]
+    (place / "list.csv").write_text("\n".join(["name;width;height", *lines]))
+    assert run(["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]) == 0
+    assert read(place / "out")["name"].tolist() == NAMES
+    page = (place / "out" / "blocks.html").read_text()
+    assert "<b>" not in page and html.escape("<b>&") in page
+    before = (place / "out" / "blocks.png").read_bytes()
+    (place / "out" / "blocks.png").unlink()
+    assert run(["redraw", "out"]) == 0
+    assert (place / "out" / "blocks.png").read_bytes() == before
+
+
+def test_the_page_has_the_command_of_each_line(place, capsys):
+    asked = ["--record", "Y.AT2", "--scale", "0.5", "1.5", "--sources", "exact", "pymunk:naive"]
+    run(["blocks", "list.csv", *asked, "--out", "out"])
+    page = (place / "out" / "blocks.html").read_text()
+    commands = [html.unescape(words) for words in re.findall('data-copy="([^"]*)"', page)]
+    rows = read(place / "out").set_index(["width_m", "source", "scale"])["peak_ratio"]
+    assert len(commands) == 3
+    for command in commands:
+        words = shlex.split(command)[2:]
+        _, found = compared(capsys, *words)
+        width = float(words[words.index("--width") + 1])
+        for source, row in found.items():
+            kept = rows[width, source, 0.5]
+            assert row["peak_ratio"] == (kept if math.isfinite(kept) else None)
+
+
+def test_the_least_margin_comes_first_in_words_page_and_table(place, capsys):
+    assert run(["blocks", "list.csv", "--record", "X.AT2", "Y.AT2", "--out", "out"]) == 0
+    rows = read(place / "out").sort_values("margin")
+    first, fallen = rows.iloc[0], rows.loc[rows["margin"] <= 1.0, "name"].nunique()
+    words = f"the first is {first['name']}, at {first['margin']:.4g} times {first['record']}"
+    said = capsys.readouterr().out
+    assert words in said and f"{fallen} of 3 blocks overturn" in said
+    assert said.splitlines()[2].split()[0] == first["name"]
+    page = (place / "out" / "blocks.html").read_text()
+    assert words in page and "href=" not in page
+
+
+def journalled(out):
+    path = out / JOURNAL
+    return path.read_bytes().count(b'"row"') if path.exists() else 0
+
+
+def test_what_finished_before_a_kill_is_not_lost(place):
+    lines = [f"N{n},{0.3 + 0.01 * n},1.6" for n in range(40)]
+    (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))
+    records = ["X.AT2", "Y.AT2", "Z.AT2"]
+    write_record(place / "Z.AT2", SHAKEN.scaled(0.9))
+    arguments = ["blocks", "list.csv", "--record", *records, "--out", "out"]
+    command = [sys.executable, "-m", "studies", *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL) as process:
+        while journalled(place / "out") < 60 and process.poll() is None:
+            time.sleep(0.002)
+        process.send_signal(signal.SIGKILL)
+    kept = journalled(place / "out")
+    total = 2 * 40 * 3
+    assert 60 <= kept < total
+    assert run(arguments) == 0
+    told = json.loads((place / "out" / "provenance.json").read_text())["runs"][-1]
+    assert told["rows"] == total
+    assert total - kept <= told["computed"] <= total - kept + 1
+    assert run([*arguments[:-1], "fresh"]) == 0
+    both = [pd.read_csv(place / name / "blocks.csv") for name in ("out", "fresh")]
+    pd.testing.assert_frame_equal(*(table.drop(columns="wall_s") for table in both), rtol=0.0)
+
+
+@pytest.mark.slow
+def test_forty_blocks_take_ten_times_the_import_of_numba_and_pandas(place):
+    """The least of some runs: what else the machine does only adds."""
+    lines = [f"N{n},{0.3 + 0.02 * n},{1.6 + 0.03 * n}" for n in range(40)]
+    (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))
+    strong = kanai_tajimi(1, peak=4.0, duration=40.0, omega=12.0, rise=5.0, fall=15.0)
+    write_record(place / "X.AT2", strong)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+
+    def took(*command):
+        begin = time.perf_counter()
+        subprocess.run([sys.executable, *command], check=True, env=environment,
+                       stdout=subprocess.DEVNULL)  # fmt: skip
+        return time.perf_counter() - begin
+
+    asked = ["-m", "studies", "blocks", "list.csv", "--record", "X.AT2", "--out"]
+    took(*asked, "compiles")
+    listed = min(took(*asked, f"out-{n}") for n in range(3))
+    assert listed < 10.0 * min(took("-c", "import numba, pandas") for _ in range(3))
