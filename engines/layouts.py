@@ -65,8 +65,8 @@ class Body:
     ----------
     width, height, depth : float
         Full sizes [m] along x, z and y, which is out of the plane.
-    mass : float
-        [kg].
+    density : float
+        [kg/m3].
     home : (float, float)
         Where its centre is at rest, along the base and above it [m].
     at : Beginning
@@ -76,9 +76,14 @@ class Body:
     width: float
     height: float
     depth: float
-    mass: float
+    density: float
     home: tuple[float, float]
     at: Beginning
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return self.density * self.width * self.height * self.depth
 
     @property
     def inertia(self) -> tuple[float, float, float]:
@@ -189,9 +194,8 @@ def _standing(system: Any, density: float, depth: float | None, start: Start, ho
     side = math.copysign(1.0, theta or rate) if theta or rate else 0.0
     at = tilted(system.width, system.height, side, theta, rate)
     out = system.width if depth is None else depth
-    mass = density * system.width * system.height * out
     there = home, 0.5 * system.height
-    return Body(system.width, system.height, out, mass, there, at._replace(x=home + at.x))
+    return Body(system.width, system.height, out, density, there, at._replace(x=home + at.x))
 
 
 def one_block(system: RigidBlock, density: float, depth: float | None, start: Start) -> Layout:
@@ -227,8 +231,8 @@ def frame(system: RockingFrame, density: float, depth: float | None, start: Star
         rate=0.0,
     )
     width = (count - 1) * apart + 2.0 * system.width
-    mass = system.load * count * first.mass
-    beam = Body(width, thick, first.depth, mass, (0.0, level), rides)
+    dense = system.load * count * first.mass / (width * thick * first.depth)
+    beam = Body(width, thick, first.depth, dense, (0.0, level), rides)
     below = [Contact(number, LOWER, BASE) for number in range(count)]
     above = [Contact(number, UPPER, count) for number in range(count)]
     return Layout((*columns, beam), (*below, *above), count)

@@ -3,6 +3,7 @@
 from engines.dart.build import DartWorld, script
 from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
 from engines.declaration import Engine, Help, Preset, Stepping
+from engines.layouts import Ability
 
 ENGINE = Engine(
     name="dart",
@@ -11,6 +12,7 @@ ENGINE = Engine(
     packages=("dartpy",),
     install="rocking[dart]",
     build=DartWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",
@@ -27,6 +29,7 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
+            stacked=None,
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},

@@ -5,8 +5,11 @@ in Python sets that: a tuned preset counts in hundredths of a millimetre, so tha
 left where they are.
 """
 
+import math
 from types import SimpleNamespace
 from typing import Any
+
+import numpy as np
 
 from engines.dart.settings import (
     DETECTORS,
@@ -15,6 +18,7 @@ from engines.dart.settings import (
     SOLVERS,
     DartSettings,
 )
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
@@ -27,17 +31,32 @@ from engines.world import Grip, Moment, Pose, Step
 
 def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
-    (body,), unit = scene.bodies, s.unit
-    at, half, floor = body.at, counted(half_size(body), unit), counted(floor_half_size(scene), unit)
-    radius = s.corner_radius * scene.system.width
+    unit, floor = s.unit, counted(floor_half_size(scene), s.unit)
     return SimpleNamespace(
-        **{"half": half, "size": [2.0 * x for x in half], "floor": [2.0 * x for x in floor]},
-        **{"beneath": (0.0, 0.0, -floor[2]), "radius": radius * unit},
-        corners=[counted(each, unit) for each in corner_spheres(body, radius, planar=s.planar)],
-        **{"mass": body.mass, "inertia": tuple(unit * unit * moment for moment in body.inertia)},
+        **{"floor": [2.0 * x for x in floor], "beneath": (0.0, 0.0, -floor[2])},
+        **{"radius": s.corner_radius * scene.system.width * unit},
         coordinates=IN_PLANE if s.planar else IN_SPACE,
+        bodies=[of_body(scene, number, s) for number in range(len(scene.bodies))],
+    )
+
+
+def of_body(scene: Scene, number: int, s: DartSettings) -> SimpleNamespace:
+    """Return the numbers of a body, and of the corners by which it touches others."""
+    body, unit, radius = scene.bodies[number], s.unit, s.corner_radius * scene.system.width
+    at, contacts, half = body.at, scene.layout.contacts, counted(half_size(body), unit)
+    faces = [contact.face for contact in contacts if contact.body == number]
+    corners = [
+        counted(corner, unit)
+        for face in faces
+        for corner in corner_spheres(body, radius, planar=s.planar, face=face)
+    ]
+    return SimpleNamespace(
+        **{"half": half, "size": [2.0 * x for x in half], "corners": corners},
+        **{"mass": body.mass, "inertia": tuple(unit * unit * moment for moment in body.inertia)},
         places=(at.x * unit, at.z * unit, at.theta),
         speeds=(at.velocity_x * unit, at.velocity_z * unit, at.rate),
+        **{"named": f"block{number or ''}", "box": s.geometry == "box"},
+        carried=any(contact.on == number for contact in contacts),
     )
 
 
@@ -61,8 +80,13 @@ def touching(body: Any, shape: Any, at: Any, friction: float) -> Any:
     return node
 
 
+def is_ball(node: Any) -> bool:
+    """Say whether a shape is a ball at a corner."""
+    return bool(node.getShape().getType() == "SphereShape")
+
+
 def build(dart: Any, n: Any, s: Any) -> Any:
-    """Build a block on a box whose joint is driven by its velocity."""
+    """Build bodies on a box whose joint is driven by its velocity."""
     world = dart.simulation.World()
     solver = world.getConstraintSolver()
     if s.detector is not None:
@@ -77,36 +101,42 @@ def build(dart: Any, n: Any, s: Any) -> Any:
     if s.split_impulse is not None:  # noqa: SIM102
         if hasattr(solver, "setSplitImpulseEnabled"):
             solver.setSplitImpulseEnabled(s.split_impulse)
-    base, skeleton = dart.dynamics.Skeleton("base"), dart.dynamics.Skeleton("block")
+    base = dart.dynamics.Skeleton("base")
     drive, floor = base.createTranslationalJointAndBodyNodePair()
     drive.setActuatorType(dart.dynamics.ActuatorType.VELOCITY)
     if s.aside:
         aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # free out of the plane
         aside.setAxis((0.0, 1.0, 0.0))
     ground = touching(floor, dart.dynamics.BoxShape(n.floor), n.beneath, s.friction)
-    if s.planar:
-        joint, block = skeleton.createPlanarJointAndBodyNodePair()
-        joint.setZXPlane()
-    else:
-        joint, block = skeleton.createFreeJointAndBodyNodePair()
-    block.setMass(n.mass)
-    if s.exact_inertia:
-        block.setMomentOfInertia(*n.inertia)
-    if s.geometry == "box":
-        shapes = [touching(block, dart.dynamics.BoxShape(n.size), (0.0, 0.0, 0.0), s.friction)]
-    else:
-        ball = dart.dynamics.SphereShape(n.radius)
-        shapes = [touching(block, ball, at, s.friction) for at in n.corners]
+    world.addSkeleton(base)
+    joints, bodies, shapes = [], [], []
+    for b in n.bodies:
+        skeleton = dart.dynamics.Skeleton(b.named)
+        if s.planar:
+            joint, block = skeleton.createPlanarJointAndBodyNodePair()
+            joint.setZXPlane()
+        else:
+            joint, block = skeleton.createFreeJointAndBodyNodePair()
+        block.setMass(b.mass)
+        if s.exact_inertia:
+            block.setMomentOfInertia(*b.inertia)
+        if b.box or b.carried:
+            box = dart.dynamics.BoxShape(b.size)
+            shapes.append(touching(block, box, (0.0, 0.0, 0.0), s.friction))
+        if not b.box:
+            ball = dart.dynamics.SphereShape(n.radius)
+            shapes += [touching(block, ball, at, s.friction) for at in b.corners]
+        for number, place, speed in zip(n.coordinates, b.places, b.speeds, strict=True):
+            joint.setPosition(number, place)
+            joint.setVelocity(number, speed)
+        world.addSkeleton(skeleton)
+        joints.append(joint)
+        bodies.append(block)
     if s.restitution is not None:
         ground.getDynamicsAspect().setRestitutionCoeff(s.base_restitution)  # the product counts
         for shape in shapes:
             shape.getDynamicsAspect().setRestitutionCoeff(s.restitution)
-    for number, place, speed in zip(n.coordinates, n.places, n.speeds, strict=True):
-        joint.setPosition(number, place)
-        joint.setVelocity(number, speed)
-    world.addSkeleton(base)
-    world.addSkeleton(skeleton)
-    return world, drive, floor, joint, block, shapes
+    return world, drive, floor, joints, bodies, shapes
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
@@ -122,12 +152,12 @@ def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
             f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
             "world.step(False)",
         ),
-        pose=(f"theta, rate = joint.getPosition({theta}), joint.getVelocity({theta})",),
+        pose=(f"theta, rate = joints[0].getPosition({theta}), joints[0].getVelocity({theta})",),
     )
 
 
 class DartWorld:
-    """A block on a box whose joint is driven by its velocity, whether it moves or not."""
+    """Bodies on a box whose joint is driven by its velocity, whether it moves or not."""
 
     moment = Moment.MIDDLE
 
@@ -139,12 +169,14 @@ class DartWorld:
         self._dt = self._speed = self._place = 0.0
         self._pivot: float | None = None
         n = numbers(scene, settings)
-        self._half, self._at = n.half, n.coordinates
+        self._half, self._at = n.bodies[0].half, n.coordinates
         # a body lives as long as its skeleton, which only the world keeps
         built = build(imported("dartpy"), n, values(settings))
-        self._world, self._ground, self._floor, self._joint, self._block, shapes = built
-        paired = settings.geometry == "corners"
-        self._corners = list(zip(shapes, n.corners, strict=True)) if paired else []
+        self._world, self._ground, self._floor, self._joints, self._bodies, shapes = built
+        self._block, self._state = self._bodies[0], np.zeros((len(self._bodies), len(Pose._fields)))
+        balls = [shape for shape in shapes if settings.geometry == "corners" and is_ball(shape)]
+        places = [corner for body in n.bodies for corner in body.corners]
+        self._corners = list(zip(balls, places, strict=settings.geometry == "corners"))
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -162,12 +194,13 @@ class DartWorld:
         if self._moving:
             self._place = step.base_x * unit
 
-    def state(self) -> tuple[Pose]:
-        """Read the block's pose back."""
-        x, z, theta = self._at
-        q, unit = self._joint.getPositions().tolist(), self._unit
-        rate = self._joint.getVelocity(theta)
-        return (Pose((q[x] - self._place) / unit, q[z] / unit, q[theta], rate),)
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        (x, z, theta), unit = self._at, self._unit
+        for row, joint in zip(self._state, self._joints, strict=True):
+            q, rate = joint.getPositions().tolist(), joint.getVelocity(theta)
+            row[:] = (q[x] - self._place) / unit, q[z] / unit, q[theta], rate
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
@@ -186,8 +219,8 @@ class DartWorld:
             return
         self._pivot = pivot
         for node, (x, y, z) in self._corners:
-            low = self._margin if pivot * x >= 0.0 else 0.0
-            node.setRelativeTranslation((x, y, z - low))
+            low = self._margin if -pivot * x * z >= 0.0 else 0.0
+            node.setRelativeTranslation((x, y, z + math.copysign(low, z)))
 
     def _drive(self, step: Step) -> None:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
@@ -204,16 +237,18 @@ class DartWorld:
 
     def _read_back(self, scene: Scene) -> str:
         s, world, solver = self._s, self._world, self._world.getConstraintSolver()
-        (body,) = scene.bodies
         sleeps = hasattr(world, "getDeactivationOptions")
         splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self._floor.getShapeNode(0), self._block.getShapeNode(0)]
         top, own = (node.getDynamicsAspect() for node in shapes)
-        moment = body.inertia[1] * self._unit**2 if s.exact_inertia else None
+        masses = {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self._bodies, strict=True)):
+            moment = wanted.inertia[1] * self._unit**2 if s.exact_inertia else None
+            masses[f"mass {number}"] = (wanted.mass, found.getMass())
+            masses[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
         return disagreement(
             {
-                "mass": (body.mass, self._block.getMass()),
-                "moment": (moment, self._block.getInertia().getMoment()[1, 1]),
+                **masses,
                 "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
                 "restitution": (
                     None if s.restitution is None else s.restitution * s.base_restitution,

@@ -98,7 +98,7 @@ SIDE, PIVOT, BODY, FACE, ON, WEIGHT, YIELDS, RESISTED = range(8)
 """Columns of pairs.
 
 +1 for corners at -x, -1 for those at +x, 0 for a single pair; about which side the body turns for
-it to be the pivot; whose corner it is, of which face, and on which body, as in a contact of a layout;
+it to be the pivot; whose corner it is, of which face, and on which body (a `Contact`);
 the weight [N] that it carries as a pivot; by how much [m/s2] it yields to that, and to what it
 carries at rest.
 """

@@ -1,6 +1,7 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
 
@@ -11,6 +12,7 @@ ENGINE = Engine(
     packages=("rapier3d",),
     install="rocking[rapier]",
     build=RapierWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",
@@ -25,6 +27,7 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
+            stacked=None,
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},

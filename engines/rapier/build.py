@@ -10,7 +10,10 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
 from engines.declaration import Precision
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
@@ -27,18 +30,34 @@ FROZEN = 1e-5
 
 def numbers(scene: Scene, s: RapierSettings) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
-    (body,), unit, sunk = scene.bodies, s.unit_of(scene), s.sunk_of(scene)
-    at, radius = body.at, s.corner_radius * body.height
+    unit, sunk = s.unit_of(scene), s.sunk_of(scene)
+    radius = s.corner_radius * scene.bodies[0].height
     x, y, z = counted(s.base_half_size(scene), unit)
     return SimpleNamespace(
-        **{"unit": unit, "half": counted(half_size(body), unit), "radius": radius * unit},
-        corners=[counted(each, unit) for each in corner_spheres(body, radius, planar=s.planar)],
+        **{"unit": unit, "radius": radius * unit},
         **{"base_half": (x, y, z), "below": (0.0, 0.0, -z), "lowered": (0.0, 0.0, -sunk)},
-        **{"mass": body.mass, "density": scene.density / unit**3},
+        bodies=[of_body(scene, number, s, radius) for number in range(len(scene.bodies))],
+    )
+
+
+def of_body(scene: Scene, number: int, s: RapierSettings, radius: float) -> SimpleNamespace:
+    """Return the numbers of a body, with balls of a radius [m] at the corners that touch others."""
+    body, unit, sunk = scene.bodies[number], s.unit_of(scene), s.sunk_of(scene)
+    at, contacts = body.at, scene.layout.contacts
+    corners = [
+        counted(corner, unit)
+        for contact in contacts
+        if contact.body == number
+        for corner in corner_spheres(body, radius, planar=s.planar, face=contact.face)
+    ]
+    return SimpleNamespace(
+        **{"half": counted(half_size(body), unit), "corners": corners},
+        **{"mass": body.mass, "density": body.density / unit**3},
         inertia=tuple(moment * unit**2 for moment in body.inertia),
         **{"place": (at.x * unit, 0.0, at.z * unit - sunk), "at_rest": at.at_rest},
         **{"turn": (0.0, at.theta, 0.0), "spin": (0.0, at.rate, 0.0)},
         velocity=(at.velocity_x * unit, 0.0, at.velocity_z * unit),
+        carried=any(contact.on == number for contact in contacts),
     )
 
 
@@ -56,7 +75,7 @@ def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(rapier: Any, n: Any, s: Any) -> Any:
-    """Build a block on a kinematic box."""
+    """Build bodies on a kinematic box."""
     world = rapier.PhysicsWorld()
     parameters = world.integration_parameters
     if s.substeps is not None:
@@ -78,26 +97,31 @@ def build(rapier: Any, n: Any, s: Any) -> Any:
     floor = floor.friction(s.friction).restitution(s.base_restitution)
     base = rapier.RigidBody.kinematic_velocity_based().translation(n.lowered)
     base = world.rigid_bodies[world.add_body(base, [floor])]
-    body = rapier.RigidBody.dynamic().translation(n.place)
-    if not n.at_rest:
-        body = body.rotation(n.turn).linvel(n.velocity).angvel(n.spin)
-    if s.planar:
-        body = body.enabled_rotations((False, True, False))
-        body = body.enabled_translations((True, s.aside, True))
-    if s.sleeping is not None:
-        body = body.can_sleep(s.sleeping)
-    if s.geometry == "box":
-        shapes = [rapier.Collider.cuboid(*n.half).density(n.density)]
-    else:
-        mass = rapier.MassProperties((0.0, 0.0, 0.0), n.mass, n.inertia)
-        body = body.additional_mass_properties(mass)
-        ball = rapier.Collider.ball(n.radius).density(0.0)
-        shapes = [ball.translation(at) for at in n.corners]
-    # the mean of two counts
-    shapes = [shape.friction(s.friction).restitution(s.restitution) for shape in shapes]
-    block = world.rigid_bodies[world.add_body(body, shapes)]
-    block.recompute_mass_properties_from_colliders(world.colliders)  # else with its first step
-    return world, parameters, base, block
+    bodies = []
+    for b in n.bodies:
+        body = rapier.RigidBody.dynamic().translation(b.place)
+        if not b.at_rest:
+            body = body.rotation(b.turn).linvel(b.velocity).angvel(b.spin)
+        if s.planar:
+            body = body.enabled_rotations((False, True, False))
+            body = body.enabled_translations((True, s.aside, True))
+        if s.sleeping is not None:
+            body = body.can_sleep(s.sleeping)
+        if s.geometry == "box":
+            shapes = [rapier.Collider.cuboid(*b.half).density(b.density)]
+        else:
+            mass = rapier.MassProperties((0.0, 0.0, 0.0), b.mass, b.inertia)
+            body = body.additional_mass_properties(mass)
+            ball = rapier.Collider.ball(n.radius).density(0.0)
+            shapes = [ball.translation(at) for at in b.corners]
+            if b.carried:
+                shapes.append(rapier.Collider.cuboid(*b.half).density(0.0))
+        # the mean of two counts
+        shapes = [shape.friction(s.friction).restitution(s.restitution) for shape in shapes]
+        block = world.rigid_bodies[world.add_body(body, shapes)]
+        block.recompute_mass_properties_from_colliders(world.colliders)  # else with its first step
+        bodies.append(block)
+    return world, parameters, base, bodies
 
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
@@ -110,14 +134,14 @@ def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
         build=(*(line.text for line in lines), "parameters.dt = DT"),
         step=(f"world.gravity = pull_x{times}, 0.0, pull_z{times}", "world.step()"),
         pose=(
-            "turn = block.rotation",
-            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), block.angvel.y",
+            "turn = bodies[0].rotation",
+            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[0].angvel.y",
         ),
     )
 
 
 class RapierWorld:
-    """A block on a kinematic box, whether that moves or not."""
+    """Bodies on a kinematic box, whether that moves or not."""
 
     moment = Moment.MIDDLE
 
@@ -127,9 +151,10 @@ class RapierWorld:
         self._driven = self._moving or settings.reflection
         self._dt = self._speed = self._place = 0.0
         n, s = numbers(scene, settings), values(scene, settings, dt_s)
-        self._unit, self._sunk, self._half = n.unit, settings.sunk_of(scene), n.half
+        self._unit, self._sunk, self._half = n.unit, settings.sunk_of(scene), n.bodies[0].half
         built = build(imported("rapier3d"), n, s)
-        self._world, self._parameters, self._base, self._body = built
+        self._world, self._parameters, self._base, self._bodies = built
+        self._body, self._state = self._bodies[0], np.zeros((len(self._bodies), len(Pose._fields)))
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
@@ -144,16 +169,18 @@ class RapierWorld:
         if self._moving:
             self._place = step.base_x * self._unit
 
-    def state(self) -> tuple[Pose]:
-        """Read the block's pose back."""
-        at, turn = self._body.translation, self._body.rotation
-        theta = 2.0 * math.atan2(turn.j, turn.w)
-        x, z = (at.x - self._place) / self._unit, (at.z + self._sunk) / self._unit
-        return (Pose(x, z, theta, self._body.angvel.y),)
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        for row, body in zip(self._state, self._bodies, strict=True):
+            at, turn = body.translation, body.rotation
+            theta = 2.0 * math.atan2(turn.j, turn.w)
+            x, z = (at.x - self._place) / self._unit, (at.z + self._sunk) / self._unit
+            row[:] = x, z, theta, body.angvel.y
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the block sleeps where none can rest."""
-        if self._body.is_sleeping and abs(self.state()[0].theta) > FROZEN * self._alpha:
+        if self._body.is_sleeping and abs(self.state()[0, 2]) > FROZEN * self._alpha:
             return (
                 "the library put the block to sleep aloft, and gravity that changes wakes nothing"
             )
@@ -182,7 +209,12 @@ class RapierWorld:
         colliders = [self._world.colliders[it.colliders[0]] for it in (self._base, self._body)]
         friction = 0.5 * sum(collider.friction for collider in colliders)
         pairs = {
-            "mass": (scene.bodies[0].mass, self._body.mass),
+            **{
+                f"mass {number}": (wanted.mass, found.mass)
+                for number, (wanted, found) in enumerate(
+                    zip(scene.bodies, self._bodies, strict=True)
+                )
+            },
             "friction": (self._s.friction, friction),
             "restitution": (self._s.restitution, colliders[1].restitution),
             "iterations": (

@@ -46,8 +46,8 @@ def frame(load: float, columns: int = 2) -> RockingFrame:
 @pytest.mark.parametrize("columns", [2, 3, 5])
 @pytest.mark.parametrize("load", [0.1, 1.0, 10.0])
 def test_mujoco_lands_a_frame_as_a_block(load: float, columns: int) -> None:
-    """Of second order in p dt = 5e-3; the library's contact yields by a part 1e-4 of what it carries,
-    so that a heavy beam lifts a little early at any step."""
+    """Of second order in p dt = 5e-3; the library's contact yields by a part 1e-4 of what it
+    carries, so that a heavy beam lifts a little early at any step."""
     system, exactly = frame(load, columns), 1e-5 * (1.0 + load)
     response = run("mujoco", Scene(system=system, motion=SINE))
     assert response.peak_ratio == pytest.approx(simulate(system, SINE).peak_ratio, rel=exactly)
