@@ -3,6 +3,7 @@
 from engines.declaration import Engine, Miss, Preset, Stepping
 from engines.drake.build import DrakeWorld, script
 from engines.drake.settings import CONTROLLED, FACTORS, RULES, TUNED, DrakeSettings
+from engines.layouts import Ability
 
 ENGINE = Engine(
     name="drake",
@@ -11,6 +12,7 @@ ENGINE = Engine(
     packages=("drake",),
     install="rocking[drake]",
     build=DrakeWorld,
+    abilities=tuple(Ability),
     presets=(
         Preset(
             name="naive",

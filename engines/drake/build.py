@@ -12,12 +12,15 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
 from engines.drake.settings import (
     CENIC,
     LONGEST,
     PLANE,
     DrakeSettings,
 )
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.script import Script, filled, settings_of
@@ -41,22 +44,44 @@ MODULES = (
 GIVEN_UP = (RuntimeError, SystemExit)
 """What the library raises; the latter where one of its own conditions does not hold."""
 
-IN_PLANE = (1, 0, 2, 5)
-"""Where x, z, theta and its rate stand in the state of a planar joint."""
+IN_PLANE = (1, 0, 2)
+"""Where x, z and theta stand among the positions of a planar joint; velocities likewise."""
 
-IN_SPACE = (4, 6, 8)
-"""Where x, z and the rate stand in the state of a free body, which begins with a quaternion."""
+IN_SPACE = (4, 6, 1)
+"""Where x and z stand among the positions of a free body, which begin with a quaternion, and the
+rate among its velocities."""
 
 
 def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
     """Return the numbers of a scene."""
-    (body,) = scene.bodies
-    at, radius = body.at, s.corner_radius * body.width
+    bodies = [of_body(scene, number, s) for number in range(len(scene.bodies))]
     return SimpleNamespace(
+        **{"plane": [list(row) for row in PLANE], "bodies": bodies},
+        radius=s.corner_radius * scene.system.width,
+        state=[q for body in bodies for q in body.state] + [v for b in bodies for v in b.speeds],
+    )
+
+
+def of_body(scene: Scene, number: int, s: DrakeSettings) -> SimpleNamespace:
+    """Return the numbers of a body, and of the corners by which it touches others."""
+    body, radius, contacts = (
+        scene.bodies[number],
+        s.corner_radius * scene.system.width,
+        scene.layout.contacts,
+    )
+    at, name = body.at, f"block{number or ''}"
+    corners = [
+        list(corner)
+        for contact in contacts
+        if contact.body == number
+        for corner in corner_spheres(body, radius, planar=s.planar, face=contact.face)
+    ]
+    return SimpleNamespace(
+        **{"name": name, "on_base": f"{name} on the base", "in_plane": f"{name} in the plane"},
         **{"mass": body.mass, "size": [2.0 * half for half in half_size(body)]},
-        **{"plane": [list(row) for row in PLANE], "radius": radius},
-        corners=[list(each) for each in corner_spheres(body, radius, planar=s.planar)],
-        state=[at.z, at.x, at.theta, at.velocity_z, at.velocity_x, at.rate],
+        **{"corners": corners, "box": s.geometry == "box", "ball": f"{name} corner"},
+        carried=any(contact.on == number for contact in contacts),
+        **{"state": [at.z, at.x, at.theta], "speeds": [at.velocity_z, at.velocity_x, at.rate]},
         **{"theta": at.theta, "place": [at.x, 0.0, at.z]},
         **{"spin": [0.0, at.rate, 0.0], "velocity": [at.velocity_x, 0.0, at.velocity_z]},
     )
@@ -76,7 +101,7 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
     material = {
         "point_stiffness": None
         if s.stiffness is None
-        else 2.0 * s.stiffness * scene.bodies[0].mass / dt_s**2,
+        else 2.0 * s.stiffness * scene.layout.carried(scene.layout.contacts[0]) / dt_s**2,
         "dissipation": None if s.dissipation is None else s.dissipation / scale,
     }
     return SimpleNamespace(
@@ -91,40 +116,46 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(drake: Any, n: Any, s: Any) -> Any:
-    """Build a block on a half-space that does not move."""
+    """Build bodies on a half-space that does not move."""
     builder = drake.DiagramBuilder()
     config = drake.MultibodyPlantConfig(**s.config)
     plant, scene_graph = drake.AddMultibodyPlant(config, builder)
-    inertia = drake.SpatialInertia.SolidBoxWithMass(n.mass, *n.size)
-    block = plant.AddRigidBody("block", inertia)
-    if s.planar:
-        turned = drake.RigidTransform(drake.RotationMatrix(n.plane))
-        base_plane = drake.FixedOffsetFrame("base plane", plant.world_body().body_frame(), turned)
-        block_plane = drake.FixedOffsetFrame("block plane", block.body_frame(), turned)
-        frames = [plant.AddFrame(frame) for frame in (base_plane, block_plane)]
-        plant.AddJoint(drake.PlanarJoint("plane", *frames))
     properties, rough = drake.ProximityProperties(), drake.CoulombFriction(s.friction, s.friction)
     drake.AddContactMaterial(properties=properties, friction=rough, **s.material)
     if s.relaxation is not None:
         properties.AddProperty("material", "relaxation_time", s.relaxation)
-    ground, here = plant.world_body(), drake.RigidTransform()
+    ground, here, bodies = plant.world_body(), drake.RigidTransform(), []
     plant.RegisterCollisionGeometry(ground, here, drake.HalfSpace(), "base", properties)
-    if s.geometry == "box":
-        plant.RegisterCollisionGeometry(block, here, drake.Box(*n.size), "block", properties)
-    else:
-        for number, at in enumerate(n.corners):
-            there, ball = drake.RigidTransform(at), drake.Sphere(n.radius)
-            plant.RegisterCollisionGeometry(block, there, ball, f"corner {number}", properties)
+    turned = drake.RigidTransform(drake.RotationMatrix(n.plane))
+    for b in n.bodies:
+        inertia = drake.SpatialInertia.SolidBoxWithMass(b.mass, *b.size)
+        block = plant.AddRigidBody(b.name, inertia)
+        bodies.append(block)
+        if s.planar:
+            base_plane = drake.FixedOffsetFrame(b.on_base, ground.body_frame(), turned)
+            block_plane = drake.FixedOffsetFrame(b.in_plane, block.body_frame(), turned)
+            frames = [plant.AddFrame(frame) for frame in (base_plane, block_plane)]
+            plant.AddJoint(drake.PlanarJoint(b.name, *frames))
+        if b.box or b.carried:
+            plant.RegisterCollisionGeometry(block, here, drake.Box(*b.size), b.name, properties)
+        if not b.box:
+            for number, at in enumerate(b.corners):
+                there, ball = drake.RigidTransform(at), drake.Sphere(n.radius)
+                plant.RegisterCollisionGeometry(
+                    block, there, ball, f"{b.ball} {number}", properties
+                )
     plant.Finalize()
     simulator = drake.Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     if s.planar:
         plant.SetPositionsAndVelocities(context, n.state)
     else:
-        start = drake.RigidTransform(drake.RotationMatrix.MakeYRotation(n.theta), n.place)
-        plant.SetFreeBodyPose(context, block, start)
-        velocity = drake.SpatialVelocity(w=n.spin, v=n.velocity)
-        plant.SetFreeBodySpatialVelocity(context, block, velocity)
+        for b in n.bodies:
+            block = plant.GetBodyByName(b.name)
+            start = drake.RigidTransform(drake.RotationMatrix.MakeYRotation(b.theta), b.place)
+            plant.SetFreeBodyPose(context, block, start)
+            velocity = drake.SpatialVelocity(w=b.spin, v=b.velocity)
+            plant.SetFreeBodySpatialVelocity(context, block, velocity)
     if s.scheme is not None:
         drake.ResetIntegratorFromFlags(simulator, scheme=s.scheme, max_step_size=s.longest)
         integrator = simulator.get_mutable_integrator()
@@ -132,12 +163,12 @@ def build(drake: Any, n: Any, s: Any) -> Any:
         if s.accuracy is not None:
             integrator.set_target_accuracy(s.accuracy)
     simulator.Initialize()
-    return plant, scene_graph, block, simulator, context
+    return plant, scene_graph, bodies, simulator, context
 
 
 POSES = {
-    True: "theta, rate = state[2], state[5]",
-    False: "theta, rate = 2.0 * math.atan2(state[2], state[0]), state[8]",
+    True: "theta, rate = state[2], state[{planar}]",
+    False: "theta, rate = 2.0 * math.atan2(state[2], state[0]), state[{space}]",
 }
 """Whether it is planar -> the line of a script that reads a pose."""
 
@@ -145,6 +176,7 @@ POSES = {
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
     """Return a scene on a base at rest as calls of Drake; see `engines.parts.script`."""
     lines = filled(build, n=numbers(scene, settings), s=values(scene, settings, dt_s))
+    count = len(scene.bodies)
     return Script(
         imports=("import pydrake.all as drake",),
         settings=settings_of(lines),
@@ -159,12 +191,15 @@ def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
             "end += DT",
             "simulator.AdvanceTo(end)",
         ),
-        pose=("state = plant.GetPositionsAndVelocities(context)", POSES[settings.planar]),
+        pose=(
+            "state = plant.GetPositionsAndVelocities(context)",
+            POSES[settings.planar].format(planar=3 * count + 2, space=7 * count + 1),
+        ),
     )
 
 
 class DrakeWorld:
-    """A block on a half-space that does not move."""
+    """Bodies on a half-space that does not move."""
 
     def __init__(self, scene: Scene, settings: DrakeSettings, dt_s: float) -> None:
         self._s, self._dt = settings, dt_s
@@ -173,7 +208,8 @@ class DrakeWorld:
         self._gravity = scene.system.gravity
         self._velocity_of = mean_velocity_of(scene.motion.segments())
         built = build(library(), numbers(scene, settings), values(scene, settings, dt_s))
-        self._plant, scene_graph, self._block, self._simulator, self._context = built
+        self._plant, scene_graph, self._bodies, self._simulator, self._context = built
+        self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._field = self._plant.mutable_gravity_field()
         if self._continuous:
             self._integrator = self._simulator.get_mutable_integrator()
@@ -213,14 +249,22 @@ class DrakeWorld:
         self._time = end_s
         return int(self._integrator.get_num_steps_taken() - before)
 
-    def state(self) -> tuple[Pose]:
-        """Read the block's pose back."""
-        state = self._plant.GetPositionsAndVelocities(self._context).tolist()
-        if self._s.planar:
-            x, z, theta, rate = (state[i] for i in IN_PLANE)
-            return (Pose(x, z, theta, rate),)
-        x, z, rate = (state[i] for i in IN_SPACE)
-        return (Pose(x, z, 2.0 * math.atan2(state[2], state[0]), rate),)
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        found, count = (
+            self._plant.GetPositionsAndVelocities(self._context).tolist(),
+            len(self._state),
+        )
+        for number, row in enumerate(self._state):
+            if self._s.planar:
+                x, z, theta = (found[3 * number + i] for i in IN_PLANE)
+                row[:] = x, z, theta, found[3 * (count + number) + IN_PLANE[2]]
+            else:
+                q = found[7 * number : 7 * number + 7]
+                x, z, turning = IN_SPACE
+                rate = found[7 * count + 6 * number + turning]
+                row[:] = q[x], q[z], 2.0 * math.atan2(q[2], q[0]), rate
+        return self._state
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the library gave up on."""
@@ -231,17 +275,17 @@ class DrakeWorld:
         self._simulator = None
 
     def _read_back(self, scene: Scene, scene_graph: Any) -> str:
-        s, plant, (body,) = self._s, self._plant, scene.bodies
+        s, plant, (body, *_), block = self._s, self._plant, scene.bodies, self._bodies[0]
         inspector = scene_graph.model_inspector()
         found = [
             inspector.GetProximityProperties(shape).GetProperty("material", "coulomb_friction")
-            for shape in plant.GetCollisionGeometriesForBody(self._block)
+            for shape in plant.GetCollisionGeometriesForBody(block)
         ]
-        inertia = self._block.CalcSpatialInertiaInBodyFrame(self._context)
+        inertia = block.CalcSpatialInertiaInBodyFrame(self._context)
         turning = inertia.CalcRotationalInertia().get_moments()
         problem = disagreement(
             {
-                "mass": (body.mass, self._block.get_mass(self._context)),
+                "mass": (body.mass, block.get_mass(self._context)),
                 "moment": (body.inertia[1], turning[1]),
                 "friction": (s.friction, found[0].static_friction()),
                 "step": (0.0 if self._continuous else self._dt, plant.time_step()),
