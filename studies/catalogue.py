@@ -20,6 +20,7 @@ from studies import (
     overturning,
     precision,
     restitution,
+    scenes,
     score,
     stability,
     sweep,
@@ -42,6 +43,7 @@ STUDIES: tuple[Study, ...] = (
     histories.STUDY,
     linearizations.STUDY,
     free.STUDY,
+    scenes.STUDY,
     harmonic.STUDY,
     literature.STUDY,
     validate.STUDY,
@@ -85,6 +87,7 @@ if TYPE_CHECKING:
     from studies.precision import cost as _cost
     from studies.precision import study as _precision
     from studies.restitution import study as _restitution
+    from studies.scenes import study as _scenes
     from studies.score import study as _score
     from studies.stability import study as _stability
     from studies.sweep import study as _sweep
@@ -96,7 +99,17 @@ if TYPE_CHECKING:
     # what `Study.load` promises, held against every module by the type checker
     _KEPT: tuple[StudyModule, ...] = (
         *(_sweep, _histories, _linearizations, _free, _validate, _precision, _cost),
-        *(_advise, _steps, _defaults, _estimate, _symptoms, _restitution, _score, _versions),
+        *(
+            _advise,
+            _steps,
+            _scenes,
+            _defaults,
+            _estimate,
+            _symptoms,
+            _restitution,
+            _score,
+            _versions,
+        ),
         *(_harmonic, _literature, _contact, _stability, _overturning, _validity, _ensemble),
-        _blocks,
+        *(_blocks, _scenes),
     )

@@ -241,7 +241,7 @@ class DartWorld:
         splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self._floor.getShapeNode(0), self._block.getShapeNode(0)]
         top, own = (node.getDynamicsAspect() for node in shapes)
-        masses = {}
+        masses: dict[str, tuple[float | None, float]] = {}
         for number, (wanted, found) in enumerate(zip(scene.bodies, self._bodies, strict=True)):
             moment = wanted.inertia[1] * self._unit**2 if s.exact_inertia else None
             masses[f"mass {number}"] = (wanted.mass, found.getMass())

@@ -1,0 +1,91 @@
+"""The frames and the slides that every engine is asked about."""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from analytic import RockingFrame, SlidingBlock, Still, simulate
+from analytic.block import GRAVITY
+from analytic.motion import Motion, SinePulse
+from analytic.record import Record
+from engines.declaration import Stepping
+from engines.layouts import System
+from studies.kit.jobs import Job
+from studies.sources.registry import resolve
+
+LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)
+PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
+"""Amplitude [g] and circular frequency [rad/s] of full sines."""
+
+PHASES = 4
+"""Where in a step an impact falls costs per mille: so many runs at steps that differ by a hair."""
+
+FRICTIONS = (0.1, 0.2, 0.3)
+HELD_S = 2.0
+"""How long a base is accelerated by less than what friction holds [s]."""
+
+
+def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return the job of every case and source: of frames first."""
+    return [*frames(sources, quick), *slides(sources, quick)]
+
+
+def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
+    """Yield the jobs of frames under pulses."""
+    cases = itertools.product(LOADS[1:2], COLUMNS[:1], PULSES[:1])
+    if not quick:
+        cases = itertools.product(LOADS, COLUMNS, PULSES)
+    for load, columns, (amplitude_g, omega) in cases:
+        frame = RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
+        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2)
+        labels = {"scene": "frame", "columns": columns, "load": load}
+        shaken = {"amplitude_g": amplitude_g, "omega": omega}
+        for source in sources:
+            for phase, options in enumerate(steps(source, frame, pulse, 2 if quick else PHASES)):
+                said = {**labels, **shaken, "phase": phase}
+                yield Job(labels=said, block=frame, motion=pulse, source=source, options=options)
+
+
+def steps(
+    source: str, frame: RockingFrame, motion: Motion, phases: int
+) -> Iterator[dict[str, Any]]:
+    """Yield the options by which the first impact falls into different parts of equal steps."""
+    asked = resolve(source)
+    if not asked.engine or asked.used.stepping is not Stepping.FIXED:
+        yield {}
+        return
+    used = asked.used
+    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
+    impact = simulate(frame, motion).impacts[0].time * frame.p
+    for phase in range(phases):
+        yield {"step": step * (1.0 + phase / phases * step / impact)}
+
+
+def slides(sources: Sequence[str], quick: bool) -> Iterator[Job]:
+    """Yield the jobs of blocks that slide; steps that land on impacts are not asked."""
+    sine = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
+    posed: list[tuple[str, System, Motion, dict[str, Any]]] = [
+        (f"sine, friction {friction:g}", flat(friction), sine, {})
+        for friction in (FRICTIONS[1:2] if quick else FRICTIONS)
+    ]
+    cube = SlidingBlock(width=1.0, height=1.0, friction=0.5)
+    posed.append(("launched at 6 m/s, friction 0.5", cube, Still(), {"start": (0.0, 6.0)}))
+    posed.append(("held at 0.9 of friction 0.2", flat(0.2), held(0.2), {}))
+    for name, box, motion, options in posed:
+        for source in sources:
+            if not resolve(source).lands:
+                labels = {"scene": "slide", "case": name}
+                yield Job(labels=labels, block=box, motion=motion, source=source, options=options)
+
+
+def flat(friction: float) -> SlidingBlock:
+    """Return a block of 1 x 0.5 m."""
+    return SlidingBlock(width=1.0, height=0.5, friction=friction)
+
+
+def held(friction: float) -> Record:
+    """Return a base that is accelerated at 0.9 of what friction holds."""
+    return Record(dt=HELD_S, samples=np.full(2, 0.9 * friction * GRAVITY))

@@ -1,0 +1,73 @@
+"""Errors of frames and slides: engines as rows, presets as bars and dots."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from engines import ENGINES
+from studies.measures.presets import engine_of, in_order, preset_of, told
+
+LOWEST = 1e-7
+"""Smaller errors are drawn here."""
+
+
+def draw_frames(lines: pd.DataFrame) -> Figure:
+    """Draw for each engine and preset a bar from the median to the largest error of the peak.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of frame-summary.csv.
+    """
+    title = "A rocking frame: how far off its peak is, median to largest"
+    figure, axes, heights = _rows(lines, title)
+    for row in lines.to_dict("records"):
+        median, most = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
+        colour, y = told(preset_of(row["source"])).colour, heights[row["source"]]
+        axes.plot([median, most], [y, y], color=colour, linewidth=5, solid_capstyle="round")
+        axes.plot(median, y, "o", color=colour, markersize=7)
+        if row["wrong"]:
+            words = f"   {row['wrong']} of {row['frames']} fall wrongly"
+            axes.text(most, y, words, va="center", fontsize=8, color=colour)
+    axes.set_xlabel("error of the largest rotation of a column, relative  [–]")
+    return figure
+
+
+def draw_slides(lines: pd.DataFrame) -> Figure:
+    """Draw for each engine and preset the largest error of a slip.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of slide-summary.csv.
+    """
+    figure, axes, heights = _rows(lines, "A sliding block: the largest error of a slip")
+    for row in lines.to_dict("records"):
+        if not pd.isna(row["largest_slip_error_m"]):
+            colour = told(preset_of(row["source"])).colour
+            value = max(1e3 * row["largest_slip_error_m"], LOWEST)
+            axes.plot(value, heights[row["source"]], "o", color=colour, markersize=8)
+    axes.set_xlabel("largest error of a slip  [mm]")
+    return figure
+
+
+def _rows(lines: pd.DataFrame, title: str) -> tuple[Figure, Axes, dict[str, float]]:
+    """Return a figure with a row for each engine, and the height of each source's bar in it."""
+    engines = list(dict.fromkeys(map(engine_of, lines["source"])))
+    presets = in_order(map(preset_of, lines["source"]))
+    figure = Figure(figsize=(8.0, 1.3 + 0.55 * len(engines)), layout="constrained")
+    axes = figure.subplots()
+    apart = 0.6 / max(len(presets), 1)
+    heights = {
+        source: engines.index(engine_of(source))
+        + apart * (presets.index(preset_of(source)) - 0.5 * (len(presets) - 1))
+        for source in lines["source"]
+    }
+    axes.set_yticks(range(len(engines)), [ENGINES[name].title for name in engines])
+    axes.set(xscale="log", ylim=(len(engines) - 0.5, -0.5))
+    axes.grid(axis="x", alpha=0.25)
+    for preset in presets:
+        axes.plot([], [], "o", color=told(preset).colour, label=told(preset).short)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4, frameon=False)
+    axes.set_title(title, fontsize=12)
+    return figure, axes, heights

@@ -1,0 +1,50 @@
+"""What the summaries of frames and slides show, in a sentence each."""
+
+import pandas as pd
+
+from studies.measures.differences import scientific
+from studies.measures.presets import engine_of, in_order, in_words, preset_of
+
+
+def frame_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the engines' frames are."""
+    said = [
+        f"{in_words(preset)} by up to {scientific(part['largest_error'].max())} "
+        f"(median {scientific(part['median_error'].median())}{_wrong(part)})"
+        for preset, part in _by_preset(lines)
+    ]
+    return f"The peak of a rocking frame is off {', '.join(said)}."
+
+
+def slide_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the slips are, and who creeps or lifts."""
+    said = [
+        f"{in_words(preset)} by up to {_mm(part['largest_slip_error_m'].max())}"
+        for preset, part in _by_preset(lines)
+    ]
+    creeps, lifts = (
+        lines.sort_values(name).dropna(subset=[name]).iloc[-1] for name in ("creep_m", "lift_m")
+    )
+    return (
+        f"The slips of a block are off {', '.join(said)}; held at nine tenths of its friction "
+        f"for two seconds it creeps by up to {_mm(creeps['creep_m'])} ({creeps['source']}), and "
+        f"one launched along its base lifts by up to {_mm(lifts['lift_m'])} ({lifts['source']})."
+    )
+
+
+def _wrong(part: pd.DataFrame) -> str:
+    wrong = part[part["wrong"] > 0]
+    named = [
+        f"{engine_of(row['source'])} {row['wrong']} of {row['frames']}"
+        for row in wrong.to_dict("records")
+    ]
+    return f"; the outcome wrong: {', '.join(named)}" if named else ""
+
+
+def _by_preset(lines: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    presets = lines["source"].map(preset_of)
+    return [(preset, lines[presets == preset]) for preset in in_order(presets)]
+
+
+def _mm(metres: float) -> str:
+    return f"{1e3 * metres:.2g} mm"

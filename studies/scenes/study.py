@@ -1,0 +1,193 @@
+"""A rocking frame and a sliding block in each engine, against their exact solutions."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pandas as pd
+
+from analytic import simulate
+from analytic.response import Outcome, Response
+from studies.kit import provenance
+from studies.kit.arguments import Place, check_sources
+from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
+from studies.kit.naming import several_sources
+from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.plan import Plan, Tables, carry_out
+from studies.scenes import STUDY
+from studies.scenes.cases import jobs
+from studies.scenes.findings import frame_sentence, slide_sentence
+from studies.sources.groups import core_sources
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
+SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
+SEEN_OF_A_SLIDE = ("place_m", "lift_m", "turn_rad")
+
+
+def command(
+    *,
+    out: Place,
+    quick: bool = False,
+    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    running: Running = DEFAULT_RUNNING,
+) -> int:
+    """Hold a rocking frame and a sliding block in each engine against their exact solutions.
+
+    The frame's columns turn as a block of another size and restitution does; the block that slides
+    has a closed form. What an engine is not built for is a row that says so.
+
+    Parameters
+    ----------
+    out
+        Folder for the results; made if there is none.
+    quick
+        One frame, one slide, and two places of the steps.
+    sources
+        Who is asked; steps that land on impacts are asked about frames alone.
+    """
+    check_sources(sources)
+    plan = Plan(
+        jobs=lambda: jobs(sources, quick),
+        settings={"quick": quick},
+        growing={"source": sources},
+        reduce=reduce,
+        tabulate=tabulate,
+        needed=needed,
+    )
+    return carry_out(STUDY, plan, out, running, report)
+
+
+def reduce(job: Job, response: Response) -> Row:
+    """Return the summary, and how far the response is from the exact one of its scene."""
+    exact = simulate(job.block, job.motion, start=job.options.get("start", (0.0, 0.0)))
+    row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
+    seen = response.observables
+    if job.labels["scene"] == "frame":
+        both = response.outcome is Outcome.ROCKED is exact.outcome
+        error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
+        row |= {"exact": exact.peak_ratio, "right": response.outcome is exact.outcome}
+        return {**row, "error": error, **_of(seen, SEEN_OF_A_FRAME)}
+    return {**row, "slips": len(response.slips), "exact_slips": len(exact.slips),
+            "slip_error_m": _slip_error(response, exact), **_of(seen, SEEN_OF_A_SLIDE)}  # fmt: skip
+
+
+def _of(seen: Any, names: Sequence[str]) -> Row:
+    return {name: float(seen.get(name, math.nan)) for name in names}
+
+
+def _slip_error(response: Response, exact: Response) -> float:
+    """Return the largest error of a slip [m]; of a block that is held, how far it crept.
+
+    Where there are more slips than there should be, the longest count; nan where there are fewer.
+    """
+    if response.outcome is Outcome.FAILED or len(response.slips) < len(exact.slips):
+        return math.nan
+    if not exact.slips:
+        return abs(float(response.observables.get("place_m", math.nan)))
+    least = sorted(map(abs, response.slips))[-len(exact.slips)]
+    longest = [slip for slip in response.slips if abs(slip) >= least]
+    return max(abs(one - other) for one, other in zip(longest, exact.slips, strict=True))
+
+
+def needed(rows: Sequence[Row]) -> Sequence[Row]:
+    """Return the rows whose failure is the study's: not of what an engine is not built for."""
+    return [row for row in rows if row["reason"] != "UNAVAILABLE"]
+
+
+def tabulate(rows: Sequence[Row]) -> Tables:
+    """Return the rows of each scene, and a line for each source."""
+    whole = pd.DataFrame(rows)
+    parts = {name: whole[whole["scene"] == name].dropna(axis="columns", how="all")
+             for name in ("frame", "slide")}  # fmt: skip
+    return {
+        **parts,
+        "frame-summary": frame_summary(parts["frame"]),
+        "slide-summary": slide_summary(parts["slide"]),
+    }
+
+
+def frame_summary(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return for each source how many of its frames are wrong, and how far off the others."""
+    lines = []
+    for source, part in _available(rows):
+        size = part["error"].abs()
+        lines.append(
+            {
+                "source": source,
+                "frames": len(part),
+                "wrong": int((~part["right"].astype(bool)).sum()),
+                "median_error": size.median(),
+                "largest_error": size.max(),
+                "beyond_2_percent": int((size > 0.02).sum()),
+                **{name: part[name].max() for name in SEEN_OF_A_FRAME},
+                "ms_a_frame": 1e3 * part["wall_s"].mean(),
+            }
+        )
+    return pd.DataFrame(lines)
+
+
+def slide_summary(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return for each source the largest error of a slip, its creep and how high it lifted."""
+    lines = []
+    for source, part in _available(rows):
+        slid = part[part["exact_slips"] > 0]
+        lines.append(
+            {
+                "source": source,
+                "slides": len(part),
+                "wrong": int(part["slip_error_m"].isna().sum()),
+                "largest_slip_error_m": slid["slip_error_m"].max(),
+                "creep_m": part.loc[part["exact_slips"] == 0, "slip_error_m"].max(),
+                "lift_m": part["lift_m"].max(),
+                "ms_a_slide": 1e3 * part["wall_s"].mean(),
+            }
+        )
+    return pd.DataFrame(lines)
+
+
+def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
+    return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
+
+
+def report(folder: Path) -> str:
+    """Draw a folder's tables; write and return what they show."""
+    from studies.drawing.figures import save_all
+
+    save_all(pictures(folder), folder)
+    tables = [read(folder, name).to_string(index=False, float_format="%.3g") for name in TABLES]
+    text = "\n\n".join([*tables, paragraph(folder)])
+    provenance.write_text(folder / "findings.txt", text + "\n")
+    return text
+
+
+TABLES = ("frame-summary", "slide-summary")
+
+
+def read(folder: Path, name: str) -> pd.DataFrame:
+    """Read a table of a folder."""
+    return pd.read_csv(folder / f"{name}.csv")
+
+
+def headline(folder: Path) -> str:
+    """Say what the frames show."""
+    return frame_sentence(read(folder, "frame-summary"))
+
+
+def paragraph(folder: Path) -> str:
+    """Say what the frames and the slides show."""
+    frames, slides = (read(folder, name) for name in TABLES)
+    return f"{frame_sentence(frames)} {slide_sentence(slides)}"
+
+
+def pictures(folder: Path) -> dict[str, "Figure"]:
+    """Draw the errors of frames and slides from their summaries alone."""
+    from studies.scenes.figure import draw_frames, draw_slides
+
+    frames, slides = (read(folder, name) for name in TABLES)
+    return {"frame": draw_frames(frames), "slide": draw_slides(slides)}
