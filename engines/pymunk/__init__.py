@@ -32,7 +32,7 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
-            stacked=None,
+            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
             helped_by={
                 Help.STEPS: None,
                 Help.POSITIONS: {"positions": False},

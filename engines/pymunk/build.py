@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.layouts import BASE, Body
+from engines.layouts import BASE, Ability, Body
 from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
@@ -32,15 +32,15 @@ LIBRARY_STEP_S = 0.02
 README = "the library's own first example, space.step(0.02)"
 
 
-def numbers(scene: Scene) -> SimpleNamespace:
-    """Return the numbers of a scene."""
+def numbers(scene: Scene, deeper: float = 0.0) -> SimpleNamespace:
+    """Return the numbers of a scene whose floors lie deeper [m] in their bodies."""
     far, bodies = FLOOR_HEIGHTS * scene.bodies[0].height, scene.bodies
-    deep = [(-far, -far), (far, -far), (far, 0.0), (-far, 0.0)]
+    deep = [(-far, -far), (far, -far), (far, -deeper), (-far, -deeper)]
     contacts = [
         SimpleNamespace(
             **{"x": 0.5 * bodies[contact.body].width, "body": contact.body, "on": contact.on},
             z=0.5 * contact.face * bodies[contact.body].height,
-            under=deep if contact.on == BASE else boxed(bodies[contact.on]),
+            under=deep if contact.on == BASE else boxed(bodies[contact.on], deeper),
         )
         for contact in scene.layout.contacts
     ]
@@ -59,18 +59,20 @@ def of_body(body: Body) -> SimpleNamespace:
     )
 
 
-def boxed(body: Body) -> list[tuple[float, float]]:
-    """Return the corners [m] of a body, about its centre."""
+def boxed(body: Body, deeper: float = 0.0) -> list[tuple[float, float]]:
+    """Return the corners [m] of a body, about its centre, the lower face so much deeper in it."""
     x, z = 0.5 * body.width, 0.5 * body.height
-    return [(-x, -z), (x, -z), (x, z), (-x, z)]
+    return [(-x, deeper - z), (x, deeper - z), (x, z), (-x, z)]
 
 
 def values(scene: Scene, s: PymunkSettings, dt_s: float) -> SimpleNamespace:
     """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    margin = s.margin_of(scene, dt_s)
+    together = s.positions and Ability.STACKED in scene.layout.asks
     return SimpleNamespace(
         **{"geometry": s.geometry, "friction": float(s.friction), "bias": s.bias, "level": -LEVEL},
         **{"iterations": s.iterations_of(scene), "slop": s.slop_of(scene, dt_s)},
-        margin=s.margin_of(scene, dt_s),
+        **{"margin": margin, "together": together, "widest": 2.0 * margin if together else margin},
         pivots=[c.face * side for c in scene.layout.contacts for side in (1.0, -1.0)],
     )
 
@@ -101,7 +103,7 @@ def build(pymunk: Any, n: Any, s: Any) -> Any:
             corners += [pymunk.Circle(bodies[c.body], 0.0, (x, c.z)) for x in (-c.x, c.x)]
             # the radius that a floor is made with bounds the ones that it is given later
             under = [base, *bodies][c.on + 1]
-            floors += [pymunk.Poly(under, c.under, radius=s.margin) for _ in (1, 2)]
+            floors += [pymunk.Poly(under, c.under, radius=s.widest) for _ in (1, 2)]
         for number, pair in enumerate(zip(corners, floors, strict=True)):
             for shape in pair:  # a corner meets its own floor alone
                 shape.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
@@ -115,6 +117,17 @@ def hold(floors: Any, about: float, s: Any) -> None:
     """Keep the corner in contact about which the block turns, both where it turns about neither."""
     for side, floor in zip(s.pivots, floors, strict=True):
         floor.unsafe_set_radius(s.margin if side * about >= s.level else 0.0)
+
+
+TOGETHER = {Grip.APPROACH: 0.0, Grip.STRIKE: 2.0}
+"""By how many margins the floors of free corners reach out where those must meet together."""
+
+
+def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
+    """Hold as `hold` does floors that lie a margin deeper, and free corners alike in an impact."""
+    free = TOGETHER.get(grip, 1.0)
+    for side, floor in zip(s.pivots, floors, strict=True):
+        floor.unsafe_set_radius(s.margin * (2.0 if side * about >= s.level else free))
 
 
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
@@ -142,7 +155,8 @@ class PymunkWorld:
         self.settings = settings
         self._pm: Any = imported("pymunk")
         self._moving, self._dt = scene.frame == "world", 0.0
-        self._values, n = values(scene, settings, dt_s), numbers(scene)
+        self._values = values(scene, settings, dt_s)
+        n = numbers(scene, self._values.margin if self._values.together else 0.0)
         built = build(self._pm, n, self._values)
         self._space, self._base, self._bodies, self._corners, self._floors = built
         self._at = [(x, c.z) for c in n.contacts for x in (-c.x, c.x)]
@@ -197,7 +211,10 @@ class PymunkWorld:
         bounce = self.settings.restitution * self.settings.base_restitution
         # equal steps do not say about which corner
         about = 0.0 if step.grip is Grip.REST else step.side or -self._bodies[0].angle
-        hold(self._floors, about, self._values)
+        if self._values.together:
+            hold_together(self._floors, about, step.grip, self._values)
+        else:
+            hold(self._floors, about, self._values)
         pairs = zip(self._values.pivots, self._at, self._corners, self._floors, strict=True)
         for side, at, corner, floor in pairs:
             returned = back if side * about >= -LEVEL and step.side else 0.0
