@@ -61,11 +61,13 @@ def start(cylinder):
     ("cylinder", "precession"), [(FAT, 17.719407), (TALL, 10.292109), (DISK, 11.523142)]
 )
 def test_precession(cylinder, precession):
-    """Printed to six decimals; the thin disk by Omega^2 sin(beta) = 4 g/a, too."""
+    """Printed to six decimals; the thin disk by its closed forms, too."""
     assert cylinder.precession == pytest.approx(precession, abs=5.1e-7)
     if cylinder is DISK:
         square = 4.0 * G / (cylinder.radius * math.sin(cylinder.tilt))
         assert cylinder.precession**2 == pytest.approx(square, rel=1e-8)
+        swing = (3.0 + math.sin(cylinder.tilt) ** 2) / 5.0
+        assert cylinder.wobble == pytest.approx(swing * square, rel=1e-8)
 
 
 @pytest.mark.parametrize("cylinder", [FAT, TALL, DISK])
