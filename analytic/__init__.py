@@ -6,7 +6,9 @@ are ground times, from the start of the base motion.
 """
 
 from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
+from analytic.cart import CartBlock
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
+from analytic.cylinder import RollingCylinder
 from analytic.first_mode import FirstMode, first_mode, rocking_friction
 from analytic.frame import RockingFrame, frame_restitution
 from analytic.maps import Modes, overturning_modes
@@ -22,6 +24,7 @@ from analytic.synthetic import kanai_tajimi, near_fault, ricker
 __all__ = [
     "GRAVITY",
     "MODELS",
+    "CartBlock",
     "FirstMode",
     "History",
     "Impact",
@@ -33,6 +36,7 @@ __all__ = [
     "RigidBlock",
     "Rocker",
     "RockingFrame",
+    "RollingCylinder",
     "SinePulse",
     "SlidingBlock",
     "Still",

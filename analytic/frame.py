@@ -66,11 +66,6 @@ class RockingFrame:
             object.__setattr__(self, "restitution", eta)
 
     @property
-    def column(self) -> RigidBlock:
-        """A column on its own."""
-        return RigidBlock(width=self.width, height=self.height, gravity=self.gravity)
-
-    @property
     def alpha(self) -> float:
         """Slenderness angle atan(B/H) of a column [rad]; also the critical rotation."""
         return math.atan2(self.width, self.height)

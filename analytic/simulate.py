@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import RigidBlock, Rocker
+from analytic.cart import CartBlock
+from analytic.cart_motion import ridden
 from analytic.cases import law_of, pose, write_pulse
 from analytic.checks import finite
 from analytic.kernels.compiled import kernel
@@ -56,7 +58,7 @@ LOOSEST = 1e-2
 
 
 def simulate(
-    block: Rocker | SlidingBlock,
+    block: Rocker | SlidingBlock | CartBlock,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
@@ -69,7 +71,7 @@ def simulate(
 
     Parameters
     ----------
-    block : RigidBlock, RockingFrame or SlidingBlock
+    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
     motion : Motion
         Ground motion, for instance a `SinePulse`; `Still()` where there is none.
     model : {"exact", "housner", "modified", "onset-matched"}
@@ -77,12 +79,12 @@ def simulate(
         Rotation theta [rad] and angular velocity theta' [rad/s] at time zero; at rest by default.
         The sign of theta says which corner carries the block, that of the rate where theta is 0.
         Beyond the critical rotation the motion may bring a block back. Of a sliding block, place
-        [m] and rate [m/s] relative to the base.
+        [m] and rate [m/s] relative to the base. A cart starts at rest at its spring's zero.
     duration : float, optional
         Follow the response until this time [s], at least the duration of the motion. Without it
         the response is followed to the end of the motion only; outcome and peak of the free
         rocking after that come from its energy in either case. A sliding block is followed until it
-        stands.
+        stands; a cart on a spring, whose energy decides nothing before, until the peak is decided.
     times : array_like, optional
         Ground times [s], increasing, at which to sample `Response.history`; it ends with the
         response.
@@ -100,7 +102,7 @@ def simulate(
     Raises
     ------
     ValueError
-        If the model is unknown, or linear and the block a sliding one; if the duration is shorter
+        If the model is unknown, or linear and the body none of its own; if the duration is shorter
         than the motion, the times are not increasing or the tolerance is out of range, or the start
         is none (`analytic.start.folded` says which).
 
@@ -117,12 +119,10 @@ def simulate(
     >>> simulate(block, Still(), start=(0.5 * block.alpha, 0.0), duration=5.0).outcome
     <Outcome.ROCKED: 'rocked'>
     """
-    if isinstance(block, SlidingBlock):
+    if isinstance(block, SlidingBlock | CartBlock):
         if find_model(model).linear:
-            raise ValueError(f"model is {model!r}; a sliding block has no other than 'exact'")
-        until, sampled = check_window(motion, duration, times)
-        after = None if duration is None else until
-        return slid(block, motion, start, after, None if times is None else sampled)
+            raise ValueError(f"model is {model!r}; a {type(block).__name__} has only 'exact'")
+        return _other(block, motion, start, duration, times)
     law = find_model(model).law(block.alpha, block.restitution)
     if not TOLERANCE <= tolerance <= LOOSEST:
         allowed = f"from {TOLERANCE} to {LOOSEST}"
@@ -138,6 +138,23 @@ def simulate(
         return march(law, exactly, segments, begin, until * block.p, notes, workspace())
 
     return as_response(block, solve, sampled, times is not None, watched)
+
+
+def _other(
+    body: SlidingBlock | CartBlock,
+    motion: Motion,
+    start: tuple[float, float],
+    duration: float | None,
+    times: ArrayLike | None,
+) -> Response:
+    """Solve what is no rocking block on a base that moves as it is told to; as `simulate`."""
+    until, sampled = check_window(motion, duration, times)
+    kept = None if times is None else sampled
+    if isinstance(body, SlidingBlock):
+        return slid(body, motion, start, None if duration is None else until, kept)
+    law = find_model("exact").law(body.alpha, body.restitution)
+    begin, segments = folded(body, law, motion, start, sampled), scaled_segments(body, motion)
+    return ridden(body, law, segments, begin, until, kept, duration is not None)
 
 
 def strongest(motion: Motion) -> float:

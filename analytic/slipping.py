@@ -21,8 +21,8 @@ from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Reason, Response
 from analytic.slide import SlidingBlock
 
-MOST_PIECES = 20_000
-"""Pieces between crests, beside one a segment, after which a response counts as endless."""
+MOST_SLIPS = 5_000
+"""Slips, beside one a segment, after which a response counts as endless."""
 LAST_DIGIT = 4.0 * np.finfo(np.float64).eps
 
 
@@ -90,10 +90,6 @@ class Leg(NamedTuple):
         yield length
 
 
-class EndlessError(Exception):
-    """A response with more pieces than MOST_PIECES."""
-
-
 def slid(
     block: SlidingBlock,
     motion: Motion,
@@ -122,10 +118,10 @@ def slid(
     began = time.perf_counter()
     x, v = _checked(start)
     legs: list[Leg] = []
-    try:
-        end = _follow(block, motion.segments(), x, v, math.inf if until is None else until, legs)
-    except EndlessError:
-        return Response.failure("the block slides too often", reason=Reason.UNDECIDED)
+    end = _follow(block, motion.segments(), x, v, math.inf if until is None else until, legs)
+    if end is None:
+        message = "the block slips too often"
+        return Response.failure(message, reason=Reason.UNDECIDED, steps=len(legs))
     slips, slip_times = _slips(legs, end)
     wall_s = time.perf_counter() - began
     return Response(
@@ -149,64 +145,51 @@ def _checked(start: tuple[float, float]) -> tuple[float, float]:
 
 def _follow(
     block: SlidingBlock, segments: FloatArray, x: float, v: float, until: float, legs: list[Leg]
-) -> float:
-    """Write the legs of a response; return the time [s] at which it ends."""
-    still = np.array([[segments[-1, 1], math.inf, 0.0, 1.0, 0.0, 0.0, 0.0]])
-    side, pieces = (math.copysign(1.0, v) if v != 0.0 else 0.0), -len(segments)
-    for row in np.concatenate((segments, still)).tolist():
-        first, last, amplitude, omega, phase, offset, slope = row
+) -> float | None:
+    """Write the legs of a response; return the time [s] at which it ends, None if too many."""
+    still = [segments[-1, 1], math.inf, 0.0, 1.0, 0.0, 0.0, 0.0]
+    side = math.copysign(1.0, v) if v != 0.0 else 0.0
+    most = len(segments) + 3 * MOST_SLIPS
+    for first, last, amplitude, omega, phase, offset, slope in [*segments.tolist(), still]:
         now, last = first, min(last, until)
         while now < last:
             gone = now - first
-            angle, level = phase + omega * gone, offset + slope * gone
-            shape = (amplitude, omega, angle, level, slope, block.limit)
-            leg = Leg(now, x, v, side, *shape)
+            shape = (amplitude, omega, phase + omega * gone, offset + slope * gone, slope)
+            leg = Leg(now, x, v, side, *shape, block.limit)
             legs.append(leg)
-            length, following, used = (_stop if side != 0.0 else _start)(leg, last - now)
-            pieces += used
-            if pieces > MOST_PIECES:
-                raise EndlessError
+            length, following = _stop(leg, last - now) if side else _start(leg, last - now)
             if length == math.inf:
                 return now
+            if len(legs) > most:
+                return None
             x, v = leg.place(length), (leg.rate(length) if following == side else 0.0)
             side = following
             now = last if length >= last - now else now + length
     return until
 
 
-def _start(leg: Leg, length: float) -> tuple[float, float, int]:
-    """Return when a block that stands starts to slide, to which side, and the pieces looked at.
-
-    The length and side 0 where it does not.
-    """
+def _start(leg: Leg, length: float) -> tuple[float, float]:
+    """Return when a block that stands starts to slide, and to which side; else the length and 0."""
     limit = leg.brake * (1.0 + EQUAL)
-    strongest = abs(leg.amplitude) + abs(leg.offset)
-    if leg.slope == 0.0 and strongest <= limit:
-        return length, 0.0, 1
-    low, pieces = 0.0, 0
+    if leg.slope == 0.0 and abs(leg.amplitude) + abs(leg.offset) <= limit:
+        return length, 0.0
+    low = 0.0
     for high in leg.crests(length):
-        pieces += 1
         if abs(leg.ground(low)) > limit:
-            return low, -math.copysign(1.0, leg.ground(low)), pieces
+            return low, -math.copysign(1.0, leg.ground(low))
         if abs(leg.ground(high)) > limit:
             sign = math.copysign(1.0, leg.ground(high))
-            excess = partial(_excess, leg, sign, limit)
-            return _root(excess, low, high), -sign, pieces
-        if pieces > MOST_PIECES:
-            break
+            return _root(partial(_excess, leg, sign, limit), low, high), -sign
         low = high
-    return length, 0.0, pieces
+    return length, 0.0
 
 
 def _excess(leg: Leg, sign: float, limit: float, t: float) -> float:
     return sign * leg.ground(t) - limit
 
 
-def _stop(leg: Leg, length: float) -> tuple[float, float, int]:
-    """Return when a block that slides stops, 0, and the pieces looked at.
-
-    The length and its side where it does not.
-    """
+def _stop(leg: Leg, length: float) -> tuple[float, float]:
+    """Return when a block that slides stops, and 0; else the length and its side."""
 
     def speed(t: float) -> float:
         return leg.side * leg.rate(t)
@@ -215,18 +198,15 @@ def _stop(leg: Leg, length: float) -> tuple[float, float, int]:
         return -leg.side * leg.ground(t) - leg.brake
 
     if length == math.inf:
-        return speed(0.0) / leg.brake, 0.0, 1
-    low, pieces = 0.0, 0
+        return speed(0.0) / leg.brake, 0.0
+    low = 0.0
     for high in leg.crests(length):
-        pieces += 1
         middle = _root(gain, low, high) if gain(low) * gain(high) < 0.0 else high
         for begin, end in ((low, middle), (middle, high)):
             if speed(begin) > 0.0 >= speed(end):
-                return _root(speed, begin, end), 0.0, pieces
-        if pieces > MOST_PIECES:
-            break
+                return _root(speed, begin, end), 0.0
         low = high
-    return length, leg.side, pieces
+    return length, leg.side
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:

@@ -1,0 +1,220 @@
+"""The block on a cart against Newton-Euler bodies with a contact that is solved for."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from analytic import CartBlock, Outcome, Record, RigidBlock, SinePulse, Still, simulate
+from analytic.response import Reason
+
+G = 9.81
+PULSE = SinePulse(amplitude=0.4 * G, omega=6.2832, half_cycles=2)
+
+
+def foot(cart, theta, side):
+    """Return the foot of a side from the centre, clockwise positive, and what it bends by."""
+    u, w = side * 0.5 * cart.width, -0.5 * cart.height
+    c, s = math.cos(theta), math.sin(theta)
+    return c * u + s * w, -s * u + c * w
+
+
+def matrix_of(cart, theta, side):
+    """Return mass matrix of (x, z, theta, cart), whole mass 1, and the foot's Jacobian."""
+    m = cart.mass_ratio
+    inertia = m * (cart.width**2 + cart.height**2) / 12.0
+    arm = foot(cart, theta, side)
+    jacobian = np.array([[1.0, 0.0, arm[1], -1.0], [0.0, 1.0, -arm[0], 0.0]])
+    return np.diag([m, m, inertia, 1.0 - m]), jacobian
+
+
+def rates(cart, q, v, side, push):
+    """Return the accelerations, the contact's force being solved for."""
+    mass, jacobian = matrix_of(cart, q[2], side)
+    arm = np.array(foot(cart, q[2], side))
+    whole = np.block([[mass, -jacobian.T], [jacobian, np.zeros((2, 2))]])
+    m = cart.mass_ratio
+    load = [0.0, -m * G, 0.0, push - cart.stiffness * q[3]]
+    return np.linalg.solve(whole, np.concatenate((load, arm * v[2] ** 2)))[:4]
+
+
+def struck(cart, v, side):
+    """Return the rates after an ideally inelastic impact of the foot of a side."""
+    mass, jacobian = matrix_of(cart, 0.0, side)
+    whole = np.block([[mass, -jacobian.T], [jacobian, np.zeros((2, 2))]])
+    return np.linalg.solve(whole, np.concatenate((mass @ v, np.zeros(2))))[:4]
+
+
+def solve(cart, motion, begin, end, times):
+    """Return impacts (time, theta' before, after) and samples (theta, theta', cart, its rate)."""
+    theta, rate = begin
+    side = math.copysign(1.0, theta if theta else rate)
+    arm = foot(cart, theta, side)
+    q = np.array([side * 0.5 * cart.width - arm[0], -arm[1], theta, 0.0])
+    v = np.array([-arm[1] * rate, arm[0] * rate, rate, 0.0])
+    t, impacts, samples = 0.0, [], []
+
+    def flow(t, state, side):
+        push = float(motion.acceleration(t))
+        return np.concatenate((state[4:], rates(cart, state[:4], state[4:], side, push)))
+
+    def lands(t, state, side):
+        return side * state[2]
+
+    lands.terminal, lands.direction = True, -1
+    while t < end:
+        until = min([b for b in (*motion.breakpoints, end) if b > t * (1.0 + 1e-14)])
+        at = times[(times > t) & (times <= until)]
+        part = solve_ivp(
+            flow, (t, until), np.concatenate((q, v)), "DOP853",
+            events=lands, args=(side,), dense_output=True, rtol=1e-13, atol=1e-14,
+        )  # fmt: skip
+        t, q, v = part.t[-1], part.y[:4, -1], part.y[4:, -1]
+        samples += [part.sol(s)[[2, 6, 3, 7]] for s in at if s <= t]
+        if part.status == 1:
+            after = struck(cart, v, -side)
+            impacts.append((t, v[2], after[2]))
+            side, v = -side, after
+    return np.array(impacts), np.array(samples)
+
+
+@pytest.mark.parametrize(("mass_ratio", "eta"), [(0.1, 0.905063), (0.5, 0.863636)])
+def test_restitution(mass_ratio, eta):
+    """Printed to six decimals; by the bodies' own impact to rounding."""
+    cart = CartBlock(width=0.5, height=2.0, mass_ratio=mass_ratio)
+    before = np.array([-1.0, -0.25, -1.0, 0.0])
+    assert cart.restitution == pytest.approx(eta, abs=5e-7)
+    assert struck(cart, before, -1.0)[2] == pytest.approx(-cart.restitution, rel=1e-13)
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 2.0, 40.0])
+@pytest.mark.parametrize("mass_ratio", [0.05, 0.4, 0.8])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_shaken_cart_moves_as_bodies_do(mass_ratio, stiffness, seed):
+    """To 1e-9: DOP853 at 1e-13 a step, magnified by exp(p t) = 400 at the most.
+
+    Of one that comes to rest, until the excursions are so small that SciPy steps over them.
+    """
+    draw = np.random.default_rng(seed)
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=mass_ratio, stiffness=stiffness)
+    begin = (draw.choice([-1, 1]) * draw.uniform(0.2, 0.5) * cart.alpha, 0.0)
+    motion = (
+        Record(dt=0.25, samples=draw.normal(0.0, 1.0, 7))
+        if seed == 1
+        else SinePulse(amplitude=1.0, omega=6.0, half_cycles=2, phase=0.4)
+    )
+    times = np.linspace(0.05, 2.0, 40)
+    impacts, samples = solve(cart, motion, begin, 2.0, times)
+    response = simulate(cart, motion, start=begin, duration=2.0, times=times)
+    found = np.array(response.impacts)
+    seen = response.history.time.size
+    assert seen == 40 or response.outcome is Outcome.OVERTURNED
+    assert len(found) >= 1
+    loud, heard = (np.array(rows)[np.abs(rows)[:, 1] > 0.05] for rows in (found, impacts))
+    assert loud == pytest.approx(heard, abs=1e-9)
+    if len(loud) < len(found):
+        seen = int(np.searchsorted(times, loud[-1, 0]))
+    ours = np.array([response.history.theta, response.history.velocity, *response.history.base]).T
+    assert ours[:seen] == pytest.approx(samples[:seen], abs=1e-9)
+
+
+@pytest.mark.parametrize("mass_ratio", [0.1, 0.5, 0.9])
+def test_momentum_and_energy_of_a_free_cart(mass_ratio):
+    """Nothing pushes: momentum is kept to rounding, and only impacts take energy."""
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=mass_ratio)
+    times = np.linspace(0.0, 1.5, 301)
+    start = (0.3 * cart.alpha, 0.3)
+    response = simulate(cart, Still(), start=start, duration=1.5, times=times)
+    history, r = response.history, cart.R
+    theta, rate, (x, u) = history.theta, history.velocity, history.base
+    z, side = cart.alpha - np.abs(theta), np.sign(theta)
+    forward = r * np.cos(z) * rate
+    momentum = u + mass_ratio * forward
+    assert len(response.impacts) > 1
+    assert momentum == pytest.approx(np.full(301, momentum[0]), abs=1e-12)
+    centre = x + mass_ratio * r * (side * np.sin(cart.alpha) - side * np.sin(z))
+    drift = centre[0] + momentum[0] * times
+    assert centre == pytest.approx(drift, abs=1e-12)
+    energy = 0.5 * u**2 + mass_ratio * (
+        u * forward + 2.0 / 3.0 * (r * rate) ** 2 + G * r * np.cos(z)
+    )
+    struck_at = [0.0, *(impact.time for impact in response.impacts)]
+    for begin, end in itertools.pairwise(struck_at):
+        within = energy[(times > begin) & (times < end)]
+        assert within == pytest.approx(np.full(within.size, within[:1]), rel=1e-13)
+
+
+@pytest.mark.parametrize("motion", [PULSE, Record(dt=0.1, samples=3.0 * np.sin(np.arange(25.0)))])
+def test_a_heavy_cart_gives_the_block_back(motion):
+    """The cart's part is 1e-11: kappa = 25 and as much from eta make 1e-9 of the peak."""
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=1e-11)
+    block = RigidBlock(width=0.5, height=1.5)
+    times = np.linspace(0.0, 3.0, 31)
+    ours, its = (simulate(b, motion, times=times, duration=3.0) for b in (cart, block))
+    assert ours.outcome is its.outcome
+    assert ours.peak_ratio == pytest.approx(its.peak_ratio, rel=1e-8)
+    assert ours.uplifts == pytest.approx(its.uplifts, rel=1e-9)
+    assert ours.history.theta == pytest.approx(its.history.theta, abs=1e-9)
+    assert ours.history.base[0] == pytest.approx(motion.displacement(times), abs=1e-9)
+    short = min(len(ours.impacts), len(its.impacts), 8)
+    assert np.array(ours.impacts[:short]) == pytest.approx(np.array(its.impacts[:short]), abs=1e-8)
+
+
+def test_rest_and_uplift_again():
+    """A block released at a hair's tilt comes to rest; the second pulse of the record lifts it."""
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=0.3, stiffness=5.0)
+    samples = np.zeros(80)
+    samples[60:70] = 4.5
+    record = Record(dt=0.05, samples=samples)
+    response = simulate(cart, record, start=(1e-4, 0.0), duration=record.duration)
+    assert len(response.rests) >= 1
+    assert response.rests[0] < 2.95 <= response.uplifts[0] <= 3.0
+    still = simulate(cart, SinePulse(amplitude=1.0, omega=6.0))
+    assert (still.outcome, still.peak_ratio) == (Outcome.AT_REST, 0.0)
+
+
+def test_free_peak_is_that_of_the_energy():
+    """Released at rest: after an impact 1/2 (1 - kappa cos^2) v^2 eta^2 lifts it, to rounding."""
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=0.5)
+    block, theta = cart.block, 0.6 * cart.alpha
+    response = simulate(cart, Still(), start=(theta, 0.0), duration=2.0, times=[0.0, 0.1])
+    assert response.peak_ratio == pytest.approx(0.6, rel=1e-14)
+    lost = math.cos(block.alpha - theta) - math.cos(block.alpha)
+    pull = 1.0 - 0.375 * math.cos(block.alpha) ** 2
+    rate = block.p * math.sqrt(2.0 * lost / pull)
+    assert abs(response.impacts[0].velocity_before) == pytest.approx(rate, rel=1e-13)
+    assert response.impacts[0].ratio == pytest.approx(cart.restitution, rel=1e-14)
+
+
+def test_a_spring_that_never_lets_it_rest_is_said_so():
+    """An undamped cart of 1e6 times the block's mass loses nothing that counts."""
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=1e-6, stiffness=400.0)
+    pulse = SinePulse(amplitude=8.0, omega=20.0, half_cycles=2)
+    undecided = simulate(cart, pulse)
+    assert (undecided.outcome, undecided.reason) in (
+        (Outcome.FAILED, Reason.UNDECIDED),
+        (Outcome.OVERTURNED, None),
+    )
+    assert simulate(cart, pulse, duration=1.0).outcome is Outcome.ROCKED
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"mass_ratio": 0.0}, "mass_ratio is 0.0; it must be between 0 and 1"),
+        ({"mass_ratio": 1.0}, "mass_ratio is 1.0"),
+        ({"stiffness": -1.0}, "stiffness is -1.0; it must not be negative"),
+        ({"width": math.inf}, "width is inf"),
+    ],
+)
+def test_bad_numbers_are_refused_in_one_line(wrong, named):
+    with pytest.raises(ValueError, match=named) as raised:
+        CartBlock(**{"width": 0.5, "height": 1.5, "mass_ratio": 0.3, **wrong})
+    assert "\n" not in str(raised.value)
+
+
+def test_linear_models_are_refused():
+    with pytest.raises(ValueError, match="a CartBlock has only 'exact'"):
+        simulate(CartBlock(width=0.5, height=1.5, mass_ratio=0.3), PULSE, "housner")
