@@ -4,10 +4,12 @@ import math
 from collections.abc import Mapping
 
 from analytic.frame import RockingFrame
+from analytic.frame_forces import frame_demands
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.kit.journal import Row
+from studies.kit.posing import Posed
 from studies.measures.differences import scientific
 
 Columns = dict[str, list[object]]
@@ -53,7 +55,7 @@ def columns_of(system: System, rows: list[Row], scale: float, degrees: bool) -> 
     }
 
 
-def meanings(system: System, exact: Response) -> list[str]:
+def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
     """Return what the columns mean, and what the exact solution needs, a line each."""
     if isinstance(system, SlidingBlock):
         return ["vs      largest difference of a slip, over the largest slip"]
@@ -63,12 +65,29 @@ def meanings(system: System, exact: Response) -> list[str]:
             "late    largest error of the first five impact times, times p",
             f"ratio   velocity after over before an impact, the median; the exact {eta}",
             "parting largest difference of two columns' rotations; beam: its largest rotation",
+            f"valid   {frame_validity(system, posed, exact)}",
         ]
     return [
         "late    largest error of the first five impact times, times p",
         f"ratio   velocity after over before an impact, the median; Housner's {eta}",
         f"valid   {validity(exact)}",
     ]
+
+
+def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
+    """Say what the exact solution of a frame needs of its contacts, or what fails in it."""
+    if exact.outcome is Outcome.FAILED:
+        return "unknown: there is no exact solution to tell"
+    spacing, depth = SPACING * frame.height, BEAM_DEPTH * frame.height
+    needs = frame_demands(frame, posed.motion, posed.start, spacing=spacing, depth=depth)
+    if needs.spacing >= spacing:
+        return f"not here: the beam would tip: L = {spacing:g} m, needs {needs.spacing:.3g}"
+    if needs.pressing <= 0.0:
+        return "not here: a contact would open, and an engine is right to differ"
+    return (
+        f"with friction of {needs.base:.3g} at the feet and {needs.top:.3g} under the beam, or "
+        f"more; every contact presses with {needs.pressing:.3g} of its weight at least"
+    )
 
 
 def slip_error(response: Response, exact: Response) -> float:

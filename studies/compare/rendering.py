@@ -91,7 +91,7 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            *meanings(block, rows[0]["exact"]),
+            *meanings(block, posed, rows[0]["exact"]),
             "",
             table.to_string(index=False),
             *notes,

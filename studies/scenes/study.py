@@ -16,6 +16,7 @@ from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.measures.presets import is_engine
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
 from studies.scenes.findings import frame_sentence, slide_sentence
@@ -174,14 +175,20 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv")
 
 
+def engines_in(folder: Path) -> list[pd.DataFrame]:
+    """Return the lines of both summaries that are of engines."""
+    tables = [read(folder, name) for name in TABLES]
+    return [table[table["source"].map(is_engine)] for table in tables]
+
+
 def headline(folder: Path) -> str:
     """Say what the frames show."""
-    return frame_sentence(read(folder, "frame-summary"))
+    return frame_sentence(engines_in(folder)[0])
 
 
 def paragraph(folder: Path) -> str:
     """Say what the frames and the slides show."""
-    frames, slides = (read(folder, name) for name in TABLES)
+    frames, slides = engines_in(folder)
     return f"{frame_sentence(frames)} {slide_sentence(slides)}"
 
 
@@ -189,5 +196,5 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
     """Draw the errors of frames and slides from their summaries alone."""
     from studies.scenes.figure import draw_frames, draw_slides
 
-    frames, slides = (read(folder, name) for name in TABLES)
+    frames, slides = engines_in(folder)
     return {"frame": draw_frames(frames), "slide": draw_slides(slides)}

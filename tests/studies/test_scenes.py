@@ -1,0 +1,137 @@
+"""Frames and slides: from the command line, from Python, and the study of both."""
+
+import json
+import math
+
+import pandas as pd
+import pytest
+
+from analytic import RockingFrame, SinePulse, SlidingBlock, simulate
+from analytic.response import Outcome
+from studies import respond, side_by_side
+from studies.__main__ import run
+from studies.kit.jobs import ask
+from studies.scenes.cases import frames, slides, steps
+from studies.scenes.study import read, reduce, tabulate
+
+FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
+PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
+SIZE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.5", "--omega", "9")
+OF_A_FRAME = ("--scene", "frame", "--columns", "2", "--load", "2")
+
+
+def compared(capsys, *options):
+    code = run(["compare", *SIZE, *options, "--json"])
+    return code, [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+
+def test_a_frame_is_compared(capsys):
+    code, (exact, found) = compared(capsys, *OF_A_FRAME, "--sources", "exact", "mujoco:fixed")
+    assert code == 0
+    assert exact["peak_ratio"] == pytest.approx(simulate(FRAME, PULSE).peak_ratio, rel=1e-12)
+    # where in a step an impact falls costs up to half a per cent
+    assert found["peak_ratio"] == pytest.approx(exact["peak_ratio"], rel=5e-3)
+    assert max(found["peak_1"], found["peak_2"]) == found["peak_ratio"]
+    assert found["parting"] < 1e-6
+    assert found["kappa"] == exact["kappa"] > 0.0
+
+
+def test_a_frame_in_words(capsys):
+    assert run(["compare", *SIZE, *OF_A_FRAME, "--sources", "exact", "mujoco", "newton"]) == 1
+    said = capsys.readouterr().out
+    assert said.startswith("frame   2 columns of B = 0.5 m, H = 1.5 m, load 2: ")
+    assert "valid   with friction of " in said
+    assert "newton: not available: Newton is not built here for several bodies" in said
+
+
+def test_a_beam_that_would_tip_is_named(capsys):
+    tall = ("--width", "3", "--height", "0.7", "--amplitude", "5", "--omega", "20")
+    run(["compare", *tall, "--scene", "frame", "--load", "1", "--sources", "exact"])
+    assert "not here: the beam would tip: L = 1.4 m, needs " in capsys.readouterr().out
+
+
+def test_a_slide_is_compared(capsys):
+    asked = ("--scene", "slide", "--friction", "0.2", "--sources", "exact", "pymunk")
+    code, (exact, found) = compared(capsys, *asked)
+    box = SlidingBlock(width=0.5, height=1.5, friction=0.2)
+    assert code == 0
+    assert exact["slips"] == list(simulate(box, PULSE).slips)
+    assert exact["outcome"] == found["outcome"] == "slid"
+    # a step of 1e-4 s gives up g mu dt^2 of a slip, where it starts and where it stops
+    assert found["slips"] == pytest.approx(exact["slips"], abs=1e-4)
+    assert found["message"] == "as pymunk:fixed"
+
+
+def test_from_python():
+    found = respond("mujoco", FRAME, PULSE)
+    assert found.peak_ratio == pytest.approx(simulate(FRAME, PULSE).peak_ratio, rel=2e-5)
+    table = side_by_side(FRAME, PULSE, ["exact", "mujoco"])
+    assert list(table["outcome"]) == ["rocked", "rocked"]
+    assert table["parting"].iloc[1] < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (("--scene", "frame"), "--load missing; a frame requires the mass of its beam"),
+        ((*OF_A_FRAME[:2], "--load", "0"), "--load is '0'; it must be a positive finite number"),
+        ((*OF_A_FRAME[:2], "--load", "-1"), "--load is '-1'; it must be a positive"),
+        ((*OF_A_FRAME[:2], "--load", "nan"), "--load is 'nan'; it must be a positive"),
+        (("--columns", "2"), "--columns is 2; it may be given only with --scene frame"),
+        (("--load", "2"), "--load is 2"),
+        ((*OF_A_FRAME[:2], "--load", "1", "--columns", "1"), "--columns is 1; it must be a whole"),
+        ((*OF_A_FRAME[:2], "--load", "1", "--columns", "2.5"), "--columns is '2.5'; it must be"),
+        (("--scene", "slide"), "--friction missing; a block that slides requires one below B/H"),
+        (("--scene", "slide", "--friction", "0.34"), "--friction is 0.34; it must be below"),
+        (("--scene", "slide", "--friction", "0"), "--friction is 0"),
+        (("--scene", "bridge"), "--scene is 'bridge'; it must be among block, frame, slide"),
+    ],
+)
+def test_bad_input_is_one_line(options, problem, capsys):
+    assert run(["compare", *SIZE, *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert problem in line
+
+
+def test_equal_steps_are_shifted_by_parts_of_a_step():
+    """The first impact falls a quarter of a step later in each: step (1 + k step / 4 t), t its
+    time."""
+    taken = [options["step"] for options in steps("pymunk:fixed", FRAME, PULSE, 4)]
+    impact = simulate(FRAME, PULSE).impacts[0].time * FRAME.p
+    places = [impact / step % 1.0 for step in taken]
+    shifts = [(places[0] - place) % 1.0 for place in places]
+    assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
+    assert list(steps("mujoco:landing", FRAME, PULSE, 4)) == list(steps("exact", FRAME, PULSE, 4))
+
+
+def test_rows_are_reduced_and_summarized():
+    sources = ["exact", "pymunk:fixed", "newton:fixed"]
+    jobs = [*frames(sources, True), *slides(sources, True)]
+    rows = [
+        {**job.labels, "source": job.source, **reduce(job, ask(job, job.asked))} for job in jobs
+    ]
+    tables = tabulate(rows)
+    frame = tables["frame-summary"].set_index("source")
+    assert list(frame.index) == ["exact", "pymunk:fixed"]
+    assert frame.loc["exact", "largest_error"] == 0.0
+    assert frame.loc["pymunk:fixed", "largest_error"] < 5e-3
+    assert (frame["wrong"] == 0).all()
+    slide = tables["slide-summary"].set_index("source")
+    assert slide.loc["exact", "largest_slip_error_m"] == 0.0
+    assert slide.loc["pymunk:fixed", "creep_m"] < 1e-9
+    held = [row for row in rows if str(row.get("case", "")).startswith("held")]
+    assert all(row["outcome"] in (Outcome.AT_REST.value, Outcome.FAILED.value) for row in held)
+
+
+def test_the_study_leaves_its_tables_and_goes_on(tmp_path, capsys):
+    asked = ["scenes", "--quick", "--out", str(tmp_path), "--sources", "exact", "mujoco:fixed"]
+    assert run(asked) == 0
+    first = capsys.readouterr()
+    assert "The peak of a rocking frame is off" in first.out
+    lines = read(tmp_path, "frame-summary")
+    assert list(lines["source"]) == ["exact", "mujoco:fixed"]
+    assert (tmp_path / "frame.png").stat().st_size > 10_000
+    before = pd.read_csv(tmp_path / "frame.csv")
+    assert run(asked) == 0
+    assert pd.read_csv(tmp_path / "frame.csv").equals(before)
+    assert not math.isnan(lines["largest_error"].max())
