@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from analytic.accelerograms.text import lines_of, number, shown
 from analytic.block import RigidBlock
-from studies.cases.accelerograms.text import lines_of, number, shown
 from studies.cases.refusal import BadInputError
 
 COLUMNS = ("name", "width", "height", "friction", "tilt")

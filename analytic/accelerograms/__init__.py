@@ -1,0 +1,35 @@
+"""Recorded accelerograms: PEER's AT2 files, ESM's ASC files, tables of time and acceleration.
+
+A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from analytic.accelerograms import asc, at2, foreign, table
+from analytic.accelerograms.text import lines_of
+from analytic.accelerograms.units import Sampled
+
+OTHER_SUFFIXES = (".vt2", ".dt2")
+"""Of PEER's files of velocity and of displacement."""
+
+
+def read(path: Path, units: str | None) -> Sampled:
+    """Read a file; `analytic.Record.read` says which.
+
+    Raises
+    ------
+    ValueError
+        As there, without the name of the file.
+    """
+    if path.suffix.lower() in OTHER_SUFFIXES:
+        raise ValueError("it must be a file of acceleration, as AT2 files are")
+    return _read(lines_of(path), units)
+
+
+def _read(lines: Sequence[str], units: str | None) -> Sampled:
+    for reader in (asc.read, at2.read):
+        if sampled := reader(lines, units):
+            return sampled
+    foreign.refuse(lines)
+    return table.read(lines, units)
