@@ -73,6 +73,7 @@ def side_by_side(
     duration: float | None = None,
     friction: float | None = None,
     dt: float | None = None,
+    estimate: bool = False,
 ) -> pd.DataFrame:
     """Ask several sources for the response of a block to the same motion of its base.
 
@@ -89,6 +90,9 @@ def side_by_side(
         not slide: where it is less than the exact solution needs, the message of its row says so.
     dt : float, optional
         Step [s] of the solvers, and of engines whose preset takes equal steps.
+    estimate : bool, optional
+        Whether every engine is also run at half its step, for an estimate of its error and what
+        that bounds.
 
     Returns
     -------
@@ -109,6 +113,8 @@ def side_by_side(
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
     yours = Yours(friction=friction, dt=dt)
     try:
-        return frame(block, motion, sources, start=start, duration=duration, yours=yours)
+        return frame(
+            block, motion, sources, start=start, duration=duration, yours=yours, estimate=estimate
+        )
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None

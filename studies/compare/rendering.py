@@ -77,6 +77,8 @@ def table_text(
             "outcome": [row["outcome"] for row in rows],
             "θmax [°]" if degrees else "θmax/θcr": [_peak(row, scale) for row in rows],
             "vs exact": [_difference(row) for row in rows],
+            "κ": [_figures(row["kappa"]) for row in rows],
+            "sensitivity": [_figures(row["sensitivity"]) for row in rows],
             **_estimates(rows),
             "impacts": [row["impacts"] for row in rows],
             "late·p": [_part(row["impact_error"]) for row in rows],
@@ -95,6 +97,8 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
+            "κ       per cent of the exact peak for one of the amplitude; sensitivity: the same "
+            "for 1e-4 and 1e-6 of it",
             "late    largest error of the first five impact times, times p",
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
@@ -189,6 +193,10 @@ def _difference(row: Row) -> str:
 
 def _fixed(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.6f}"
+
+
+def _figures(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.3g}"
 
 
 def _part(value: float) -> str:

@@ -104,8 +104,9 @@ def command(
         estimate=estimate,
         executor=computing.executor(),
     )
+    rows = conditioned(rows, block, posed)
     if json:
-        print(json_lines(conditioned(rows, block, posed), note))
+        print(json_lines(rows, note))
     else:
         edge = hanging(block, posed, window, rows[0]["exact"])
         print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
@@ -213,11 +214,12 @@ def frame(
     start: tuple[float, float],
     duration: float | None,
     yours: Yours,
+    estimate: bool = False,
 ) -> pd.DataFrame:
     """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`."""
     window, posed = _window(block, motion, duration), Posed(motion, start)
     refuse_endless(block, window, duration=duration, dt=yours.dt)
-    rows = compare(block, posed, sources, window, executor=_here, yours=yours)
+    rows = compare(block, posed, sources, window, executor=_here, yours=yours, estimate=estimate)
     return pd.DataFrame(records(conditioned(rows, block, posed)))
 
 
