@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
     from analytic.block import RigidBlock
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
 
-__all__ = ["respond", "side_by_side"]
+__all__ = ["plot", "respond", "side_by_side", "table"]
 
 
 def respond(
@@ -118,3 +119,59 @@ def side_by_side(
         )
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
+
+
+def table(response: Response) -> pd.DataFrame:
+    """Return the history of a response as a table.
+
+    Parameters
+    ----------
+    response : Response
+        That was asked for with `times`.
+
+    Returns
+    -------
+    DataFrame
+        time_s [s], theta_rad [rad] and velocity_rad_s [rad/s], a row for each time until the
+        response ends.
+
+    Raises
+    ------
+    ValueError
+        If it has no history.
+    """
+    import pandas as pd
+
+    if response.history is None:
+        raise ValueError("the response has no history; ask for one with times=...")
+    history = response.history
+    columns = {
+        "time_s": history.time,
+        "theta_rad": history.theta,
+        "velocity_rad_s": history.velocity,
+    }
+    return pd.DataFrame(columns)
+
+
+def plot(response: Response, axes: Axes | None = None) -> Axes:
+    """Draw the rotation of a response over time, with ticks at its impacts.
+
+    Parameters
+    ----------
+    response : Response
+        That was asked for with `times`.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; a figure of its own by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If it has no history.
+    """
+    from studies.drawing.response import draw_response
+
+    return draw_response(response, axes)

@@ -6,7 +6,10 @@ A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
 from collections.abc import Sequence
 from pathlib import Path
 
-from analytic.accelerograms import asc, at2, foreign, table
+from analytic.accelerograms.asc import read as read_asc
+from analytic.accelerograms.at2 import read as read_at2
+from analytic.accelerograms.foreign import refuse
+from analytic.accelerograms.table import read as read_table
 from analytic.accelerograms.text import lines_of
 from analytic.accelerograms.units import Sampled
 
@@ -28,8 +31,8 @@ def read(path: Path, units: str | None) -> Sampled:
 
 
 def _read(lines: Sequence[str], units: str | None) -> Sampled:
-    for reader in (asc.read, at2.read):
+    for reader in (read_asc, read_at2):
         if sampled := reader(lines, units):
             return sampled
-    foreign.refuse(lines)
-    return table.read(lines, units)
+    refuse(lines)
+    return read_table(lines, units)
