@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.accelerograms import read
-from analytic.accelerograms.units import UNITS
 from analytic.checks import finite, finite_result, measurable, positive
 from analytic.motion import FloatArray
 
@@ -80,8 +79,6 @@ class Record:
             else in it leaves a doubt.
         """
         try:
-            if units is not None and units not in UNITS:
-                raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")
             dt, samples = read(Path(path), units)
             return cls(dt=dt, samples=samples)
         except ValueError as problem:

@@ -11,7 +11,7 @@ from analytic.accelerograms.at2 import read as read_at2
 from analytic.accelerograms.foreign import refuse
 from analytic.accelerograms.table import read as read_table
 from analytic.accelerograms.text import lines_of
-from analytic.accelerograms.units import Sampled
+from analytic.accelerograms.units import UNITS, Sampled
 
 OTHER_SUFFIXES = (".vt2", ".dt2")
 """Of PEER's files of velocity and of displacement."""
@@ -25,6 +25,8 @@ def read(path: Path, units: str | None) -> Sampled:
     ValueError
         As there, without the name of the file.
     """
+    if units is not None and units not in UNITS:
+        raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")
     if path.suffix.lower() in OTHER_SUFFIXES:
         raise ValueError("it must be a file of acceleration, as AT2 files are")
     return _read(lines_of(path), units)
