@@ -71,6 +71,7 @@ def table_text(
     Those are the messages of its rows, and what an answer near the edge hangs on.
     """
     motion, scale = posed.motion, math.degrees(block.alpha) if degrees else 1.0
+    slips = [_part(row["response"].slip_m / block.width) for row in rows]
     table = pd.DataFrame(
         {
             "source": [row["source"] for row in rows],
@@ -78,12 +79,12 @@ def table_text(
             "θmax [°]" if degrees else "θmax/θcr": [_peak(row, scale) for row in rows],
             "vs exact": [_difference(row) for row in rows],
             "κ": [_figures(row["kappa"]) for row in rows],
-            "sensitivity": [_figures(row["sensitivity"]) for row in rows],
+            "sens": [_figures(row["sensitivity"]) for row in rows],
             **_estimates(rows),
             "impacts": [row["impacts"] for row in rows],
             "late·p": [_part(row["impact_error"]) for row in rows],
             "ratio": [_fixed(row["velocity_ratio"]) for row in rows],
-            "slip/B": [_part(row["response"].slip_m / block.width) for row in rows],
+            **({"slip/B": slips} if any(slip != "-" for slip in slips) else {}),
             "steps": [row["steps"] for row in rows],
             "time": [_duration(row["wall_s"]) for row in rows],
         }
@@ -97,8 +98,7 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            "κ       per cent of the exact peak for one of the amplitude; sensitivity: the same "
-            "for 1e-4 and 1e-6 of it",
+            "κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",
             "late    largest error of the first five impact times, times p",
             f"ratio   velocity after over before an impact, the median; Housner's η = "
             f"{block.restitution:.6g}",
@@ -196,7 +196,7 @@ def _fixed(value: float) -> str:
 
 
 def _figures(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.3g}"
+    return "-" if math.isnan(value) else f"{value:.2g}"
 
 
 def _part(value: float) -> str:
