@@ -34,6 +34,7 @@ from studies.kit.options import (
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.slips import note_unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources
@@ -112,6 +113,7 @@ def command(
         print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
     if plot:
         draw(rows, block, motion, plot)
+    note_unusual(width, height, excitation, motion)
     return exit_code(rows)
 
 
