@@ -1,11 +1,13 @@
 """A ground motion known by equally spaced samples, and straight between them."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analytic.accelerograms import read
 from analytic.checks import finite, finite_result, measurable, positive
 from analytic.motion import FloatArray
 
@@ -54,6 +56,33 @@ class Record:
         finite_result("the slope between samples", 2.0 * most / self.dt, cause)
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
+
+    @classmethod
+    def read(cls, path: str | Path, units: str | None = None) -> "Record":
+        """Read a recorded ground acceleration.
+
+        Parameters
+        ----------
+        path : str or Path
+            A PEER AT2 file, known by a header that says NPTS and DT; an ASC file of ESM or ITACA;
+            or a table of two columns, time [s] and acceleration, separated by commas, semicolons or
+            blanks, with or without a line of names, comments beginning with # or %. The first time
+            becomes zero.
+        units : {"g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"}, optional
+            Needed where the file does not state its own.
+
+        Raises
+        ------
+        ValueError
+            If the file cannot be read or is of another format, its units are not known, a number is
+            not finite, the count is not the stated one, steps are missing or not equal, or anything
+            else in it leaves a doubt.
+        """
+        try:
+            dt, samples = read(Path(path), units)
+            return cls(dt=dt, samples=samples)
+        except ValueError as problem:
+            raise ValueError(f"path is {str(path)!r}; {problem}") from problem
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Record):

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.showing import as_curve, as_table
+
 
 class Outcome(enum.Enum):
     """How a response ends."""
@@ -156,6 +158,21 @@ class Response:
     sink_m: float = float("nan")
     hop_m: float = float("nan")
     observables: Mapping[str, float] = field(default_factory=dict)
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: a small table, and the curve of a history."""
+        values = {
+            "outcome": f"{self.outcome.value}: {self.outcome.sentence}",
+            "largest θ/θcr": f"{self.peak_ratio:.6g}",
+            "impacts": f"{len(self.impacts)}",
+            "friction needed": f"{self.friction_needed:.4g}",
+            "steps": f"{self.steps} in {1e3 * self.wall_s:.3g} ms",
+            "message": self.message,
+        }
+        told = {name: value for name, value in values.items() if value not in ("", "nan")}
+        if self.history is None:
+            return as_table(told)
+        return as_table(told) + as_curve(self.history.time, self.history.theta, "θ over time")
 
     @classmethod
     def failure(

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
     from engines.layouts import System
 
-__all__ = ["respond", "side_by_side"]
+__all__ = ["plot", "respond", "side_by_side", "table"]
 
 
 def respond(
@@ -74,6 +75,7 @@ def side_by_side(
     duration: float | None = None,
     friction: float | None = None,
     dt: float | None = None,
+    estimate: bool = False,
 ) -> pd.DataFrame:
     """Ask several sources for the response of a block to the same motion of its base.
 
@@ -90,6 +92,9 @@ def side_by_side(
         not slide: where it is less than the exact solution needs, the message of its row says so.
     dt : float, optional
         Step [s] of the solvers, and of engines whose preset takes equal steps.
+    estimate : bool, optional
+        Whether every engine is also run at half its step, for an estimate of its error and what
+        that bounds.
 
     Returns
     -------
@@ -110,6 +115,64 @@ def side_by_side(
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
     yours = Yours(friction=friction, dt=dt)
     try:
-        return frame(block, motion, sources, start=start, duration=duration, yours=yours)
+        return frame(
+            block, motion, sources, start=start, duration=duration, yours=yours, estimate=estimate
+        )
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
+
+
+def table(response: Response) -> pd.DataFrame:
+    """Return the history of a response as a table.
+
+    Parameters
+    ----------
+    response : Response
+        That was asked for with `times`.
+
+    Returns
+    -------
+    DataFrame
+        time_s [s], theta_rad [rad] and velocity_rad_s [rad/s], a row for each time until the
+        response ends.
+
+    Raises
+    ------
+    ValueError
+        If it has no history.
+    """
+    import pandas as pd
+
+    if response.history is None:
+        raise ValueError("the response has no history; ask for one with times=...")
+    history = response.history
+    columns = {
+        "time_s": history.time,
+        "theta_rad": history.theta,
+        "velocity_rad_s": history.velocity,
+    }
+    return pd.DataFrame(columns)
+
+
+def plot(response: Response, axes: Axes | None = None) -> Axes:
+    """Draw the rotation of a response over time, with ticks at its impacts.
+
+    Parameters
+    ----------
+    response : Response
+        That was asked for with `times`.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; a figure of its own by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If it has no history.
+    """
+    from studies.drawing.response import draw_response
+
+    return draw_response(response, axes)

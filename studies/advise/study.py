@@ -1,5 +1,6 @@
 """Advice from the published tables: which setting keeps an error, in the library's words."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
@@ -10,24 +11,28 @@ from cyclopts import Parameter
 from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
-from studies.advise.evidence import TABLES, aspects, published_engines, read_from
+from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
+from studies.advise.reverse import kept_errors, reverse_text
 from studies.advise.words import advice_text, claim, settings_text, told
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
+    NotNegative,
     Place,
     Positive,
+    as_bad_input,
     check_engines,
+    refuse_given,
     refuse_repeats,
-    several,
     several_or_none,
 )
 from studies.kit.digests import check
-from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
+from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
 
 if TYPE_CHECKING:
@@ -43,10 +48,12 @@ NOTE = (
 
 def command(
     *,
-    error: Annotated[tuple[Positive, ...], several] = TARGETS,
+    error: Annotated[tuple[Positive, ...] | None, several_or_none] = None,
     engines: Annotated[
         tuple[str, ...] | None, several_or_none, Parameter(name=("--engines", "--engine"))
     ] = None,
+    dt: Positive | None = None,
+    friction: NotNegative | None = None,
     width: Positive = 0.5,
     height: Positive = 1.5,
     published: Place | None = None,
@@ -63,9 +70,16 @@ def command(
     Parameters
     ----------
     error
-        Largest relative errors [-] of the peak rotation that are to be kept.
+        Largest relative errors [-] of the peak rotation that are to be kept; 0.1, 0.01, 0.001 and
+        0.0001 by default.
     engines
         Names of engines, without a preset; by default all in the published tables.
+    dt
+        Your step [s], instead of errors: which error each preset with equal steps keeps with it,
+        and its settings as formulas of the step DT, with their values.
+    friction
+        Coefficient of friction with which settings are written out; by default the preset's, with
+        which they were measured.
     width
         Full width B of the block [m] for which settings are written out.
     height
@@ -75,7 +89,11 @@ def command(
     out
         Folder for the advice as a table and a figure; none by default.
     """
-    refuse_repeats("--error", error)
+    targets = TARGETS if error is None else error
+    refuse_repeats("--error", targets)
+    if dt is not None:
+        refuse_given({"error": error and error[0], "out": out}, "only without --dt")
+        check_written(dt)
     tables = published or PUBLISHED
     block = posed_block(width, height)
     if missing := [name for name in TABLES if not (tables / name).is_file()]:
@@ -83,17 +101,21 @@ def command(
     check(tables, TABLES, "--published")
     asked = published_engines(tables) if engines is None else engines
     check_engines(asked)
-    lines = advice(tables, asked, error, block)
+    with as_bad_input():
+        if dt is not None:
+            print(_reverse(tables, asked, block, dt, friction))
+            return 0
+        lines = advice(tables, asked, targets, block)
+        text = _text(lines, block, tables, friction)
     if out is None:
-        print(_text(lines, block, tables))
+        print(text)
         return 0
-    settings = {"error": error, "engines": asked, "width": width, "height": height}
+    settings = {"error": targets, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
 
     def report(folder: Path) -> str:
         from studies.drawing.figures import save_all
 
-        text = _text(lines, block, tables)
         provenance.write_text(folder / "findings.txt", text + "\n")
         save_all(pictures(folder), folder)
         return text
@@ -101,12 +123,22 @@ def command(
     return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
 
-def _text(lines: pd.DataFrame, block: RigidBlock, published: Path) -> str:
+def _reverse(
+    published: Path, engines: Sequence[str], block: RigidBlock, dt: float, friction: float | None
+) -> str:
+    lines = kept_errors(published, engines, block, dt)
+    text = reverse_text(lines, block, dt, friction)
+    made = fill(f"From {LADDER}, made with {_versions(published)}.", 99)
+    return "\n\n".join(filter(None, (text, too_slippery(friction), made)))
+
+
+def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float | None) -> str:
     head = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s):"
     return "\n\n".join(
         [
             f"{head}\n{advice_text(lines)}\n{NOTE}{_beyond(block, published)}",
-            settings_text(lines, block) or "No setting to write out.",
+            settings_text(lines, block, friction) or "No setting to write out.",
+            *filter(None, [too_slippery(friction)]),
             fill(f"From {listed(read_from(published))}, made with {_versions(published)}.", 99),
         ]
     )

@@ -22,7 +22,13 @@ ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
 """Settings depend on no motion."""
 
 
-def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> str:
+def literal(
+    engine: Engine,
+    preset: Preset,
+    block: RigidBlock,
+    value: float,
+    friction: float | None = None,
+) -> str:
     """Return a preset's settings for a block in the library's words, a line each.
 
     Parameters
@@ -31,9 +37,16 @@ def literal(engine: Engine, preset: Preset, block: RigidBlock, value: float) -> 
     block : RigidBlock
     value : float
         p dt, or the preset's dial; nan for its own step.
+    friction : float, optional
+        By default the preset's.
+
+    Raises
+    ------
+    ValueError
+        If the engine does not take such a friction.
     """
     asked = options_at(preset, value)
-    scene = Scene(system=block, motion=ANY_PULSE, preset=preset.name, **asked)
+    scene = Scene(system=block, motion=ANY_PULSE, preset=preset.name, friction=friction, **asked)
     lines = [*_settings(engine, preset, scene), *_besides(preset)]
     return "\n".join(lines)
 
@@ -102,7 +115,7 @@ def off_text(line: "pd.Series[Any]") -> str:
     return f"{random}{extreme if line['extreme_cases'] else ''}"
 
 
-def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
+def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None = None) -> str:
     """Return the settings of the lines that found one, each once, in the libraries' words."""
     chosen = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
     parts = []
@@ -111,7 +124,7 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock) -> str:
         preset, value = engine.preset(str(line["preset"])), float(line["value"])
         here = "" if math.isnan(line["dt_s"]) else f", here {duration(float(line['dt_s']))}"
         head = f"{engine.title}, {preset.title}, {in_words(preset, value)}{here}"
-        parts.append(f"{head}\n{indent(literal(engine, preset, block, value), '  ')}")
+        parts.append(f"{head}\n{indent(literal(engine, preset, block, value, friction), '  ')}")
     return "\n\n".join(parts)
 
 

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from analytic.accelerograms.text import lines_of, number, shown
 from analytic.block import RigidBlock
-from studies.cases.accelerograms.text import lines_of, number, shown
 from studies.cases.refusal import BadInputError
+from studies.kit.posing import MOST_M
 
 COLUMNS = ("name", "width", "height", "friction", "tilt")
 NEEDED = COLUMNS[:3]
-LEAST_M, MOST_M = 1e-3, 100.0
-"""Sizes [m] of blocks of a list; a larger one was meant in millimetres."""
+LEAST_M = 1e-3
+"""Least size [m] of a block of a list."""
 SEPARATORS = (",", ";", "\t")
 SHOWN = 40
 """Bad values that a refusal names; it is one line."""

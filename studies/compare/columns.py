@@ -18,6 +18,9 @@ OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift 
 """Observable of a frame -> its column."""
 
 
+HOW_SURE = ("κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",)
+
+
 def first_line(system: System, degrees: bool) -> str:
     """Return the sizes of what stands on the base."""
     sizes = f"B = {system.width:g} m, H = {system.height:g} m"
@@ -30,7 +33,9 @@ def first_line(system: System, degrees: bool) -> str:
     return f"block   {sizes}: {numbers}"
 
 
-def columns_of(system: System, rows: list[Row], scale: float, degrees: bool) -> Columns:
+def columns_of(
+    system: System, rows: list[Row], scale: float, degrees: bool, estimates: Mapping[str, list[str]]
+) -> Columns:
     """Return the columns of a scene; rotations are in θcr times `scale`."""
     if isinstance(system, SlidingBlock):
         return {
@@ -41,13 +46,17 @@ def columns_of(system: System, rows: list[Row], scale: float, degrees: bool) -> 
         }
     peak = "θmax [°]" if degrees else "θmax/θcr"
     seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
+    slips = [part(row["response"].slip_m / system.width) for row in rows]
     return {
         peak: [_peak(row, scale) for row in rows],
         "vs exact": [_difference(row) for row in rows],
+        "κ": [_figures(row["kappa"]) for row in rows],
+        "sens": [_figures(row["sensitivity"]) for row in rows],
+        **estimates,
         "impacts": [row["impacts"] for row in rows],
         "late·p": [part(row["impact_error"]) for row in rows],
         "ratio": [fixed(row["velocity_ratio"]) for row in rows],
-        "slip/B": [part(row["response"].slip_m / system.width) for row in rows],
+        **({"slip/B": slips} if any(slip != "-" for slip in slips) else {}),
         **{
             column: [_observed(row["response"].observables, name) for row in rows]
             for name, column in seen.items()
@@ -62,12 +71,14 @@ def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
     eta = f"η = {system.restitution:.6g}"
     if isinstance(system, RockingFrame):
         return [
+            *HOW_SURE,
             "late    largest error of the first five impact times, times p",
             f"ratio   velocity after over before an impact, the median; the exact {eta}",
             "parting largest difference of two columns' rotations; beam: its largest rotation",
             f"valid   {frame_validity(system, posed, exact)}",
         ]
     return [
+        *HOW_SURE,
         "late    largest error of the first five impact times, times p",
         f"ratio   velocity after over before an impact, the median; Housner's {eta}",
         f"valid   {validity(exact)}",
@@ -110,6 +121,10 @@ def _stop(response: Response) -> str:
 
 def _observed(observables: Mapping[str, float], name: str) -> str:
     return part(observables.get(name, math.nan))
+
+
+def _figures(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.2g}"
 
 
 def _peak(row: Row, scale: float) -> str:

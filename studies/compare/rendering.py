@@ -78,8 +78,7 @@ def table_text(
         {
             "source": [row["source"] for row in rows],
             "outcome": [row["outcome"] for row in rows],
-            **columns_of(block, rows, scale, degrees),
-            **_estimates(rows),
+            **columns_of(block, rows, scale, degrees, _estimates(rows)),
             "steps": [row["steps"] for row in rows],
             "time": [duration(row["wall_s"]) for row in rows],
         }

@@ -36,6 +36,7 @@ from studies.kit.options import (
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.slips import note_unusual
 from studies.kit.standing import ONE_BLOCK, Standing
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import halved, with_estimates
@@ -108,13 +109,15 @@ def command(
         estimate=estimate,
         executor=computing.executor(),
     )
+    rows = conditioned(rows, block, posed)
     if json:
-        print(json_lines(conditioned(rows, block, posed), note))
+        print(json_lines(rows, note))
     else:
         edge = hanging(block, posed, window, rows[0]["exact"])
         print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
     if plot:
         draw(rows, block, motion, plot)
+    note_unusual(width, height, excitation, motion)
     return exit_code(rows)
 
 
@@ -219,11 +222,12 @@ def frame(
     start: tuple[float, float],
     duration: float | None,
     yours: Yours,
+    estimate: bool = False,
 ) -> pd.DataFrame:
     """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`."""
     window, posed = _window(block, motion, duration), Posed(motion, start)
     refuse_endless(block, window, duration=duration, dt=yours.dt)
-    rows = compare(block, posed, sources, window, executor=_here, yours=yours)
+    rows = compare(block, posed, sources, window, executor=_here, yours=yours, estimate=estimate)
     return pd.DataFrame(records(conditioned(rows, block, posed)))
 
 

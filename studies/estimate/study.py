@@ -15,7 +15,15 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
-from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
+from studies.kit.options import (
+    DEFAULT_RUNNING,
+    NOT_YOURS,
+    OWN_EFFORT,
+    EffortOptions,
+    Running,
+    Yours,
+    refuse_two_steps,
+)
 from studies.kit.plan import Plan, carry_out
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
@@ -33,6 +41,7 @@ def command(
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
     effort: EffortOptions = OWN_EFFORT,
+    yours: Yours = NOT_YOURS,
     running: Running = DEFAULT_RUNNING,
     yes: bool = False,
 ) -> int:
@@ -59,16 +68,23 @@ def command(
     everyone = ("exact", *3 * sources)
     asked = f"--cases is {cases}, --tests {tests}"
     running.refuse_too_much(asked, cases + tests, everyone, yes=yes, effort=effort)
+    refuse_two_steps(effort.step, yours)
+    own = {name: value for name, value in asdict(yours).items() if value is not None}
     plan = Plan(
-        jobs=pairs(cases, tests, seed, sources, effort),
-        settings={"seed": seed, "tests": tests, **asdict(effort)},
+        jobs=pairs(cases, tests, seed, sources, effort, yours),
+        settings={"seed": seed, "tests": tests, **asdict(effort), **own},
         growing={"case": range(max(cases, tests)), "source": sources},
     )
     return carry_out(STUDY, plan, out, running, report)
 
 
 def pairs(
-    cases: int, tests: int, seed: int, sources: tuple[str, ...], effort: Effort = OWN_EFFORT
+    cases: int,
+    tests: int,
+    seed: int,
+    sources: tuple[str, ...],
+    effort: Effort = OWN_EFFORT,
+    yours: Yours = NOT_YOURS,
 ) -> list[Job]:
     """Return two jobs for each case and source, the second at half the step.
 
@@ -79,6 +95,7 @@ def pairs(
     """
     jobs = []
     for use, case in both_sets(cases, tests, seed):
+        own = yours.options(sources, case.block)
         for source in sources:
             labels = {"set": use, **asdict(case), "half": 0}
             job = Job(
@@ -86,7 +103,7 @@ def pairs(
                 block=case.block,
                 motion=case.motion,
                 source=source,
-                options=effort.options(source),
+                options={**effort.options(source), **own[source]},
             )
             finer = halved(job)
             if finer is None:

@@ -24,6 +24,7 @@ from studies.sources.registry import Source
 
 FOUND_BY_NAME: frozenset[Name] = frozenset(
     {
+        ("analytic.accelerograms", "read"),
         ("engines.registry", "ENGINES"),
         ("engines.registry", "find"),
         ("studies.sources.registry", "SOURCES"),
@@ -31,7 +32,7 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
         ("studies.sources.registry", "resolve"),
     }
 )
-"""Where sources and engines are looked up: the one that a row asks is a part of it, by itself."""
+"""Where sources, engines and records are looked up: what a row asks is a part of it, by itself."""
 
 ASIDE = frozenset({"core", "factors", "install", "own_step", "rules", "script", "title"})
 """What an engine declares for readers, and for what is no row of a journal."""

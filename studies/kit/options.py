@@ -194,6 +194,16 @@ NOT_YOURS = Yours()
 """Nothing of one's own."""
 
 
+SHORTEST_S, LONGEST_S = 1e-6, 1.0
+"""Steps [s] for which settings are written out."""
+
+
+def check_written(dt: float | None) -> None:
+    """Raise BadInputError if a step [s] is none for which settings are written out."""
+    if dt is not None and not SHORTEST_S <= dt <= LONGEST_S:
+        raise BadInputError(f"--dt is {dt:g}; it must be from {SHORTEST_S:g} to {LONGEST_S:g} s")
+
+
 def refuse_two_steps(step: float | None, yours: Yours) -> None:
     """Raise BadInputError if a step is given both in units of 1/p and in seconds."""
     if None not in (step, yours.dt):

@@ -29,9 +29,15 @@ from studies.kit.arguments import (
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
 OF_A_RECORD = ("units", "scale", "pga", "baseline")
 
+MOST_M = 200.0
+"""Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""
+
 MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
 solver minutes and an engine hours."""
+
+MOST_DEGREES = 90.0
+"""Tilt beyond which it was not meant in degrees either."""
 
 Pulse = Literal["half-sine", "full-sine"]
 
@@ -155,7 +161,7 @@ class Excitation:
             unit = "°, where" if self.degrees else "α, where"
             raise BadInputError(
                 f"--tilt is {self.tilt:g}; it must lie between -{side:.6g} and {side:.6g} {unit} "
-                "the side of the block lies on the ground"
+                f"the side of the block lies on the ground{self._meant_degrees()}"
             )
         if not math.isfinite(rate * rate):
             raise BadInputError(f"--rate is {self.rate:g}; it must be less, its energy overflows")
@@ -165,6 +171,12 @@ class Excitation:
                 "balances"
             )
         return theta, rate
+
+    def _meant_degrees(self) -> str:
+        tilt = self.tilt or 0.0
+        if self.degrees or abs(tilt) >= MOST_DEGREES:
+            return ""
+        return f"; {tilt:g}°? --tilt {tilt:g} --degrees"
 
     def _angle(self, value: float, unit: float) -> float:
         return math.radians(value) if self.degrees else value * unit
@@ -217,7 +229,17 @@ def refuse_endless(
 
 
 def posed_block(width: float, height: float) -> RigidBlock:
-    """Return the block of --width and --height."""
+    """Return the block of --width and --height.
+
+    Raises
+    ------
+    BadInputError
+        If one is not allowed; one that was meant in millimetres is asked about.
+    """
+    for name, size in (("width", width), ("height", height)):
+        if size > MOST_M:
+            meant = f"{size:g} m? In metres: --{name} {1e-3 * size:g} for {size:g} mm"
+            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g} m; {meant}")
     with as_bad_input():
         return RigidBlock(width=width, height=height)
 

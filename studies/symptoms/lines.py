@@ -37,7 +37,12 @@ HELPS = 0.5
 p dt of all and at the library's own step."""
 
 
-def lines_of(published: Path, engines: Sequence[str], dt_s: float | None = None) -> pd.DataFrame:
+def lines_of(
+    published: Path,
+    engines: Sequence[str],
+    dt_s: float | None = None,
+    friction: float | None = None,
+) -> pd.DataFrame:
     """Return a line for each symptom and engine of the published tables.
 
     Parameters
@@ -47,6 +52,8 @@ def lines_of(published: Path, engines: Sequence[str], dt_s: float | None = None)
     engines : sequence of str
     dt_s : float, optional
         Step [s] for which settings are written out; by default the library's own.
+    friction : float, optional
+        With which they are written out; by default the library's own.
 
     Returns
     -------
@@ -65,7 +72,7 @@ def lines_of(published: Path, engines: Sequence[str], dt_s: float | None = None)
         if len(mine):
             dt = dt_s or own_step_s(engine)
             at_own = own[own["engine"] == engine]
-            rows += [_measured(mine, at_own, engine, symptom, dt) for symptom in SYMPTOMS]
+            rows += [_measured(mine, at_own, engine, symptom, dt, friction) for symptom in SYMPTOMS]
             rows += [*_unmoved(mine, engine), *_hull(mine, engine), *_stepped(ladder, engine)]
             rows += _bouncing(bounces, engine, dt)
     order = [*(symptom.name for symptom in SYMPTOMS), *THREADS]
@@ -94,7 +101,12 @@ def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
 
 
 def _measured(
-    mine: pd.DataFrame, own: pd.DataFrame, engine: str, symptom: Symptom, dt_s: float
+    mine: pd.DataFrame,
+    own: pd.DataFrame,
+    engine: str,
+    symptom: Symptom,
+    dt_s: float,
+    friction: float | None,
 ) -> Row:
     """Return what a symptom measures by default, and the one setting that helps most."""
     column = symptom.column
@@ -108,7 +120,7 @@ def _measured(
         return _row(symptom.name, engine, column, **values)
     best = mends.iloc[int(mends[column].abs().argmin())]
     factor, level = str(best["factor"]), str(best["level"])
-    changes = partial(patch, engine, factor, level)
+    changes = partial(patch, engine, factor, level, friction=friction)
     return _row(
         symptom.name,
         engine,

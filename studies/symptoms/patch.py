@@ -30,7 +30,9 @@ def own_step_s(engine: str) -> float:
     return ENGINES[engine].preset(DEFAULT).ordinary_step_s(_scene({}))
 
 
-def patch(engine: str, factor: str, level: str, dt_s: float) -> str:
+def patch(
+    engine: str, factor: str, level: str, dt_s: float, *, friction: float | None = None
+) -> str:
     """Return what a variant of the defaults changes in the script that `rocking export` writes.
 
     Parameters
@@ -38,6 +40,8 @@ def patch(engine: str, factor: str, level: str, dt_s: float) -> str:
     engine, factor, level : str
     dt_s : float
         Step of the script [s].
+    friction : float, optional
+        By default the library's own.
 
     Returns
     -------
@@ -54,7 +58,7 @@ def patch(engine: str, factor: str, level: str, dt_s: float) -> str:
         if (v.preset, v.factor, v.level) == (DEFAULT, factor, level)
     )
     usual = ENGINES[engine].preset(DEFAULT).settings
-    scenes = (_scene({}), _scene(settings))
+    scenes = (_scene({}, friction), _scene(settings, friction))
     before, after = (_files(script(each, each.choose(usual), dt_s)) for each in scenes)
     return "\n".join(line for name in after for line in _places(name, before[name], after[name]))
 
@@ -67,9 +71,9 @@ def named(changes: str) -> str:
     return ", ".join(word for word in come if word not in gone)
 
 
-def _scene(settings: Mapping[str, Any]) -> Scene:
+def _scene(settings: Mapping[str, Any], friction: float | None = None) -> Scene:
     motion = SinePulse(amplitude=1.0, omega=1.0)
-    return Scene(system=BLOCK, motion=motion, preset=DEFAULT, settings=settings)
+    return Scene(system=BLOCK, motion=motion, preset=DEFAULT, settings=settings, friction=friction)
 
 
 def _files(script: Script) -> dict[str, list[str]]:

@@ -7,11 +7,20 @@ import pandas as pd
 
 from engines import ENGINES
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, Positive, check_engines, several_or_none
+from studies.kit.arguments import (
+    BadInputError,
+    NotNegative,
+    Place,
+    Positive,
+    as_bad_input,
+    check_engines,
+    several_or_none,
+)
 from studies.kit.digests import check
-from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.measures.published import PUBLISHED
+from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
 from studies.symptoms import STUDY
 from studies.symptoms.lines import TABLES, VARIANTS, lines_of
@@ -20,15 +29,13 @@ from studies.symptoms.words import first_claim, page, told
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHORTEST_S, LONGEST_S = 1e-6, 1.0
-"""Steps [s] for which settings are written out."""
-
 
 def command(
     *,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
     published: Place | None = None,
     dt: Positive | None = None,
+    friction: NotNegative | None = None,
     out: Place | None = None,
 ) -> int:
     """Say what users see, what it measures by default, and which setting leaves how much of it.
@@ -46,12 +53,13 @@ def command(
         Folder of the published tables; by default those that come with this project.
     dt
         Your step [s], for which settings are written out; by default the library's own.
+    friction
+        Coefficient of friction with which settings are written out; by default the library's own,
+        with which they were measured.
     out
         Folder for a table and a figure; none by default.
     """
-    if dt is not None and not SHORTEST_S <= dt <= LONGEST_S:
-        allowed = f"from {SHORTEST_S:g} to {LONGEST_S:g} s"
-        raise BadInputError(f"--dt is {dt:g}; it must be {allowed}")
+    check_written(dt)
     tables = published or PUBLISHED
     for name in TABLES:
         if not (tables / name).is_file():
@@ -59,15 +67,19 @@ def command(
     check(tables, TABLES, "--published")
     asked = tuple(ENGINES) if engines is None else engines
     check_engines(asked)
-    lines = lines_of(tables, asked, dt)
+    with as_bad_input():
+        lines = lines_of(tables, asked, dt, friction)
     if lines.empty:
         problem = f"it must name one in {VARIANTS}"
         raise BadInputError(f"--engines is {' '.join(asked)!r}; {problem}")
-    text = f"{page(lines)}\n\nFrom {listed(TABLES)}."
+    parts = (page(lines), too_slippery(friction), f"From {listed(TABLES)}.")
+    text = "\n\n".join(filter(None, parts))
     if out is None:
         print(text)
         return 0
     settings = {"engines": list(lines["engine"].unique()), "dt": dt}
+    if friction is not None:
+        settings["friction"] = friction
     plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
     def report(folder: Path) -> str:

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_accelerogram_forms import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
+from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
 from studies.__main__ import run
 from studies.cases.accelerograms import read_record
-from studies.cases.accelerograms.text import MOST_BYTES, MOST_SAMPLES
 from studies.cases.refusal import BadInputError
 
 ROOT = Path(__file__).parents[2]
@@ -257,7 +257,7 @@ def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
 @pytest.mark.parametrize("form", ["no count", "table"])
 def test_samples_are_counted_as_they_are_read(form, tmp_path, capsys, monkeypatch):
     for module in ("at2", "table"):
-        monkeypatch.setattr(f"studies.cases.accelerograms.{module}.MOST_SAMPLES", 6)
+        monkeypatch.setattr(f"analytic.accelerograms.{module}.MOST_SAMPLES", 6)
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])

@@ -151,7 +151,7 @@ def test_a_scale_that_overturns_in_a_sliver_counts_for_the_margin():
 
 
 BAD = [
-    (HEAD + "A,-1,1.5,,\n", "line 2: width is '-1'; it must be from 0.001 to 100 m"),
+    (HEAD + "A,-1,1.5,,\n", "line 2: width is '-1'; it must be from 0.001 to 200 m"),
     (HEAD + "A,500,1500,,\n", "line 2: width is '500'; .* (0.5 for 500 mm?)"),
     (HEAD + "A,0.5,nan,,\n", "line 2: height is 'nan'"),
     (HEAD + 'A,"0,5",1.5,,\n', "line 2: width is '0,5'"),

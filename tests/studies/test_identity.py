@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from analytic import RigidBlock, SinePulse
+from analytic import Record, RigidBlock, SinePulse
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
@@ -115,6 +115,22 @@ EDITS = {
 def test_an_edit_makes_stale_what_runs_through_it(file, old, new, sources, copy):
     edit(copy, file, old, new)
     assert stale(summary, copy) == sources
+
+
+@pytest.mark.parametrize(
+    ("file", "part"),
+    [
+        ("accelerograms/at2.py", False),
+        ("accelerograms/units.py", False),
+        ("accelerograms/__init__.py", False),
+        ("record.py", True),
+    ],
+)
+def test_how_a_record_was_read_is_no_part_of_its_rows(file, part, copy):
+    """Its samples are: they are in the key of the job."""
+    asked = replace(job("exact"), motion=Record(dt=0.1, samples=[0.0, 1.0, 0.0]))
+    edit(copy, f"analytic/{file}", "return ", "return 1 + ")
+    assert (Makers(ask, summary, copy).of(asked) != Makers(ask, summary).of(asked)) == part
 
 
 def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):

@@ -187,3 +187,36 @@ def test_every_engine_takes_a_friction_and_a_step():
     assert set(table["outcome"]) <= {"rocked", "overturned"}
     steps = table["steps"] * 0.001
     assert steps.between(0.9 * PULSE.duration, 1.2 * PULSE.duration).all()
+
+
+def columns_of(text):
+    """Return the cells of a comparison's table by source and column; no cell has a blank in it."""
+    lines = text.splitlines()
+    head = next(number for number, line in enumerate(lines) if line.split()[:1] == ["source"])
+    names = lines[head].replace("vs exact", "vs-exact").replace("bound 95 %", "bound").split()
+    rows = (re.sub("(?<=[0-9]) (?=ms|µs)", "", line).split() for line in lines[head + 1 :])
+    return {row[0]: dict(zip(names, row, strict=True)) for row in rows if len(row) == len(names)}
+
+
+def test_the_table_has_kappa_and_the_sensitivity_and_estimates_where_asked_for(capsys):
+    asked = ["--sources", "exact", "mujoco:fixed", "--estimate"]
+    _, rows = compared(capsys, *asked)
+    assert run(["compare", *CASE, *asked]) == 0
+    table = columns_of(capsys.readouterr().out)
+    for source, row in rows.items():
+        assert table[source]["κ"] == f"{row['kappa']:.2g}"
+        assert table[source]["sens"] == f"{row['sensitivity']:.2g}"
+    assert table["exact"]["estimate"] == "-" == table["exact"]["bound"]
+    engine = rows["mujoco:fixed"]
+    assert float(table["mujoco:fixed"]["estimate"]) == pytest.approx(engine["estimate"], rel=0.05)
+    told = side_by_side(BLOCK, PULSE, ["exact", "mujoco:fixed"], estimate=True)
+    found = told.set_index("source").loc["mujoco:fixed"]
+    assert [found["estimate"], found["bound"]] == [engine["estimate"], engine["bound"]]
+    assert engine["bound"] >= engine["estimate"] > 0.0
+
+
+def test_what_has_no_kappa_says_so(capsys):
+    strong = ["--amplitude", "2", "--omega", "3", "--sources", "exact"]
+    assert run(["compare", *CASE[:4], *strong]) == 0
+    row = columns_of(capsys.readouterr().out)["exact"]
+    assert (row["outcome"], row["κ"], row["sens"]) == ("overturned", "-", "0")

@@ -1,7 +1,4 @@
-"""Recorded accelerograms: PEER's AT2 files, ESM's ASC files, tables of time and acceleration.
-
-A file that leaves a doubt is refused with one line: nothing is filled in, thinned or guessed.
-"""
+"""Recorded accelerograms as a command takes them: read, corrected, refused in one line."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,10 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from analytic.accelerograms.units import UNITS, Units
 from analytic.record import Record
-from studies.cases.accelerograms import asc, at2, foreign, table
-from studies.cases.accelerograms.text import lines_of
-from studies.cases.accelerograms.units import UNITS, Units
 from studies.cases.refusal import BadInputError
 
 __all__ = ["UNITS", "Baseline", "Units", "baseline_note", "corrected", "read_record", "recorded"]
@@ -20,24 +15,16 @@ __all__ = ["UNITS", "Baseline", "Units", "baseline_note", "corrected", "read_rec
 Baseline = Literal["none", "constant", "linear"]
 """How a record is corrected: not at all, or by what its samples lose."""
 
-
 DRIFT = 1e-6
 """Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
 
-OTHER_SUFFIXES = (".vt2", ".dt2")
-"""Of PEER's files of velocity and of displacement."""
-
 
 def read_record(path: Path, units: str | None = None, argument: str = "--record") -> Record:
-    """Read a recorded ground acceleration.
+    """Read a recorded ground acceleration, as `Record.read` does.
 
     Parameters
     ----------
     path : Path
-        A PEER AT2 file, known by a header that says NPTS and DT; an ASC file of ESM or ITACA; or a
-        table of two columns, time [s] and acceleration, separated by commas, semicolons or blanks,
-        with or without a line of names, comments beginning with # or %. The first time becomes
-        zero.
     units : str, optional
         One of UNITS; needed where the file does not state its own.
     argument : str, optional
@@ -46,24 +33,13 @@ def read_record(path: Path, units: str | None = None, argument: str = "--record"
     Raises
     ------
     BadInputError
-        If the file cannot be read or is of another format, its units are not known, a number is not
-        finite, the count is not the stated one, steps are missing or not equal, or anything else in
-        it leaves a doubt.
+        Where that raises ValueError.
     """
     try:
-        if path.suffix.lower() in OTHER_SUFFIXES:
-            raise ValueError("it must be a file of acceleration, as AT2 files are")
-        return _read(lines_of(path), units)
-    except ValueError as problem:
-        raise BadInputError(f"{argument} is {str(path)!r}; {problem}") from problem
-
-
-def _read(lines: Sequence[str], units: str | None) -> Record:
-    for read in (asc.read, at2.read):
-        if record := read(lines, units):
-            return record
-    foreign.refuse(lines)
-    return table.read(lines, units)
+        return Record.read(path, units)
+    except ValueError as error:
+        problem = str(error).removeprefix("path").replace("; units must", "; --units must")
+        raise BadInputError(f"{argument}{problem}") from error
 
 
 def corrected(record: Record, baseline: Baseline | None) -> Record:

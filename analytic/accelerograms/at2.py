@@ -4,9 +4,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from analytic.record import Record
-from studies.cases.accelerograms.text import MOST_SAMPLES, NUMBER, number, too_long
-from studies.cases.accelerograms.units import check_quantity, converted, numbered, unit_of
+from analytic.accelerograms.text import MOST_SAMPLES, NUMBER, number, too_long
+from analytic.accelerograms.units import Sampled, check_quantity, converted, numbered, unit_of
 
 LONGEST_HEADER = 100
 """Lines in which a header is looked for."""
@@ -43,7 +42,7 @@ class Header:
     steps: tuple[float, ...]
 
 
-def read(lines: Sequence[str], units: str | None) -> Record | None:
+def read(lines: Sequence[str], units: str | None) -> Sampled | None:
     """Read an AT2 file, or return None if the lines are not of one.
 
     Its header says the number of samples and their step, in any of the forms above. One that says
@@ -73,7 +72,7 @@ def read(lines: Sequence[str], units: str | None) -> Record | None:
         raise ValueError(
             f"it holds {len(samples)} samples; it must hold the {count:.0f} of its header"
         )
-    return Record(dt=dt, samples=converted(samples, unit))
+    return Sampled(dt, converted(samples, unit))
 
 
 def _header(lines: Sequence[str]) -> Header:

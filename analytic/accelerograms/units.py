@@ -6,9 +6,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from analytic.accelerograms.text import shown
 from analytic.block import GRAVITY
 from analytic.motion import FloatArray
-from studies.cases.accelerograms.text import shown
 
 Units = Literal["g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"]
 
@@ -43,6 +43,13 @@ QUANTITIES = {
     "displacement": re.compile(r"displ|\bdisp?(?![a-z])", re.IGNORECASE),
 }
 """Quantity -> how a header names it."""
+
+
+class Sampled(NamedTuple):
+    """What a file holds: time between samples [s], ground acceleration [m/s2]."""
+
+    dt: float
+    samples: FloatArray
 
 
 class Line(NamedTuple):
@@ -87,10 +94,10 @@ def unit_of(header: Sequence[Line], given: str | None) -> float:
         words = ", ".join(sorted(stated))
         raise ValueError(f"it names several units, {words}; it must state one")
     if given is None and not stated:
-        raise ValueError(f"it does not state its units; --units must: {', '.join(UNITS)}")
+        raise ValueError(f"it does not state its units; units must: {', '.join(UNITS)}")
     for unit in stated:
         if given is not None and UNITS[given] != UNITS[unit]:
-            raise ValueError(f"it states {unit}; --units must not be {given}")
+            raise ValueError(f"it states {unit}; units must not be {given}")
     return UNITS[next(iter(stated), given or "")]
 
 

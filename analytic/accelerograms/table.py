@@ -5,10 +5,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from analytic.record import Record
-from studies.cases.accelerograms.columns import read_header
-from studies.cases.accelerograms.text import MOST_SAMPLES, is_number, number, too_long
-from studies.cases.accelerograms.units import Line, converted
+from analytic.accelerograms.columns import read_header
+from analytic.accelerograms.text import MOST_SAMPLES, is_number, number, too_long
+from analytic.accelerograms.units import Line, Sampled, converted
 
 UNEVEN = 0.03
 """Part of a step by which a printed time may miss its place: what four decimals do to 256 Hz."""
@@ -22,7 +21,7 @@ class Sample(NamedTuple):
     acceleration: float
 
 
-def read(lines: Sequence[str], units: str | None) -> Record:
+def read(lines: Sequence[str], units: str | None) -> Sampled:
     """Read a table of two columns, separated by commas, semicolons or blanks.
 
     Raises
@@ -43,7 +42,7 @@ def read(lines: Sequence[str], units: str | None) -> Record:
         _check_order(rows)
         _check_commas([lines[row.line - 1] for row in rows], separator)
     dt = _step([(row.line, header.second * row.time) for row in rows])
-    return Record(dt=dt, samples=converted([row.acceleration for row in rows], header.unit))
+    return Sampled(dt, converted([row.acceleration for row in rows], header.unit))
 
 
 def _is_remark(line: str) -> bool:

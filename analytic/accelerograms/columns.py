@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from studies.cases.accelerograms.text import shown
-from studies.cases.accelerograms.units import QUANTITIES, Line, check_quantity, is_unit, unit_of
+from analytic.accelerograms.text import shown
+from analytic.accelerograms.units import QUANTITIES, Line, check_quantity, is_unit, unit_of
 
 TIMES = {"t", "time", "times", "zeit", "temps", "tiempo", "tempo"}
 """Names of a column of times."""

@@ -4,9 +4,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from analytic.record import Record
-from studies.cases.accelerograms.text import MOST_SAMPLES, number, shown, too_long
-from studies.cases.accelerograms.units import Line, converted, unit_of
+from analytic.accelerograms.text import MOST_SAMPLES, number, shown, too_long
+from analytic.accelerograms.units import Line, Sampled, converted, unit_of
 
 STEP, COUNT, UNIT, TYPE = "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"
 """The keys that a record depends on; the others are about the event and the station."""
@@ -36,7 +35,7 @@ class Header:
     unit: float
 
 
-def read(lines: Sequence[str], units: str | None) -> Record | None:
+def read(lines: Sequence[str], units: str | None) -> Sampled | None:
     """Read an ASC file of ESM or ITACA, or return None if the lines are not of one.
 
     Raises
@@ -53,7 +52,7 @@ def read(lines: Sequence[str], units: str | None) -> Record | None:
     if len(samples) != header.count:
         problem = f"it must hold the {header.count} of its header"
         raise ValueError(f"it holds {len(samples)} samples; {problem}")
-    return Record(dt=header.dt, samples=converted(samples, header.unit))
+    return Sampled(header.dt, converted(samples, header.unit))
 
 
 def _header(lines: Sequence[str], units: str | None) -> Header:
