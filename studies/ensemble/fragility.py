@@ -73,7 +73,8 @@ def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArr
     weakest = np.where(overturned > 0, intensity, math.inf).min(axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
         middle = cases @ logs / all_cases
-        falls = overturned @ logs / all_overturned <= middle
+        # equal shares do not rise, whichever way their means are rounded
+        falls = overturned @ logs / all_overturned <= middle + ROUNDING * np.abs(logs).max()
         share = ndtri(all_overturned / all_cases)
     apart, fitted = strongest <= weakest, all_cases > 0
     a, b = np.full((2, *fitted.shape), math.nan)

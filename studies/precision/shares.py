@@ -119,7 +119,7 @@ def clocks(engine: str) -> Iterator[dict[str, float]]:
     stepping = ENGINES[engine].best.stepping
     places: dict[str, tuple[Any, str]] = {
         "step": (world, "advance" if stepping is Stepping.OWN else "step"),
-        "pose": (world, "pose"),
+        "pose": (world, "state"),
         "look": (Look, "next"),
     }
     if ENGINES[engine].own_step:
