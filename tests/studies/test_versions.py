@@ -135,7 +135,7 @@ def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
     here = ["pretender"]
     monkeypatch.setattr(study, "installed_engines", lambda: tuple(here))
     monkeypatch.setattr(study, "MOST_MIB", 30.0)
-    monkeypatch.setattr(study, "ask", lambda release, how: None)
+    monkeypatch.setattr(study, "ask", lambda *_: None)
     monkeypatch.setattr(study, "releases_table", lambda answers: None)
 
     def carry_out(_, plan, *__):
