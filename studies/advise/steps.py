@@ -162,11 +162,6 @@ def first_claim(table: pd.DataFrame) -> str:
     )
 
 
-def paragraph(folder: Path) -> str:
-    """Say the same, and which presets miss which error on cases with a small κ."""
-    return told(_read(folder))
-
-
 def told(table: pd.DataFrame) -> str:
     """Say the first claim, and how many cases each preset is off at its settings that miss."""
     known = counts(table, max(TARGETS))

@@ -11,7 +11,7 @@ from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import TABLES, aspects, published_engines, read_from
-from studies.advise.words import advice_text, claim, settings_text, told
+from studies.advise.words import advice_text, claim, settings_text
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
@@ -142,11 +142,6 @@ def read(folder: Path) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say what keeps each error cheapest."""
     return claim(read(folder))
-
-
-def paragraph(folder: Path) -> str:
-    """Say of every preset which errors it keeps."""
-    return told(read(folder))
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

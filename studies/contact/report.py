@@ -10,7 +10,7 @@ import pandas as pd
 from engines import ENGINES
 from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
-from studies.contact.claims import errors_of, findings, first_claim, name_of, overview, variant_of
+from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.differences import scientific, with_reference
@@ -53,12 +53,6 @@ def report(folder: Path) -> str:
 def headline(folder: Path) -> str:
     """Return, for each engine, the tuned setting that matters most."""
     return first_claim(read(folder / "variants.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Return, for each engine, the errors of its presets and the settings that matter most."""
-    lines = read(folder / "variants.csv")
-    return " ".join(overview(lines, engine) for engine in lines["engine"].unique())
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

@@ -16,7 +16,7 @@ from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, variants
 from studies.contact import STUDY
-from studies.contact.report import headline, paragraph, pictures, report
+from studies.contact.report import headline, pictures, report
 from studies.kit.arguments import Place, check_engines, several
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -24,7 +24,7 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.measures.energy import SAMPLES, energy_drift, growth
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 STEP, QUICK_STEP = 1e-3, 2e-3
 """p dt of every variant but those that are about the step."""

@@ -12,7 +12,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import claims, findings, first_claim, shares, with_verdicts
+from studies.defaults.claims import findings, first_claim, shares, with_verdicts
 from studies.kit import provenance
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job
@@ -132,12 +132,6 @@ def read(folder: Path) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say what part of the pulses each engine gets right."""
     return first_claim(pd.read_csv(folder / "parts.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say what each engine gets wrong, and what its defaults make of similarity."""
-    rows = read(folder)
-    return claims(shares(rows), rows)
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

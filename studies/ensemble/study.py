@@ -14,7 +14,7 @@ from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
 from studies.ensemble import STUDY
 from studies.ensemble.agreement import confusion, settled
-from studies.ensemble.claims import first_claim, verdict
+from studies.ensemble.claims import first_claim
 from studies.ensemble.report import curves, findings, stripes
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -255,9 +255,3 @@ def headline(folder: Path) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
     agreed = pd.read_csv(folder / "agreement.csv")
     return first_claim(agreed[agreed["source"] != "exact"])
-
-
-def paragraph(folder: Path) -> str:
-    """Say what became of the claim that statistics are predicted where responses are not."""
-    agreed = pd.read_csv(folder / "agreement.csv")
-    return verdict(agreed[agreed["source"] != "exact"])

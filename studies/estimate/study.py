@@ -10,7 +10,7 @@ import pandas as pd
 from studies.estimate import STUDY
 from studies.estimate.calibration import beside_errors, factors
 from studies.estimate.cases import CALIBRATE, both_sets
-from studies.estimate.words import factors_text, first_claim, told
+from studies.estimate.words import factors_text, first_claim
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
@@ -115,7 +115,7 @@ def report(folder: Path) -> str:
             "end bounds of the errors of other cases, which it was not found on:",
             factors_text(table),
             "",
-            wrapped(paragraph(folder), 99),
+            wrapped(headline(folder), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -125,11 +125,6 @@ def report(folder: Path) -> str:
 def headline(folder: Path) -> str:
     """Say whose estimates bound the error, and whose give no bound."""
     return first_claim(pd.read_csv(folder / "factors.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say of every source how far its estimates are off."""
-    return told(pd.read_csv(folder / "factors.csv"))
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

@@ -18,7 +18,7 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
-    text = f"{table_text(read(folder))}\n\n{paragraph(folder)}"
+    text = f"{table_text(read(folder))}\n\n{headline(folder)}"
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -55,20 +55,6 @@ def headline(folder: Path) -> str:
     worst = errors(read(folder), ["source"])[["period_error", "decay_error"]].max(axis=1)
     words = [f"{name} {scientific(value)}" for name, value in worst.items()]
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
-
-
-def paragraph(folder: Path) -> str:
-    """Say how far period, decay and drift of each source are from its model's closed forms."""
-    words = [
-        f"{source} {scientific(line['period_error'])}, {scientific(line['decay_error'])} and "
-        f"{scientific(line['drift_p'])}/p"
-        for source, line in errors(read(folder), ["source"]).iterrows()
-    ]
-    return (
-        "Free rocking against the closed forms of each source's model, largest relative error of "
-        "the time between two impacts, of the rotation after one, and the drift over up to "
-        f"{IMPACTS} impacts: {'; '.join(words)}."
-    )
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

@@ -25,7 +25,7 @@ def report(folder: Path) -> str:
 
     save_all(pictures(folder), folder)
     table, engines = read(folder, "harmonic"), read(folder, "engines")
-    text = "\n\n".join([branches_text(table), *engines_text(engines), paragraph(folder)])
+    text = "\n\n".join([branches_text(table), *engines_text(engines), counts_text(folder)])
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -121,12 +121,11 @@ def headline(folder: Path) -> str:
     )
 
 
-def paragraph(folder: Path) -> str:
-    """Say from how many starts, how many steady states were found and where, and the engines."""
-    table, engines, asked = read(folder, "harmonic"), read(folder, "engines"), settings_of(folder)
-    found, side = counts(table), asked["starts"]
+def counts_text(folder: Path) -> str:
+    """Say from how many starts how many steady states were found, and where."""
+    found, side = counts(read(folder, "harmonic")), settings_of(folder)["starts"]
     total = found["all"]
-    sentence = (
+    return (
         f"From {side} rotations by {side} rates at each of {total} abscissae, with steady states "
         f"counted and overturning not: {out_of(found['several'], total)} have more than one, "
         f"{out_of(found['longer'], total)} one that takes more than one forcing period; at "
@@ -134,11 +133,6 @@ def paragraph(folder: Path) -> str:
         f"{out_of(found['fallen'], total)} all overturn. An orbit may live where no start of the "
         "grid found it."
     )
-    if len(engines):
-        largest = with_error(engines).groupby("source", sort=False)["error"].max()
-        words = ", ".join(f"{name} {scientific(value)}" for name, value in largest.items())
-        sentence += f" Engines on the exact orbit, largest difference of its rotation: {words}."
-    return sentence
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

@@ -24,7 +24,6 @@ from studies.measures.claims import (
     Claim,
     Finding,
     read_findings,
-    sentences,
     tally,
     write_findings,
 )
@@ -186,11 +185,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say how many of the paper's statements about its histories hold."""
     return tally(read_findings(folder), "the paper's statements about its time histories")
-
-
-def paragraph(folder: Path) -> str:
-    """Say which of the paper's statements hold, with the numbers."""
-    return sentences(read_findings(folder))
 
 
 def drawn(folder: Path, figure: int) -> "Figure":

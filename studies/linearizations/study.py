@@ -24,12 +24,10 @@ from studies.measures.claims import (
     Finding,
     findings_text,
     read_findings,
-    sentences,
     tally,
     write_findings,
 )
 from studies.measures.differences import posed_cases, scientific
-from studies.measures.words import listed, part
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -218,21 +216,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say which of the paper's conclusions hold."""
     return tally(read_findings(folder), "the paper's conclusions about the linearizations")
-
-
-def paragraph(folder: Path) -> str:
-    """Say how near each named linearization is, and what holds of the paper's conclusions."""
-    table = read(folder, "linearizations")
-    wide = table[(table["grid"] == "wide") & table["changed"].map(lambda word: key(word) in NAMED)]
-    words = [
-        f"{NAMED[key(line['changed'])]} errs by {part(line['median_error'])} in the median, with "
-        f"{part(line['wrong'] / line['cases'])} of the outcomes wrong"
-        for _, line in wide.iterrows()
-    ]
-    return (
-        f"On a wide grid of {wide['cases'].iloc[0]} cases {listed(words)}. "
-        f"{sentences(read_findings(folder))}"
-    )
 
 
 def table_text(table: pd.DataFrame, name: str) -> str:

@@ -10,7 +10,6 @@ from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
-from studies.measures.differences import scientific
 from studies.measures.words import out_of
 
 if TYPE_CHECKING:
@@ -25,7 +24,7 @@ def report(folder: Path) -> str:
     text = table.to_csv(index=False, na_rep="nan")
     provenance.write_text(folder / "agreement.csv", text)
     save_all(pictures(folder), folder)
-    text = "\n\n".join([table_text(table), *works(table), paragraph(folder)])
+    text = "\n\n".join([table_text(table), *works(table), headline(folder)])
     provenance.write_text(folder / "findings.txt", text + "\n")
     return text
 
@@ -40,42 +39,6 @@ def headline(folder: Path) -> str:
 def _of_theory(table: pd.DataFrame) -> pd.DataFrame:
     """Return the answers of the models of the prints, where these are no measurements."""
     return table[(table["source"] == table["model"]) & (table["of"] == "theory")]
-
-
-def paragraph(folder: Path) -> str:
-    """Say how many printed numbers come out to their digits, the largest miss, and the engines."""
-    table = _read(folder / "agreement.csv")
-    mine = _of_theory(table)
-    missed = mine[mine["agrees"] != "True"]
-    words = f"Of {len(mine)} printed numbers {len(mine) - len(missed)} come out to every digit"
-    if len(missed):
-        rounding = int(missed["why"].str.startswith("comes out").sum())
-        words += (
-            f"; the others miss the print by {missed['miss'].min():.1e} to "
-            f"{missed['miss'].max():.1e}, {rounding} of which come out "
-            "with a frequency at most 0.2 % off"
-        )
-    tests = table[(table["of"] == "test") & (table["source"] == table["model"])]
-    if len(tests):
-        ratios = tests["printed"].astype(float)
-        words += (
-            f". Velocity ratios measured in tests are {ratios.min():g} to {ratios.max():g} of "
-            "Housner's, which the exact solution and the engines have"
-        )
-    return words + _engines(table) + "."
-
-
-def _engines(table: pd.DataFrame) -> str:
-    """Return the largest difference of each engine from the exact answers, in words."""
-    others = table[~table["source"].isin(["exact", "housner", "modified"])]
-    words = [
-        f"{source} {scientific(float(rows['from_exact'].abs().max()))} "
-        f"over {int(rows['from_exact'].notna().sum())}"
-        for source, rows in others.groupby("source", sort=False)
-    ]
-    if not words:
-        return ""
-    return f". Engines beside the exact answers, largest difference: {', '.join(words)}"
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

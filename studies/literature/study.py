@@ -11,11 +11,11 @@ from studies.literature import STUDY
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
 from studies.literature.readings import reduce, solve_problem, times_of
-from studies.literature.report import headline, paragraph, pictures, report
+from studies.literature.report import headline, pictures, report
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 DEFAULT_SOURCES = core_sources()
 AFTER_A_RELEASE = 3.0

@@ -75,11 +75,6 @@ def tally(items: Sequence[Finding], whose: str) -> str:
     return f"{words}; not: {'; '.join(failing)}." if failing else f"{words}."
 
 
-def sentences(items: Iterable[Finding]) -> str:
-    """Return the findings as a paragraph, the numbers in brackets."""
-    return " ".join(f"{item.statement}: {item.verdict} ({item.numbers})." for item in items)
-
-
 def write_findings(folder: Path, items: Sequence[Finding]) -> None:
     """Write a folder's findings as a table."""
     table = pd.DataFrame([asdict(item) for item in items])

@@ -36,10 +36,10 @@ from studies.overturning.engine_edges import (
     grid_jobs,
     reduce,
 )
-from studies.overturning.report import headline, paragraph, pictures, report
+from studies.overturning.report import headline, pictures, report
 from studies.sources.groups import core_sources
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
 DEFAULT_SOURCES = (

@@ -100,7 +100,6 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "folder": chapter.folder,
         "question": chapter.question,
         "claim": module.headline(folder),
-        "paragraph": module.paragraph(folder),
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,

@@ -61,11 +61,6 @@ def _step(line: "pd.Series[Any]") -> str:
     return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"
 
 
-def paragraph(folder: Path) -> str:
-    """Say the same; the tables say the rest."""
-    return headline(folder)
-
-
 def shares_text(shares: pd.DataFrame) -> str:
     """Return the parts of a step [µs], and the whole over the engine's own part."""
     parts = shares.filter(like="_s") * 1e6

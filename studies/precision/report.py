@@ -4,7 +4,6 @@ import json
 import math
 from dataclasses import asdict
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from studies.measures.costs import loop_of
 from studies.measures.differences import scientific
 from studies.precision import cost_report
 from studies.precision.choices import cheapest_below
-from studies.precision.claims import claims, first_claim
+from studies.precision.claims import first_claim
 from studies.precision.methods import METHODS
 from studies.precision.orders import observed_order
 
@@ -47,8 +46,6 @@ def report(folder: Path) -> str:
             cheapest(typical).to_string(index=False),
             "\nErrors at the finest setting, where they stop falling, and the observed order:",
             floor_text(typical),
-            "",
-            fill(claims(table), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -58,11 +55,6 @@ def report(folder: Path) -> str:
 def headline(folder: Path) -> str:
     """Return what a folder's work-precision.csv says first."""
     return first_claim(pd.read_csv(folder / "work-precision.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Return what a folder's work-precision.csv says."""
-    return claims(pd.read_csv(folder / "work-precision.csv"))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

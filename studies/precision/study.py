@@ -24,10 +24,10 @@ from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost, cost_report
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
-from studies.precision.report import headline, paragraph, pictures, report
+from studies.precision.report import headline, pictures, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 """Time [s] spent at most on timing one case with one setting."""

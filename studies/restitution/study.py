@@ -12,12 +12,8 @@ from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.restitution import STUDY, strikes
 from studies.restitution.report import (
-    LOST,
     findings_text,
     first_claim,
-    rate_claim,
-    settings_claim,
-    told,
 )
 from studies.restitution.ways import WAYS
 
@@ -81,13 +77,6 @@ def _read(folder: Path, name: str) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say how well engines keep a coefficient."""
     return first_claim(_read(folder, "corners"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say which setting keeps a coefficient, what a block makes of it, and which ways hold."""
-    corners, rates = _read(folder, "corners"), _read(folder, "rates")
-    held = [told(corners, "the coefficient"), told(rates, "the rate")]
-    return " ".join([settings_claim(corners), rate_claim(corners, rates), *held, LOST])
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

@@ -18,7 +18,6 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
-from studies.stability.findings import first_claim
 from studies.stability.report import failures_text, verdicts_text
 
 if TYPE_CHECKING:
@@ -76,11 +75,6 @@ def headline(folder: Path) -> str:
         for _, line in swept(folder).iterrows()
     ]
     return f"{listed(words)}."
-
-
-def paragraph(folder: Path) -> str:
-    """Say the same, and how many extreme cases are right."""
-    return f"{headline(folder)} {first_claim(_table(folder, 'extremes'))}"
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

@@ -21,13 +21,13 @@ from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
-from studies.score.report import headline, paragraph, pictures, published, report
+from studies.score.report import headline, pictures, published, report
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
 from studies.sweep.study import sweep_jobs
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11

@@ -10,7 +10,7 @@ import pandas as pd
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
 from studies.measures.verdicts import Verdict
-from studies.stability.findings import failures, findings, first_claim, verdicts_sentence
+from studies.stability.findings import failures, findings, first_claim
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
 
@@ -38,7 +38,7 @@ def report(folder: Path) -> str:
             "Change of the peak by a perturbation of the amplitude, over that of the exact\n"
             "solution; the median over the cases:\n" + sensitivity_text(moved, "amplitude"),
             "The same for the width:\n" + sensitivity_text(moved, "width"),
-            fill(findings(matrix, steps, moved), 99),
+            fill(findings(matrix), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -48,11 +48,6 @@ def report(folder: Path) -> str:
 def headline(folder: Path) -> str:
     """Return how many of the extreme cases the engines get right."""
     return first_claim(_table(folder, "stability"))
-
-
-def paragraph(folder: Path) -> str:
-    """Return what the matrix of a folder shows of every source."""
-    return verdicts_sentence(_table(folder, "stability"))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

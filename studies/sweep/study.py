@@ -30,7 +30,7 @@ from studies.measures.words import capital
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
-from studies.sweep.claims import claims, first_claim, over_all, preset_table, whole
+from studies.sweep.claims import first_claim, over_all, preset_table, whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -139,11 +139,6 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say what each preset of the engines gets wrong, and how far peaks are off."""
     return f"{capital(posed(read(folder)).words)}. {first_claim(whole(folder))}"
-
-
-def paragraph(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and how far its peaks are off."""
-    return claims(whole(folder))
 
 
 def read(folder: Path) -> pd.DataFrame:

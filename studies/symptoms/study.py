@@ -15,7 +15,7 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
 from studies.symptoms import STUDY
 from studies.symptoms.lines import TABLES, VARIANTS, lines_of
-from studies.symptoms.words import first_claim, page, told
+from studies.symptoms.words import first_claim, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,11 +91,6 @@ def _read(folder: Path) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say which setting helps most against a wrong peak."""
     return first_claim(_read(folder))
-
-
-def paragraph(folder: Path) -> str:
-    """Say of every symptom what there is, and what is left of it."""
-    return told(_read(folder))
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

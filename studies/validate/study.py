@@ -31,9 +31,8 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.bands import bands, bands_text
-from studies.validate.bands import told as told_by_band
 from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
-from studies.validate.claims import census, claims, first_claim
+from studies.validate.claims import census, drawn_text, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
 
 if TYPE_CHECKING:
@@ -160,7 +159,7 @@ def report(folder: Path) -> str:
             *leaning_lines(folder, compared),
             *(bounds_lines(folder, compared) if halves else ()),
             "",
-            fill(paragraph(folder), 99),
+            fill(drawn_text(pd.read_csv(folder / "drawn.csv")), 99),
         ]
     )
     provenance.write_text(folder / "findings.txt", text + "\n")
@@ -204,12 +203,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say how many outcomes each source gets right, and its largest errors."""
     return first_claim(pd.read_csv(folder / "errors.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
-    compared, counted = (pd.read_csv(folder / name) for name in ("errors.csv", "drawn.csv"))
-    return f"{claims(compared, counted)} {told_by_band(bands(compared))}"
 
 
 def summary_text(compared: pd.DataFrame) -> str:

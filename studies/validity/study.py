@@ -22,7 +22,7 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import claims, compared, findings, first_claim
+from studies.validity.report import compared, findings, first_claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -183,8 +183,3 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
     return first_claim(pd.read_csv(folder / "map.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say where the reference ends, and whether engines agree with it before."""
-    return claims(*(pd.read_csv(folder / name) for name in ("map.csv", "compared.csv")))

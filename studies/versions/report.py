@@ -8,7 +8,7 @@ import pandas as pd
 from studies.kit import provenance
 from studies.kit.tables import write_table
 from studies.versions.changes import changes_table
-from studies.versions.words import changes_text, first_claim, releases_text, told
+from studies.versions.words import changes_text, first_claim, releases_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,11 +37,6 @@ def read(folder: Path, name: str) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say between how many releases of each engine the answers changed."""
     return first_claim(read(folder, "releases"), read(folder, "changes"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say of every engine what changed, and what its notes say of it."""
-    return told(read(folder, "releases"), read(folder, "changes"))
 
 
 def pictures(folder: Path) -> "dict[str, Figure]":

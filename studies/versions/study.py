@@ -38,13 +38,13 @@ from studies.versions.releases import (
     listed,
     room_mib,
 )
-from studies.versions.report import headline, paragraph, pictures, report
+from studies.versions.report import headline, pictures, report
 from studies.versions.tables import releases_table
 
 MOST_MIB = 2048.0
 """An engine whose releases take more room than this [MiB] is asked only if it is named."""
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 
 def command(
