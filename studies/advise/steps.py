@@ -16,7 +16,7 @@ from studies.advise.evidence import in_words, options_at, settings
 from studies.advise.tried import SETTING, counted, judged
 from studies.cases.drawn import RandomCase, draw
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_engines, several
+from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
 from studies.kit.jobs import Job
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
@@ -34,7 +34,7 @@ LEAST = 50
 
 def command(
     *,
-    out: Place,
+    out: Out,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     cases: Count = 500,
     share: Positive = 20.0,
@@ -45,8 +45,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     cases

@@ -11,8 +11,8 @@ from engines import ENGINES
 from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.drawing.kept import keep
+from studies.kit.tables import left_aligned, write_table
 from studies.measures.differences import scientific, with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
@@ -25,13 +25,10 @@ KEY = ["engine", "preset", "factor", "level"]
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder / "contact.csv")
     lines, own = variant_table(rows[~rows["own_step"]]), variant_table(rows[rows["own_step"]])
     for name, table in {"variants": lines, "own-steps": own}.items():
-        provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-    save_all(pictures(folder), folder)
+        write_table(folder / f"{name}.csv", table)
     text = "\n".join(
         [
             "Every variant: errors of the peak over typical cases, outcomes over all cases.",
@@ -46,8 +43,7 @@ def report(folder: Path) -> str:
             findings(lines),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:

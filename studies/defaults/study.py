@@ -13,8 +13,8 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
 from studies.defaults.claims import findings, first_claim, shares, with_verdicts
-from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources
+from studies.drawing.kept import keep
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -37,7 +37,7 @@ DEFAULT_SOURCES = ("exact", *core_sources("naive"))
 
 def command(
     *,
-    out: Place,
+    out: Out,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     frame: Literal["base", "world"] = "base",
     quick: bool = False,
@@ -50,8 +50,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     sources
         Who is asked; the exact solution always is.
     frame
@@ -113,14 +111,9 @@ def _job(
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's defaults.csv; return the findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder)
     write_table(folder / "parts.csv", shares(rows))
-    text = findings(shares(rows), rows)
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(shares(rows), rows))
 
 
 def read(folder: Path) -> pd.DataFrame:

@@ -12,14 +12,15 @@ from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
+from studies.drawing.kept import keep
 from studies.ensemble import STUDY
 from studies.ensemble.agreement import confusion, settled
 from studies.ensemble.claims import first_claim
 from studies.ensemble.report import curves, findings, stripes
-from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
     Count,
+    Out,
     Place,
     check_sources,
     one_of,
@@ -133,7 +134,7 @@ def ensemble_cases(
 
 def command(
     *,
-    out: Place,
+    out: Out,
     family: Annotated[Family, one_of(Family)] | None = None,
     motions: Count | None = None,
     seed: Count | None = None,
@@ -149,8 +150,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     family
         noise, the default: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis
         and Papageorgiou; ricker: wavelets.
@@ -227,17 +226,12 @@ def read_rows(folder: Path) -> pd.DataFrame:
 
 def report(folder: Path) -> str:
     """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
-    from studies.drawing.figures import save_all
-
     rows = read_rows(folder)
     fitted, agreed = settled(rows)
     tables = (stripes(rows), curves(rows, fitted), agreed, confusion(rows))
     for name, table in zip(TABLES, tables, strict=True):
         write_table(folder / name, table)
-    text = findings(rows, tables[2], tables[3])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(rows, tables[2], tables[3]))
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

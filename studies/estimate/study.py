@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 
+from studies.drawing.kept import keep
 from studies.estimate import STUDY
 from studies.estimate.calibration import beside_errors, factors
 from studies.estimate.cases import CALIBRATE, both_sets
 from studies.estimate.words import factors_text, first_claim
-from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import write_table
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
@@ -98,14 +99,11 @@ def pairs(
 
 def report(folder: Path) -> str:
     """Hold a folder's estimates against the errors; write two tables, return the text."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "estimate.csv", dtype={"message": str})
     lines = beside_errors(rows)
     table = factors(lines)
     for name, kept in (("estimates", lines), ("factors", table)):
-        provenance.write_text(folder / f"{name}.csv", kept.to_csv(index=False, na_rep="nan"))
-    save_all(pictures(folder), folder)
+        write_table(folder / f"{name}.csv", kept)
     text = "\n".join(
         [
             "An estimate is the relative difference of a peak from that at half the step. Medians",
@@ -118,8 +116,7 @@ def report(folder: Path) -> str:
             wrapped(headline(folder), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from studies.drawing.kept import keep
 from studies.free.errors import IMPACTS
-from studies.kit import provenance
 from studies.measures.differences import scientific
 
 if TYPE_CHECKING:
@@ -15,12 +15,7 @@ if TYPE_CHECKING:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's free.csv; write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
-    text = f"{table_text(read(folder))}\n\n{headline(folder)}"
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), f"{table_text(read(folder))}\n\n{headline(folder)}")
 
 
 def read(folder: Path) -> pd.DataFrame:

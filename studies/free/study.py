@@ -10,7 +10,7 @@ from analytic.criteria import quarter_period
 from studies.free import STUDY
 from studies.free.errors import SWINGS, reduce, swing_times
 from studies.free.report import headline, pictures, report
-from studies.kit.arguments import Place, check_sources
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -30,7 +30,7 @@ SAMPLES = 6000
 
 def command(
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
@@ -45,8 +45,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     quick
         Two aspect ratios and two tilts.
     sources

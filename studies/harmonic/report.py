@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.response import Outcome
+from studies.drawing.kept import keep
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.measures.words import out_of
@@ -21,13 +22,12 @@ NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     table, engines = read(folder, "harmonic"), read(folder, "engines")
-    text = "\n\n".join([branches_text(table), *engines_text(engines), counts_text(folder)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(
+        folder,
+        pictures(folder),
+        "\n\n".join([branches_text(table), *engines_text(engines), counts_text(folder)]),
+    )
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:

@@ -13,7 +13,7 @@ from analytic.response import Response
 from studies.harmonic import STUDY
 from studies.harmonic.attractors import Attractor, Shaking, State, attractors
 from studies.harmonic.report import headline, pictures, report
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
+from studies.kit.arguments import BadInputError, Count, Out, Positive, check_sources
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -60,7 +60,7 @@ class Branch:
 
 def command(
     *,
-    out: Place,
+    out: Out,
     width: Positive = 0.5,
     height: Positive = 1.5,
     over: Over = "frequency",
@@ -80,8 +80,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     width
         Width B of the block [m].
     height

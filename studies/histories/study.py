@@ -11,7 +11,7 @@ from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.histories import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
+from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.digests import seal
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -55,7 +55,7 @@ TITLES = {
 
 def command(
     *,
-    out: Place,
+    out: Out,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
     sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
     running: Running = DEFAULT_RUNNING,
@@ -66,8 +66,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     figure
         Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default.
     sources

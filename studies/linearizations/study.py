@@ -13,8 +13,8 @@ from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
-from studies.kit import provenance
-from studies.kit.arguments import Place
+from studies.drawing.kept import keep
+from studies.kit.arguments import Out
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
@@ -92,16 +92,11 @@ def grid(name: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def command(*, out: Place) -> int:
+def command(*, out: Out) -> int:
     """Take a linearization apart: onset, frequency and saddle, each changed alone.
 
     All eight combinations of Housner's and the modified choices, against the exact solution, on
     the paper's cases and on a wider grid; what the paper concludes, with the numbers.
-
-    Parameters
-    ----------
-    out
-        Folder for the results; made if there is none.
     """
     return carry_out(STUDY, Plan(tabulate=tabulate), out, DEFAULT_RUNNING, report)
 
@@ -184,9 +179,6 @@ def key(word: str) -> tuple[int, int, int]:
 
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     table = read(folder, "linearizations")
     found = conclusions(table, all_errors())
     write_findings(folder, found)
@@ -196,8 +188,7 @@ def report(folder: Path) -> str:
             findings_text(found),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.drawing.kept import keep
+from studies.kit.tables import left_aligned, write_table
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
 from studies.measures.words import out_of
@@ -18,15 +18,11 @@ if TYPE_CHECKING:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's literature.csv; write and return the text."""
-    from studies.drawing.figures import save_all
-
     table = agreement(_read(folder / "literature.csv"))
-    text = table.to_csv(index=False, na_rep="nan")
-    provenance.write_text(folder / "agreement.csv", text)
-    save_all(pictures(folder), folder)
-    text = "\n\n".join([table_text(table), *works(table), headline(folder)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    write_table(folder / "agreement.csv", table)
+    return keep(
+        folder, pictures(folder), "\n\n".join([table_text(table), *works(table), headline(folder)])
+    )
 
 
 def headline(folder: Path) -> str:

@@ -8,7 +8,7 @@ from textwrap import fill
 
 import pandas as pd
 
-from studies.kit import provenance
+from studies.kit.tables import write_table
 from studies.measures.words import out_of
 
 TABLE = "findings.csv"
@@ -78,7 +78,7 @@ def tally(items: Sequence[Finding], whose: str) -> str:
 def write_findings(folder: Path, items: Sequence[Finding]) -> None:
     """Write a folder's findings as a table."""
     table = pd.DataFrame([asdict(item) for item in items])
-    provenance.write_text(folder / TABLE, table.to_csv(index=False, na_rep="nan"))
+    write_table(folder / TABLE, table)
 
 
 def read_findings(folder: Path) -> list[Finding]:

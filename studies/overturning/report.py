@@ -10,7 +10,7 @@ import pandas as pd
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.kit import provenance
+from studies.drawing.kept import keep
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
 from studies.measures.words import gathered, in_kinds, listed, part
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the summary and the findings as text."""
-    from studies.drawing.figures import save_all
-
     window = window_of(folder)
     areas = read(folder, "map")
     engines = read(folder, "engines")
@@ -36,7 +34,6 @@ def report(folder: Path) -> str:
     if len(differences):
         write_table(folder / "differences.csv", differences)
     write_table(folder / "checks.csv", checked)
-    save_all(pictures(folder), folder)
     text = "\n".join(
         [
             f"Overturning map: {window.title}; parts of the area of the map, exact mode by mode:",
@@ -52,8 +49,7 @@ def report(folder: Path) -> str:
             checks_text(checked),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def pictures(folder: Path) -> dict[str, "Figure"]:

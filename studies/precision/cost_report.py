@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from studies.kit import provenance
+from studies.drawing.kept import keep
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     text = "\n\n".join(
         [
             "Where the time of a step goes:\n" + shares_text(read(folder, "shares")),
@@ -28,8 +25,7 @@ def report(folder: Path) -> str:
             "What the exact solution leaves out:\n" + reference_text(read(folder, "reference")),
         ]
     )
-    provenance.write_text(folder / "cost.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text, "cost.txt")
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:

@@ -13,7 +13,8 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit import provenance
+from studies.drawing.kept import keep
+from studies.kit.tables import write_table
 from studies.measures.costs import loop_of
 from studies.measures.differences import scientific
 from studies.precision import cost_report
@@ -32,12 +33,9 @@ CASE = ("figure", "aspect", "width_m", "omega_over_p")
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's precision.csv; return tables and findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "precision.csv", dtype={"message": str})
     table = work_precision(with_errors(rows))
-    provenance.write_text(folder / "work-precision.csv", table.to_csv(index=False, na_rep="nan"))
-    save_all({"precision": drawn(folder)}, folder)
+    write_table(folder / "work-precision.csv", table)
     typical = table[table["set"] == "typical"]
     text = "\n".join(
         [
@@ -48,8 +46,7 @@ def report(folder: Path) -> str:
             floor_text(typical),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, {"precision": drawn(folder)}, text)
 
 
 def headline(folder: Path) -> str:

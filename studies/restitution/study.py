@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 
 from engines import installed_engines
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, check_engines, several
+from studies.drawing.kept import keep
+from studies.kit.arguments import BadInputError, Out, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.restitution import STUDY, strikes
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 ASKED = tuple(name for name in installed_engines() if name in WAYS)
 
 
-def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
+def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
     """Hold what a rocking block keeps at an impact against what was asked.
 
     Coefficients from 0 to 1, wherever in a step the impact falls: a block of 0.5 by 1 m in the
@@ -33,8 +33,6 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED)
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     """
@@ -58,12 +56,9 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED)
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
-    text = findings_text(_read(folder, "corners"), _read(folder, "rates"))
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(
+        folder, pictures(folder), findings_text(_read(folder, "corners"), _read(folder, "rates"))
+    )
 
 
 def _read(folder: Path, name: str) -> pd.DataFrame:

@@ -9,6 +9,7 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Engine, Precision
 from studies.advise.evidence import LADDER
+from studies.drawing.kept import keep
 from studies.kit import provenance
 from studies.kit.digests import check
 from studies.measures.costs import cost_text
@@ -29,9 +30,6 @@ WIDTH = 99
 
 def report(folder: Path) -> str:
     """Draw a folder's figures, and write and return its page."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     engine = ENGINES[engine_of(folder)]
     along = ladder(folder)
     extremes = _table(folder, "extremes")
@@ -48,8 +46,7 @@ def report(folder: Path) -> str:
             help_text(engine),
         ]
     )
-    provenance.write_text(folder / "score.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text, "score.txt")
 
 
 def asked_text(folder: Path) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.drawing.kept import keep
+from studies.kit.tables import left_aligned, write_table
 from studies.measures.verdicts import Verdict
 from studies.stability.findings import failures, findings, first_claim
 from studies.stability.largest_step import LARGEST_STEP
@@ -22,13 +22,9 @@ ORDER = tuple(verdict.value for verdict in Verdict)
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the text, which findings.txt holds too."""
-    from studies.drawing.figures import save_all
-
     matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
     moved = with_growth(moved)
-    text = moved.to_csv(index=False, na_rep="nan")
-    provenance.write_text(folder / "sensitivity.csv", text)
-    save_all(pictures(folder), folder)
+    write_table(folder / "sensitivity.csv", moved)
     text = "\n\n".join(
         [
             "Verdicts on the extreme cases:\n" + verdicts_text(matrix),
@@ -41,8 +37,7 @@ def report(folder: Path) -> str:
             fill(findings(matrix), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:

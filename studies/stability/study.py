@@ -10,7 +10,7 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Place, Positive, check_sources
+from studies.kit.arguments import Out, Positive, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -61,7 +61,7 @@ DEFAULT_RUNNING = PatientRunning()
 
 def command(
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
     running: PatientRunning = DEFAULT_RUNNING,
     sources: Annotated[tuple[str, ...], several_sources] = METHODS,
@@ -70,8 +70,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     quick
         Fewer cases, steps to 30 % and three perturbations: less than a minute on 2 cores.
     sources

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 
 from studies.cases.paper import sweep_cases
-from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
+from studies.drawing.kept import keep
+from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
@@ -41,7 +41,7 @@ DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_source
 
 def command(
     *,
-    out: Place,
+    out: Out,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     effort: EffortOptions = OWN_EFFORT,
@@ -51,8 +51,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     figure
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
     sources
@@ -87,8 +85,6 @@ def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's sweep.csv; return the summary and the findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder)
     compared = with_reference(rows)
     table = summarize(compared)
@@ -96,8 +92,7 @@ def report(folder: Path) -> str:
     found = findings(compared)
     write_findings(folder, found)
     conclusions = findings_text(found)
-    provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    save_all(drawn(compared, table), folder)
+    keep(folder, drawn(compared, table), conclusions)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 
 from studies.cases.drawn import draw
+from studies.drawing.kept import keep
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, check_sources
+from studies.kit.arguments import Count, Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 def command(
     *,
-    out: Place,
+    out: Out,
     cases: Count = 500,
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
@@ -57,8 +58,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     cases
         Number of random cases.
     seed
@@ -130,15 +129,12 @@ def report(folder: Path) -> str:
     hint, where hints.csv is there; drawn.csv says how many cases were drawn, kept and left out,
     and what share of each overturns.
     """
-    from studies.drawing.figures import save_all
-
     compared = compare(folder, "validate")
     if halves := (folder / f"{HALVES}.csv").exists():
         compared = with_bounds(compared, compare(folder, HALVES))
     write_table(folder / "errors.csv", compared)
     seed = provenance.record_of(folder)["settings"]["seed"]
     write_table(folder / "drawn.csv", census(seed, compared["case"].nunique()))
-    save_all(pictures(folder), folder)
     judged, by_band = sensitivity_of(compared), bands(compared)
     write_table(folder / "bands.csv", by_band)
     calm = compared[judged < WELL_CONDITIONED]
@@ -162,8 +158,7 @@ def report(folder: Path) -> str:
             fill(drawn_text(pd.read_csv(folder / "drawn.csv")), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:

@@ -10,8 +10,8 @@ import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, check_sources
+from studies.drawing.kept import keep
+from studies.kit.arguments import BadInputError, Out, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
@@ -48,7 +48,7 @@ DEFAULT_SOURCES = core_sources("fixed")
 
 def command(
     *,
-    out: Place,
+    out: Out,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
@@ -57,8 +57,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     sources
         Engines.
     quick
@@ -148,17 +146,12 @@ def _reduce(job: Job, response: Response) -> Row:
 
 def report(folder: Path) -> str:
     """Reduce a folder's tables to compared.csv, the drawing and the findings; return these."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "validity.csv", dtype={"message": str})
     table = pd.read_csv(folder / "map.csv")
     exact = reference_map(_cases(rows))
     beside = compared(rows, exact)
     write_table(folder / "compared.csv", beside)
-    text = findings(beside, table)
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(beside, table))
 
 
 def _cases(rows: pd.DataFrame) -> list[ValidityCase]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from studies.kit import provenance
+from studies.drawing.kept import keep
 from studies.kit.tables import write_table
 from studies.versions.changes import changes_table
 from studies.versions.words import changes_text, first_claim, releases_text
@@ -16,15 +16,12 @@ if TYPE_CHECKING:
 
 def report(folder: Path) -> str:
     """Write what changed beside a folder's releases.csv, draw both; return them as text."""
-    from studies.drawing.figures import save_all
-
     lines = read(folder, "releases")
     write_table(folder / "changes.csv", changes_table(lines))
-    save_all(pictures(folder), folder)
     changes = read(folder, "changes")
-    text = "\n".join([releases_text(lines), "", changes_text(changes)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(
+        folder, pictures(folder), "\n".join([releases_text(lines), "", changes_text(changes)])
+    )
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
