@@ -5,7 +5,7 @@ from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
@@ -15,6 +15,7 @@ from studies.advise.choice import TARGETS
 from studies.advise.evidence import in_words, options_at, settings
 from studies.advise.tried import SETTING, counted, judged
 from studies.cases.drawn import RandomCase, draw
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
 from studies.kit.jobs import Job
@@ -24,9 +25,6 @@ from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import with_every_finer
 from studies.measures.published import PUBLISHED
 from studies.measures.words import gathered, listed, per_cent
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LEAST = 50
 """Random cases at every setting, however long they take, where so many are asked for."""
@@ -181,6 +179,6 @@ def told(table: pd.DataFrame) -> str:
     return f"{first_claim(table)}{words}"
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw nothing: `rocking advise` draws what follows."""
     return {}

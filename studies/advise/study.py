@@ -2,7 +2,7 @@
 
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 from cyclopts import Parameter
@@ -12,6 +12,7 @@ from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import TABLES, aspects, published_engines, read_from
 from studies.advise.words import advice_text, claim, settings_text
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
@@ -29,9 +30,6 @@ from studies.kit.posing import posed_block
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NOTE = (
     "* other outcomes or larger errors, of cases that were run at this very step; a step counts\n"
@@ -144,7 +142,7 @@ def headline(folder: Path) -> str:
     return claim(read(folder))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 

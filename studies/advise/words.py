@@ -133,10 +133,9 @@ def best_by_driver(lines: pd.DataFrame) -> "dict[str, pd.Series[Any]]":
 
 
 def _advised(line: "pd.Series[Any]") -> str:
-    """Return a line of advice in words: setting, time, who takes the steps, what is off."""
+    """Return a line of advice in words: setting, time, who takes the steps."""
     cost = cost_text(line["wall_s"], line["runs"], " a case")
-    said = [f"{cost}, {LOOPS[str(line['driver'])]}", random_text(line)]
-    return f"{setting_text(line)} ({'; '.join(filter(None, said))})"
+    return f"{setting_text(line)} ({cost}, {LOOPS[str(line['driver'])]})"
 
 
 def setting_text(line: "pd.Series[Any]") -> str:

@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,13 +11,10 @@ from engines import ENGINES
 from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import left_aligned, write_table
 from studies.measures.differences import scientific, with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
@@ -51,7 +48,7 @@ def headline(folder: Path) -> str:
     return first_claim(read(folder / "variants.csv"))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the largest error of every variant of a folder from its variants.csv alone."""
     from studies.contact.figure import draw_contact
 

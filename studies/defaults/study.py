@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
 from studies.defaults.claims import findings, first_claim, shares, with_verdicts
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -22,9 +22,6 @@ from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
 RATIOS = tuple(0.5 * np.arange(1, 17))
@@ -127,7 +124,7 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "parts.csv"))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the maps of the smallest and of the largest block from a folder's defaults.csv."""
     from studies.defaults.figure import draw_maps
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import pandas as pd
 
@@ -12,7 +12,7 @@ from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.motions import FAMILIES
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.ensemble import STUDY
 from studies.ensemble.agreement import confusion, settled
 from studies.ensemble.claims import first_claim
@@ -34,9 +34,6 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Family = Literal["noise", "near-fault", "ricker"]
 
@@ -234,7 +231,7 @@ def report(folder: Path) -> str:
     return keep(folder, pictures(folder), findings(rows, tables[2], tables[3]))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's figures from its tables alone; single responses where it holds them."""
     from studies.ensemble.figure import draw_fragility, draw_singles
 

@@ -3,11 +3,11 @@
 from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import fill as wrapped
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.estimate import STUDY
 from studies.estimate.calibration import beside_errors, factors
 from studies.estimate.cases import CALIBRATE, both_sets
@@ -21,9 +21,6 @@ from studies.kit.tables import write_table
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def command(
@@ -124,7 +121,7 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "factors.csv"))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of the cases that calibrate, from a folder's estimates.csv alone."""
     from studies.estimate.figure import draw_estimates
 

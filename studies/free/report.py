@@ -1,16 +1,12 @@
 """What free rocking shows: the largest errors of period, decay and drift, in tables and words."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.free.errors import IMPACTS
 from studies.measures.differences import scientific
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
@@ -52,7 +48,7 @@ def headline(folder: Path) -> str:
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of a folder from its free.csv alone."""
     from studies.free.figure import draw_free
 

@@ -2,19 +2,16 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analytic.response import Outcome
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.measures.words import out_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NO_PERIOD = "does not repeat"
 NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
@@ -135,7 +132,7 @@ def counts_text(folder: Path) -> str:
     )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the diagram of a folder from its tables alone."""
     from studies.harmonic.figure import draw_harmonic
 

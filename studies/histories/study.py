@@ -9,6 +9,7 @@ import pandas as pd
 
 from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
+from studies.drawing.kept import Pictures
 from studies.histories import STUDY
 from studies.kit import provenance
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
@@ -174,7 +175,7 @@ def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
     return [item for item in held if item.statement not in {new.statement for new in found}]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw every figure of a folder from its CSV alone."""
     figures = [n for n in HISTORIES if (folder / f"figure-{n}.csv").is_file()]
     return {f"figure-{n}": drawn(folder, n) for n in figures}

@@ -4,7 +4,6 @@ import functools
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -13,7 +12,7 @@ from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Out
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING
@@ -28,10 +27,6 @@ from studies.measures.claims import (
     write_findings,
 )
 from studies.measures.differences import posed_cases, scientific
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
@@ -196,7 +191,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv", dtype={"changed": str})
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
     from studies.linearizations.figure import draw_distributions
 

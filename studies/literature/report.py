@@ -1,19 +1,16 @@
 """What the printed numbers say: which come out to their digits, and by how much the others miss."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import left_aligned, write_table
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
 from studies.measures.words import out_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
@@ -37,7 +34,7 @@ def _of_theory(table: pd.DataFrame) -> pd.DataFrame:
     return table[(table["source"] == table["model"]) & (table["of"] == "theory")]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
     from studies.literature.figure import draw_literature
 

@@ -3,23 +3,20 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
 from studies.measures.words import gathered, in_kinds, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
@@ -52,7 +49,7 @@ def report(folder: Path) -> str:
     return keep(folder, pictures(folder), text)
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the figures of a folder from its CSVs alone."""
     from studies.overturning.figure import draw_conditioning, draw_differences, draw_map
 

@@ -2,17 +2,14 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
@@ -33,7 +30,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=["nan"])
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's scenes.csv: time and error of each thing put back."""
     from studies.precision.cost_figure import draw_scenes
 

@@ -13,7 +13,7 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import write_table
 from studies.measures.costs import loop_of
 from studies.measures.differences import scientific
@@ -54,7 +54,7 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "work-precision.csv"))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
     return {"precision": drawn(folder), **cost_report.pictures(folder)}
 

@@ -1,12 +1,12 @@
 """A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from engines import installed_engines
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import BadInputError, Out, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
@@ -16,10 +16,6 @@ from studies.restitution.report import (
     first_claim,
 )
 from studies.restitution.ways import WAYS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 ASKED = tuple(name for name in installed_engines() if name in WAYS)
 
@@ -74,7 +70,7 @@ def headline(folder: Path) -> str:
     return first_claim(_read(folder, "corners"))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw what is found against what is wanted, from a folder's table of rows alone."""
     from studies.restitution.figure import SHOWN, draw_restitution
 

@@ -2,14 +2,14 @@
 
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import Engine, Precision
 from studies.advise.evidence import LADDER
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.kit.digests import check
 from studies.measures.costs import cost_text
@@ -20,9 +20,6 @@ from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
 from studies.stability.report import failures_text, verdicts_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 WIDTH = 99
 """Of the page, in letters."""
@@ -74,7 +71,7 @@ def headline(folder: Path) -> str:
     return f"{listed(words)}."
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
     from studies.score.figure import draw_score
     from studies.stability.figure import draw_matrix

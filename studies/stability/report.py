@@ -3,19 +3,16 @@
 import math
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import left_aligned, write_table
 from studies.measures.verdicts import Verdict
 from studies.stability.findings import failures, findings, first_claim
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ORDER = tuple(verdict.value for verdict in Verdict)
 
@@ -45,7 +42,7 @@ def headline(folder: Path) -> str:
     return first_claim(_table(folder, "stability"))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the matrix of a folder from its stability.csv alone."""
     from studies.stability.figure import draw_matrix
 

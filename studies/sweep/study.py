@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.paper import sweep_cases
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -31,10 +31,6 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
 from studies.sweep.claims import first_claim, over_all, preset_table, whole
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 
@@ -109,13 +105,13 @@ def report(folder: Path) -> str:
     )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw every figure of a folder from its sweep.csv alone."""
     compared = with_reference(read(folder))
     return drawn(compared, summarize(compared))
 
 
-def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
+def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
     """Draw every figure of the rows beside the exact solution, and of their summary.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.

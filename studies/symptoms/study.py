@@ -1,11 +1,12 @@
 """The page from what users see to the setting that mends it, from the published tables."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from engines import ENGINES
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place, Positive, check_engines, several_or_none
 from studies.kit.digests import check
@@ -16,9 +17,6 @@ from studies.measures.words import listed
 from studies.symptoms import STUDY
 from studies.symptoms.lines import TABLES, VARIANTS, lines_of
 from studies.symptoms.words import first_claim, page
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SHORTEST_S, LONGEST_S = 1e-6, 1.0
 """Steps [s] for which settings are written out."""
@@ -93,7 +91,7 @@ def headline(folder: Path) -> str:
     return first_claim(_read(folder))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the size of each symptom from a folder's symptoms.csv alone."""
     from studies.symptoms.figure import draw_symptoms
 

@@ -6,12 +6,12 @@ from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.drawn import draw
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.kit.arguments import Count, Out, check_sources
 from studies.kit.jobs import Job
@@ -35,9 +35,6 @@ from studies.validate.bands import bands, bands_text
 from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
 from studies.validate.claims import census, drawn_text, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def command(
@@ -188,7 +185,7 @@ def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
     from studies.validate.figure import draw_conditioning
 

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import BadInputError, Out, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -23,9 +23,6 @@ from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
 from studies.validity.report import compared, findings, first_claim
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
 MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
@@ -162,7 +159,7 @@ def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
     ]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's figures from its tables alone."""
     from studies.validity.figure import draw_friction, draw_validity
 

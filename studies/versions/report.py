@@ -1,17 +1,13 @@
 """What the releases of the engines say: text, pictures, and the table of what changed."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from studies.drawing.kept import keep
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import write_table
 from studies.versions.changes import changes_table
 from studies.versions.words import changes_text, first_claim, releases_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
@@ -36,7 +32,7 @@ def headline(folder: Path) -> str:
     return first_claim(read(folder, "releases"), read(folder, "changes"))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw errors by release from a folder's releases.csv and changes.csv alone."""
     from studies.versions.figure import draw_versions
 
