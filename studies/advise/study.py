@@ -27,6 +27,7 @@ from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
+from studies.kit.tables import read_table
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
@@ -133,8 +134,7 @@ def _versions(published: Path) -> str:
 
 def read(folder: Path) -> pd.DataFrame:
     """Read advice back, with empty words as such."""
-    path = folder / "advice.csv"
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype={"message": str})
+    return read_table(folder / "advice.csv")
 
 
 def headline(folder: Path) -> str:

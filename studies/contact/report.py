@@ -12,7 +12,7 @@ from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import left_aligned, write_table
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.measures.differences import scientific, with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
@@ -57,8 +57,7 @@ def pictures(folder: Path) -> Pictures:
 
 def read(path: Path) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    words = dict.fromkeys(("factor", "level", "trap", "message"), str)
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(path, "factor", "level", "trap")
 
 
 def variant_table(rows: pd.DataFrame) -> pd.DataFrame:

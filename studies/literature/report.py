@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import left_aligned, write_table
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
 from studies.measures.words import out_of
@@ -43,8 +43,7 @@ def pictures(folder: Path) -> Pictures:
 
 def _read(path: Path) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    words = dict.fromkeys(("message", "measured", "agrees", "printed", "why"), str)
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(path, "measured", "agrees", "printed", "why")
 
 
 def agreement(rows: pd.DataFrame) -> pd.DataFrame:

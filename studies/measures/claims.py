@@ -8,7 +8,7 @@ from textwrap import fill
 
 import pandas as pd
 
-from studies.kit.tables import write_table
+from studies.kit.tables import read_table, write_table
 from studies.measures.words import out_of
 
 TABLE = "findings.csv"
@@ -83,7 +83,7 @@ def write_findings(folder: Path, items: Sequence[Finding]) -> None:
 
 def read_findings(folder: Path) -> list[Finding]:
     """Read a folder's findings back."""
-    table = pd.read_csv(folder / TABLE, keep_default_na=False, na_values=["nan"])
+    table = read_table(folder / TABLE)
     return [
         Finding(str(statement), None if _unknown(holds) else str(holds) == "True", str(numbers))
         for statement, holds, numbers in table.to_numpy(object)

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import read_table
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
@@ -27,7 +28,7 @@ def report(folder: Path) -> str:
 
 def read(folder: Path, name: str) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    return pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=["nan"])
+    return read_table(folder / f"{name}.csv")
 
 
 def pictures(folder: Path) -> Pictures:

@@ -10,6 +10,7 @@ from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import BadInputError, Out, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import read_table
 from studies.restitution import STUDY, strikes
 from studies.restitution.report import (
     findings_text,
@@ -59,10 +60,7 @@ def report(folder: Path) -> str:
 
 def _read(folder: Path, name: str) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("way", "varied", "literal"), str)
-    return pd.read_csv(
-        folder / f"{name}.csv", keep_default_na=False, na_values=["nan"], dtype=words
-    )
+    return read_table(folder / f"{name}.csv", "way", "varied", "literal")
 
 
 def headline(folder: Path) -> str:

@@ -12,6 +12,7 @@ from studies.advise.evidence import LADDER
 from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.kit.digests import check
+from studies.kit.tables import read_table
 from studies.measures.costs import cost_text
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
 from studies.measures.posed import posed
@@ -101,8 +102,7 @@ def published() -> pd.DataFrame:
 
 
 def _table(folder: Path, name: str) -> pd.DataFrame:
-    path = folder / f"score-{name}.csv"
-    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
+    return read_table(folder / f"score-{name}.csv")
 
 
 def introduction(engine: Engine) -> str:

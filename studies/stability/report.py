@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import left_aligned, write_table
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.measures.verdicts import Verdict
 from studies.stability.findings import failures, findings, first_claim
 from studies.stability.largest_step import LARGEST_STEP
@@ -52,9 +52,7 @@ def pictures(folder: Path) -> Pictures:
 def _table(folder: Path, name: str) -> pd.DataFrame:
     """Return a table with empty words as such; empty if none of the sources has a row in it."""
     path = folder / f"{name}.csv"
-    if not path.is_file():
-        return pd.DataFrame()
-    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
+    return read_table(path) if path.is_file() else pd.DataFrame()
 
 
 def verdicts_text(matrix: pd.DataFrame) -> str:

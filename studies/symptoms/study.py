@@ -12,6 +12,7 @@ from studies.kit.arguments import BadInputError, Place, Positive, check_engines,
 from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed
 from studies.symptoms import STUDY
@@ -81,9 +82,7 @@ def command(
 def _read(folder: Path) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
     texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
-    words = dict.fromkeys(texts, str)
-    path = folder / "symptoms.csv"
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(folder / "symptoms.csv", *texts)
 
 
 def headline(folder: Path) -> str:

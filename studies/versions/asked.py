@@ -9,6 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from studies.kit.journal import Row
+from studies.kit.tables import read_table
 from studies.versions.environments import NoEnvironmentError, environment, variables
 from studies.versions.releases import INSTALLED, Release
 
@@ -64,7 +65,7 @@ def ask(release: Release, out: Path, environments: Path, options: Sequence[str])
     code, said = run_to_end(command, variables(packages))
     if code not in USABLE:
         return Asked(release, None, made, said or f"ended with exit code {code}")
-    answers = read(out / name)
+    answers = read_table(out / name / ANSWERS, "release")
     if (found := set(answers["release"])) != {release.version}:
         return Asked(release, None, made, f"{', '.join(sorted(found))} was loaded in its stead")
     return Asked(release, answers, made)
@@ -84,10 +85,3 @@ def run_to_end(command: list[str], env: Mapping[str, str]) -> tuple[int, str]:
             raise
     lines = said.strip().splitlines()
     return process.returncode, lines[-1] if lines else ""
-
-
-def read(folder: Path) -> pd.DataFrame:
-    """Read a release's answers back."""
-    words = {"release": str, "message": str}
-    path = folder / ANSWERS
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import write_table
+from studies.kit.tables import read_table, write_table
 from studies.versions.changes import changes_table
 from studies.versions.words import changes_text, first_claim, releases_text
 
@@ -22,9 +22,8 @@ def report(folder: Path) -> str:
 
 def read(folder: Path, name: str) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("release", "before", "source", "set", "note", "link", "message"), str)
-    path = folder / f"{name}.csv"
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    words = ("release", "before", "source", "set", "note", "link")
+    return read_table(folder / f"{name}.csv", *words)
 
 
 def headline(folder: Path) -> str:
