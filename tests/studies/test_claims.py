@@ -25,7 +25,7 @@ from studies.measures.claims import (
 from studies.measures.posed import Posed
 from studies.overturning import report as overturning
 from studies.overturning.areas import with_verdicts
-from studies.precision import claims as precision
+from studies.precision import report as precision
 from studies.precision.choices import cheapest_below, choices
 from studies.stability import findings as stability
 from studies.sweep import claims as sweep
