@@ -12,6 +12,7 @@ from engines import ENGINES
 from engines.declaration import Preset
 from studies.advise.tried import RANDOM, SETTING
 from studies.cases.paper import sweep_cases
+from studies.kit.tables import read_table
 from studies.measures.verdicts import ACCEPTED
 from studies.sources.registry import resolve
 
@@ -178,7 +179,7 @@ def extremes(published: Path, source: str, target: float) -> dict[str, int]:
     Off is another outcome, a failure, or an error above the target; cases where the reference does
     not hold, or whose rocking is too small to be seen, are not counted.
     """
-    table = pd.read_csv(published / EXTREME, keep_default_na=False, na_values=["nan"])
+    table = read_table(published / EXTREME)
     mine = table[table["source"] == source]
     good = [verdict.value for verdict in ACCEPTED if verdict.value != "good"]
     mine = mine[~mine["verdict"].isin(good)]

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
@@ -15,8 +15,9 @@ from studies.advise.choice import TARGETS
 from studies.advise.evidence import in_words, options_at, settings
 from studies.advise.tried import SETTING, counted, judged
 from studies.cases.drawn import RandomCase, draw
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_engines, several
+from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
 from studies.kit.jobs import Job
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
@@ -25,16 +26,13 @@ from studies.measures.finer import with_every_finer
 from studies.measures.published import PUBLISHED
 from studies.measures.words import gathered, listed, per_cent
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 LEAST = 50
 """Random cases at every setting, however long they take, where so many are asked for."""
 
 
 def command(
     *,
-    out: Place,
+    out: Out,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     cases: Count = 500,
     share: Positive = 20.0,
@@ -45,8 +43,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     cases
@@ -162,11 +158,6 @@ def first_claim(table: pd.DataFrame) -> str:
     )
 
 
-def paragraph(folder: Path) -> str:
-    """Say the same, and which presets miss which error on cases with a small κ."""
-    return told(_read(folder))
-
-
 def told(table: pd.DataFrame) -> str:
     """Say the first claim, and how many cases each preset is off at its settings that miss."""
     known = counts(table, max(TARGETS))
@@ -188,6 +179,6 @@ def told(table: pd.DataFrame) -> str:
     return f"{first_claim(table)}{words}"
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw nothing: `rocking advise` draws what follows."""
     return {}

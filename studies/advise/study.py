@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 from cyclopts import Parameter
@@ -13,7 +13,8 @@ from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
 from studies.advise.reverse import kept_errors, reverse_text
-from studies.advise.words import advice_text, claim, settings_text, told
+from studies.advise.words import advice_text, claim, settings_text
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
@@ -30,13 +31,11 @@ from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
+from studies.kit.tables import read_table
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NOTE = (
     "* other outcomes or larger errors, of cases that were run at this very step; a step counts\n"
@@ -167,8 +166,7 @@ def _versions(published: Path) -> str:
 
 def read(folder: Path) -> pd.DataFrame:
     """Read advice back, with empty words as such."""
-    path = folder / "advice.csv"
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype={"message": str})
+    return read_table(folder / "advice.csv")
 
 
 def headline(folder: Path) -> str:
@@ -176,12 +174,7 @@ def headline(folder: Path) -> str:
     return claim(read(folder))
 
 
-def paragraph(folder: Path) -> str:
-    """Say of every preset which errors it keeps."""
-    return told(read(folder))
-
-
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 

@@ -146,34 +146,12 @@ def best_by_driver(lines: pd.DataFrame) -> "dict[str, pd.Series[Any]]":
 
 
 def _advised(line: "pd.Series[Any]") -> str:
-    """Return a line of advice in words: setting, time, who takes the steps, what is off."""
+    """Return a line of advice in words: setting, time, who takes the steps."""
     cost = cost_text(line["wall_s"], line["runs"], " a case")
-    said = [f"{cost}, {LOOPS[str(line['driver'])]}", random_text(line)]
-    return f"{setting_text(line)} ({'; '.join(filter(None, said))})"
+    return f"{setting_text(line)} ({cost}, {LOOPS[str(line['driver'])]})"
 
 
 def setting_text(line: "pd.Series[Any]") -> str:
     """Return the engine, the preset and the setting of a line of advice."""
     at = in_words(preset_of(line), float(line["value"]))
     return f"{line['engine']} {line['preset']} at {at}"
-
-
-def told(lines: pd.DataFrame) -> str:
-    """Say of every error which presets keep it, and which keep none."""
-    kept = lines["message"] == ""
-    sentences = [
-        f"An error of {per_cent(float(str(target)))} is kept by {_by_preset(group)}."
-        for target, group in lines[kept].groupby("target", sort=False)
-    ]
-    without = lines[~kept.groupby([lines["engine"], lines["preset"]]).transform("any")]
-    return " ".join(
-        [*sentences, f"None of these is kept by {_by_preset(without)}."]
-        if len(without)
-        else sentences
-    )
-
-
-def _by_preset(lines: pd.DataFrame) -> str:
-    """Return the presets of some lines, each with its engines in brackets."""
-    engines = lines.groupby("preset", sort=False)["engine"].unique()
-    return listed([f"{preset} ({', '.join(names)})" for preset, names in engines.items()])

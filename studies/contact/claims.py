@@ -1,7 +1,7 @@
 """What each setting of a contact costs and buys, in sentences made from the lines of variants.csv.
 
 Two things are told apart: by how far a setting moves a peak of its preset, and the largest error
-that it leaves; and two starting points, the tuned preset and the library's defaults.
+that it leaves.
 """
 
 import math
@@ -16,9 +16,8 @@ from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
 
-NOTABLE, NOTABLE_RATIO = 1e-3, 5e-3
-"""A setting that moves no peak by more than the first, and the velocity ratio of impacts by no more
-than the second, both relative, makes no difference worth a sentence."""
+NOTABLE = 1e-3
+"""A setting that moves no peak by more, relatively, makes no difference worth a sentence."""
 
 SHOWN = 4
 """How many settings a sentence names."""
@@ -27,13 +26,6 @@ FRAMES = "Defaults at their own step, largest error with a body force and on a b
 
 FROM = {BEST: "from the tuned preset", DEFAULT: "from the defaults"}
 """Preset -> where one setting at a time is changed."""
-
-ORDERS = {
-    "moved": "By how far it moves a peak",
-    "max_error": "By the largest error that it leaves",
-    "ratio_moved": "By how far it moves the velocity ratio of impacts",
-}
-"""Column -> the order that it puts settings in."""
 
 
 def name_of(line: "pd.Series[Any]") -> str:
@@ -123,12 +115,6 @@ def _amount(line: "pd.Series[Any]", column: str) -> str:
     return part(line[column]) + wrong
 
 
-def unnoticed(varied: pd.DataFrame) -> pd.DataFrame:
-    """Return the variants that make no difference worth a sentence."""
-    still = (varied["moved"] < NOTABLE) & (varied["ratio_moved"] < NOTABLE_RATIO)
-    return varied[still & ~varied["worse"]]
-
-
 def findings(lines: pd.DataFrame) -> str:
     """Return the findings in sentences, a line each."""
     sentences = [
@@ -142,12 +128,7 @@ def findings(lines: pd.DataFrame) -> str:
 def of_engine(lines: pd.DataFrame, engine: str) -> list[str]:
     """Return the sentences about one engine."""
     sentences = [overview(lines, engine)]
-    for preset in FROM:
-        varied = changed(lines, engine, preset)
-        if len(varied):
-            sentences += _of_preset(lines, engine, preset, varied)
     mine = lines[lines["engine"] == engine]
-    sentences += _prices(engine, mine)
     sentences += [
         f"Rule, {engine}. {rule.words}. Error, median and largest, without it {without}; with it "
         f"{with_it}."
@@ -177,15 +158,6 @@ def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
     words = {name.upper(): error_words(line) for name, line in found.items()}
     equal = variant_of(lines, engine, BEST)
     return words | ({} if equal is None else {"STEPS": error_words(equal)})
-
-
-def _prices(engine: str, lines: pd.DataFrame) -> list[str]:
-    words = prices(lines, engine)
-    whole = words.pop("", None)
-    if whole is None:
-        return []
-    left = listed([f"{error} without {name.lower()}" for name, error in words.items()])
-    return [f"{engine}, {ENGINES[engine].best.name} as it is, {whole} at most; {left}."]
 
 
 def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
@@ -221,19 +193,3 @@ def variant_of(
     if level:
         wanted &= lines["level"] == level
     return lines[wanted].iloc[0] if wanted.any() else None
-
-
-def _of_preset(lines: pd.DataFrame, engine: str, preset: str, varied: pd.DataFrame) -> list[str]:
-    base = lines[
-        (lines["engine"] == engine) & (lines["preset"] == preset) & (lines["factor"] == "")
-    ]
-    place = f"{engine}, {FROM[preset]}"
-    broken = [name_of(line) for _, line in varied[varied["worse"]].iterrows()]
-    still = [name_of(line) for _, line in unnoticed(varied).iterrows()]
-    return [
-        *(f"{place}. {words}: {ranked(varied, column)}." for column, words in ORDERS.items()),
-        f"{place}, as it is, the largest error is {errors_of(base.iloc[0])}.",
-        f"{place}, without visible effect (peaks {NOTABLE:g}, velocity ratios {NOTABLE_RATIO:g}): "
-        f"{listed(still)}.",
-        f"{place}, failed or with more wrong outcomes: {listed(broken)}.",
-    ]

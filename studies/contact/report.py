@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,14 +10,11 @@ import pandas as pd
 from engines import ENGINES
 from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
-from studies.contact.claims import errors_of, findings, first_claim, name_of, overview, variant_of
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
+from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.measures.differences import scientific, with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
@@ -25,13 +22,10 @@ KEY = ["engine", "preset", "factor", "level"]
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder / "contact.csv")
     lines, own = variant_table(rows[~rows["own_step"]]), variant_table(rows[rows["own_step"]])
     for name, table in {"variants": lines, "own-steps": own}.items():
-        provenance.write_text(folder / f"{name}.csv", table.to_csv(index=False, na_rep="nan"))
-    save_all(pictures(folder), folder)
+        write_table(folder / f"{name}.csv", table)
     text = "\n".join(
         [
             "Every variant: errors of the peak over typical cases, outcomes over all cases.",
@@ -46,8 +40,7 @@ def report(folder: Path) -> str:
             findings(lines),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:
@@ -55,13 +48,7 @@ def headline(folder: Path) -> str:
     return first_claim(read(folder / "variants.csv"))
 
 
-def paragraph(folder: Path) -> str:
-    """Return, for each engine, the errors of its presets and the settings that matter most."""
-    lines = read(folder / "variants.csv")
-    return " ".join(overview(lines, engine) for engine in lines["engine"].unique())
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the largest error of every variant of a folder from its variants.csv alone."""
     from studies.contact.figure import draw_contact
 
@@ -70,8 +57,7 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def read(path: Path) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    words = dict.fromkeys(("factor", "level", "trap", "message"), str)
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(path, "factor", "level", "trap")
 
 
 def variant_table(rows: pd.DataFrame) -> pd.DataFrame:

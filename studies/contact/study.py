@@ -16,15 +16,15 @@ from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, variants
 from studies.contact import STUDY
-from studies.contact.report import headline, paragraph, pictures, report
-from studies.kit.arguments import Place, check_engines, several
+from studies.contact.report import headline, pictures, report
+from studies.kit.arguments import Out, check_engines, several
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.measures.energy import SAMPLES, energy_drift, growth
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 STEP, QUICK_STEP = 1e-3, 2e-3
 """p dt of every variant but those that are about the step."""
@@ -35,7 +35,7 @@ STRONG = 0.1
 
 def command(
     *,
-    out: Place,
+    out: Out,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
@@ -49,8 +49,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     quick

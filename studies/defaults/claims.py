@@ -9,8 +9,8 @@ from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.measures.presets import engine_of
-from studies.measures.words import alike, listed, part
-from studies.measures.wrongness import FALL, NO_ANSWER, REST, WORDS, counted, kinds_of
+from studies.measures.words import alike, part
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
 
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""
@@ -107,47 +107,9 @@ def first_claim(table: pd.DataFrame) -> str:
     )
 
 
-def _each(table: pd.DataFrame) -> str:
-    """Say what part of all pulses each engine gets right."""
-    sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
-    words = [
-        f"{engine_of(str(name))} {_whole(row['close'] / row['cases'])}"
-        for name, row in sums.iterrows()
-    ]
-    return (
-        f"Outcome right and peak within {part(CLOSE)}, as the libraries come: {listed(words)} of "
-        f"{int(sums['cases'].iloc[0])} pulses under which a block neither slides nor lifts off."
-    )
-
-
 def _whole(value: float) -> str:
     """Return a part in whole per cent, and all of it only where it is all."""
     return "all" if value == 1.0 else f"{min(value, 0.99):.0%}".replace("%", " %")
-
-
-def claims(table: pd.DataFrame, rows: pd.DataFrame) -> str:
-    """Say what each engine gets wrong, and how two blocks differ that are alike."""
-    sums = table.groupby("source", sort=False).sum(numeric_only=True)
-    words = []
-    for name, row in sums.iterrows():
-        wrong = [
-            f"{row[column] / row['cases']:.1%} {what}".replace("%", " %")
-            for column, what in (
-                ("far", "peaks off by more"),
-                (FALL, f"{WORDS[FALL]}{_sides(row)}"),
-                (REST, WORDS[REST]),
-                (NO_ANSWER, WORDS[NO_ANSWER]),
-            )
-            if row[column]
-        ]
-        words.append(f"{engine_of(str(name))} {listed(wrong)}")
-    return f"{_each(table)} Else: {'; '.join(words)}. {similarity(rows)}"
-
-
-def _sides(row: "pd.Series[float]") -> str:
-    """Return in brackets on which side falls are wrong."""
-    sides = (("false_overturnings", "falsely overturned"), ("missed_overturnings", "missed"))
-    return f" ({listed([f'{row[name]:.0f} {words}' for name, words in sides if row[name]])})"
 
 
 def similarity(rows: pd.DataFrame) -> str:
@@ -177,4 +139,4 @@ def findings(table: pd.DataFrame, rows: pd.DataFrame) -> str:
     shown = table.assign(
         median_error=table["median_error"].map(part), p90_error=table["p90_error"].map(part)
     )
-    return f"{claims(table, rows)}\n\n{shown.to_string(index=False)}"
+    return f"{first_claim(table)} {similarity(rows)}\n\n{shown.to_string(index=False)}"

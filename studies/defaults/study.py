@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import pandas as pd
@@ -12,9 +12,9 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import claims, findings, first_claim, shares, with_verdicts
-from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources
+from studies.defaults.claims import findings, first_claim, shares, with_verdicts
+from studies.drawing.kept import Pictures, keep
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -22,9 +22,6 @@ from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
 RATIOS = tuple(0.5 * np.arange(1, 17))
@@ -37,7 +34,7 @@ DEFAULT_SOURCES = ("exact", *core_sources("naive"))
 
 def command(
     *,
-    out: Place,
+    out: Out,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     frame: Literal["base", "world"] = "base",
     quick: bool = False,
@@ -50,8 +47,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     sources
         Who is asked; the exact solution always is.
     frame
@@ -113,14 +108,9 @@ def _job(
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's defaults.csv; return the findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder)
     write_table(folder / "parts.csv", shares(rows))
-    text = findings(shares(rows), rows)
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(shares(rows), rows))
 
 
 def read(folder: Path) -> pd.DataFrame:
@@ -134,13 +124,7 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "parts.csv"))
 
 
-def paragraph(folder: Path) -> str:
-    """Say what each engine gets wrong, and what its defaults make of similarity."""
-    rows = read(folder)
-    return claims(shares(rows), rows)
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the maps of the smallest and of the largest block from a folder's defaults.csv."""
     from studies.defaults.figure import draw_maps
 

@@ -16,18 +16,6 @@ SINGLES = 0.9
 """Share of single responses within CLOSE from which on they are called predicted."""
 
 
-def claims(agreed: pd.DataFrame) -> list[str]:
-    """Return a line about each source, and what became of the claim.
-
-    Parameters
-    ----------
-    agreed : DataFrame
-        From `agreement`, without the lines of the exact solution itself.
-    """
-    groups = agreed.groupby("source", sort=False)
-    return [*(_line(str(source), rows) for source, rows in groups), verdict(agreed)]
-
-
 def first_claim(agreed: pd.DataFrame) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
     words: dict[bool, list[str]] = {True: [], False: []}
@@ -107,16 +95,4 @@ def _distributions(rows: pd.DataFrame) -> str:
     return (
         f"Kolmogorov and Smirnov's test rejects {out_of(rows['ks_rejected'].sum(), tests)} "
         f"distributions of the peak ({LEVEL * tests:.1f} expected by chance)"
-    )
-
-
-def _line(source: str, rows: pd.DataFrame) -> str:
-    ratios = listed([interval(row) for _, row in rows.iterrows()])
-    off = sum(is_off(row["ratio_low"], row["ratio_high"]) for _, row in rows.iterrows())
-    few = int((rows["mcnemar_p"] < LEVEL).sum())
-    return (
-        f"{source}: {part(share_predicted(rows))} of single responses predicted within "
-        f"{CLOSE:.0%}; fitted capacity over the exact one {ratios}, off by more than resampling "
-        f"explains for {out_of(off, len(rows))} blocks; as many overturnings too many as too few "
-        f"(McNemar) rejected for {out_of(few, len(rows))}; {_distributions(rows)}."
     )

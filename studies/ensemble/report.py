@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.claims import AT_EDGE, claims, interval
+from studies.ensemble.claims import AT_EDGE, interval, verdict
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, by_block, share_bounds
 from studies.measures.differences import scientific
 
@@ -81,7 +81,7 @@ def findings(rows: pd.DataFrame, agreed: pd.DataFrame, confused: pd.DataFrame) -
     parts.append(totals.unstack(fill_value=0).to_string())
     parts += [
         "",
-        *claims(agreed[agreed["source"] != "exact"]),
+        verdict(agreed[agreed["source"] != "exact"]),
         "exact at 1.01 is the exact solution of motions 1 % stronger: what a small uncertainty of "
         "the motion does to the response itself.",
         "The two distributions are of the same motions, so that the test of Kolmogorov and Smirnov "

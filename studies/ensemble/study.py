@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import pandas as pd
 
@@ -12,13 +12,14 @@ from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, recorded
 from studies.cases.motions import FAMILIES
+from studies.drawing.kept import Pictures, keep
 from studies.ensemble import STUDY
 from studies.ensemble.agreement import confusion, settled
-from studies.ensemble.claims import first_claim, verdict
+from studies.ensemble.claims import first_claim
 from studies.ensemble.report import curves, findings, stripes
-from studies.kit import provenance
 from studies.kit.arguments import (
     Count,
+    Out,
     Place,
     check_sources,
     one_of,
@@ -32,9 +33,6 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Family = Literal["noise", "near-fault", "ricker"]
 
@@ -108,7 +106,7 @@ def ensemble_cases(
 
 def command(
     *,
-    out: Place,
+    out: Out,
     family: Annotated[Family, one_of(Family)] | None = None,
     motions: Count | None = None,
     seed: Count | None = None,
@@ -124,8 +122,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     family
         noise, the default: Kanai-Tajimi noise under an envelope; near-fault: pulses of Mavroeidis
         and Papageorgiou; ricker: wavelets.
@@ -202,20 +198,15 @@ def read_rows(folder: Path) -> pd.DataFrame:
 
 def report(folder: Path) -> str:
     """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
-    from studies.drawing.figures import save_all
-
     rows = read_rows(folder)
     fitted, agreed = settled(rows)
     tables = (stripes(rows), curves(rows, fitted), agreed, confusion(rows))
     for name, table in zip(TABLES, tables, strict=True):
         write_table(folder / name, table)
-    text = findings(rows, tables[2], tables[3])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(rows, tables[2], tables[3]))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's figures from its tables alone; single responses where it holds them."""
     from studies.ensemble.figure import draw_fragility, draw_singles
 
@@ -230,9 +221,3 @@ def headline(folder: Path) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
     agreed = pd.read_csv(folder / "agreement.csv")
     return first_claim(agreed[agreed["source"] != "exact"])
-
-
-def paragraph(folder: Path) -> str:
-    """Say what became of the claim that statistics are predicted where responses are not."""
-    agreed = pd.read_csv(folder / "agreement.csv")
-    return verdict(agreed[agreed["source"] != "exact"])

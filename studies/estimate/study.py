@@ -3,15 +3,15 @@
 from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import fill as wrapped
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
+from studies.drawing.kept import Pictures, keep
 from studies.estimate import STUDY
 from studies.estimate.calibration import beside_errors, factors
 from studies.estimate.cases import CALIBRATE, both_sets
-from studies.estimate.words import factors_text, first_claim, told
-from studies.kit import provenance
+from studies.estimate.words import factors_text, first_claim
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
@@ -25,12 +25,10 @@ from studies.kit.options import (
     refuse_two_steps,
 )
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import write_table
 from studies.measures.halving import halved
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def command(
@@ -115,14 +113,11 @@ def pairs(
 
 def report(folder: Path) -> str:
     """Hold a folder's estimates against the errors; write two tables, return the text."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "estimate.csv", dtype={"message": str})
     lines = beside_errors(rows)
     table = factors(lines)
     for name, kept in (("estimates", lines), ("factors", table)):
-        provenance.write_text(folder / f"{name}.csv", kept.to_csv(index=False, na_rep="nan"))
-    save_all(pictures(folder), folder)
+        write_table(folder / f"{name}.csv", kept)
     text = "\n".join(
         [
             "An estimate is the relative difference of a peak from that at half the step. Medians",
@@ -132,11 +127,10 @@ def report(folder: Path) -> str:
             "end bounds of the errors of other cases, which it was not found on:",
             factors_text(table),
             "",
-            wrapped(paragraph(folder), 99),
+            wrapped(headline(folder), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:
@@ -144,12 +138,7 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "factors.csv"))
 
 
-def paragraph(folder: Path) -> str:
-    """Say of every source how far its estimates are off."""
-    return told(pd.read_csv(folder / "factors.csv"))
-
-
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of the cases that calibrate, from a folder's estimates.csv alone."""
     from studies.estimate.figure import draw_estimates
 

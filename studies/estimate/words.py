@@ -8,8 +8,7 @@ import pandas as pd
 
 from studies.measures.differences import scientific
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
-from studies.measures.words import capital, listed, out_of, part
+from studies.measures.words import listed, out_of, part
 
 
 def factors_text(table: pd.DataFrame) -> str:
@@ -62,26 +61,3 @@ def _ends(line: Mapping[Any, Any]) -> str:
     """Return the interval of a factor that is no bound."""
     low, high = line["factor_95_low"], line["factor_95_high"]
     return f"{low:.2g} or more" if math.isinf(high) else f"{low:.2g} to {high:.3g}"
-
-
-def told(table: pd.DataFrame) -> str:
-    """Say of every preset what part of the errors 3 and 10 estimates bound, engine by engine."""
-    presets = table["source"].map(preset_of)
-    return " ".join(_of_preset(name, table[presets == name]) for name in in_order(presets))
-
-
-def _of_preset(preset: str, lines: pd.DataFrame) -> str:
-    head = capital(in_words(preset))
-    ordered = lines[lines["survivors"] > 0].sort_values("within_10", kind="stable")
-    if ordered.empty:
-        return f"{head} no case rocked at both steps."
-    words = [
-        f"{engine_of(line['source'])} {part(float(line['within_3']))} and "
-        f"{part(float(line['within_10']))}"
-        for _, line in ordered.iterrows()
-    ]
-    sentence = f"{head} 3 and 10 estimates bound, of the errors of {listed(words)}"
-    if wrong := int(lines["wrong"].sum()):
-        seen = out_of(int(lines["told"].sum()), wrong)
-        sentence += f"; of their wrong outcomes half the step tells {seen}"
-    return f"{sentence}."

@@ -1,26 +1,17 @@
 """What free rocking shows: the largest errors of period, decay and drift, in tables and words."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from studies.drawing.kept import Pictures, keep
 from studies.free.errors import IMPACTS
-from studies.kit import provenance
 from studies.measures.differences import scientific
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's free.csv; write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
-    text = f"{table_text(read(folder))}\n\n{paragraph(folder)}"
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), f"{table_text(read(folder))}\n\n{headline(folder)}")
 
 
 def read(folder: Path) -> pd.DataFrame:
@@ -57,21 +48,7 @@ def headline(folder: Path) -> str:
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
 
 
-def paragraph(folder: Path) -> str:
-    """Say how far period, decay and drift of each source are from its model's closed forms."""
-    words = [
-        f"{source} {scientific(line['period_error'])}, {scientific(line['decay_error'])} and "
-        f"{scientific(line['drift_p'])}/p"
-        for source, line in errors(read(folder), ["source"]).iterrows()
-    ]
-    return (
-        "Free rocking against the closed forms of each source's model, largest relative error of "
-        "the time between two impacts, of the rotation after one, and the drift over up to "
-        f"{IMPACTS} impacts: {'; '.join(words)}."
-    )
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of a folder from its free.csv alone."""
     from studies.free.figure import draw_free
 

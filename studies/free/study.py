@@ -9,8 +9,8 @@ from analytic import RigidBlock, Still
 from analytic.criteria import quarter_period
 from studies.free import STUDY
 from studies.free.errors import SWINGS, reduce, swing_times
-from studies.free.report import headline, paragraph, pictures, report
-from studies.kit.arguments import Place, check_sources
+from studies.free.report import headline, pictures, report
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -18,7 +18,7 @@ from studies.kit.plan import Plan, carry_out
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -30,7 +30,7 @@ SAMPLES = 6000
 
 def command(
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
@@ -45,8 +45,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     quick
         Two aspect ratios and two tilts.
     sources

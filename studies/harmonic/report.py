@@ -2,18 +2,16 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analytic.response import Outcome
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.measures.differences import scientific
 from studies.measures.words import out_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NO_PERIOD = "does not repeat"
 NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
@@ -21,13 +19,12 @@ NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     table, engines = read(folder, "harmonic"), read(folder, "engines")
-    text = "\n\n".join([branches_text(table), *engines_text(engines), paragraph(folder)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(
+        folder,
+        pictures(folder),
+        "\n\n".join([branches_text(table), *engines_text(engines), counts_text(folder)]),
+    )
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
@@ -121,12 +118,11 @@ def headline(folder: Path) -> str:
     )
 
 
-def paragraph(folder: Path) -> str:
-    """Say from how many starts, how many steady states were found and where, and the engines."""
-    table, engines, asked = read(folder, "harmonic"), read(folder, "engines"), settings_of(folder)
-    found, side = counts(table), asked["starts"]
+def counts_text(folder: Path) -> str:
+    """Say from how many starts how many steady states were found, and where."""
+    found, side = counts(read(folder, "harmonic")), settings_of(folder)["starts"]
     total = found["all"]
-    sentence = (
+    return (
         f"From {side} rotations by {side} rates at each of {total} abscissae, with steady states "
         f"counted and overturning not: {out_of(found['several'], total)} have more than one, "
         f"{out_of(found['longer'], total)} one that takes more than one forcing period; at "
@@ -134,14 +130,9 @@ def paragraph(folder: Path) -> str:
         f"{out_of(found['fallen'], total)} all overturn. An orbit may live where no start of the "
         "grid found it."
     )
-    if len(engines):
-        largest = with_error(engines).groupby("source", sort=False)["error"].max()
-        words = ", ".join(f"{name} {scientific(value)}" for name, value in largest.items())
-        sentence += f" Engines on the exact orbit, largest difference of its rotation: {words}."
-    return sentence
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the diagram of a folder from its tables alone."""
     from studies.harmonic.figure import draw_harmonic
 

@@ -12,8 +12,8 @@ from analytic.block import RigidBlock
 from analytic.response import Response
 from studies.harmonic import STUDY
 from studies.harmonic.attractors import Attractor, Shaking, State, attractors
-from studies.harmonic.report import headline, paragraph, pictures, report
-from studies.kit.arguments import BadInputError, Count, Place, Positive, check_sources
+from studies.harmonic.report import headline, pictures, report
+from studies.kit.arguments import BadInputError, Count, Out, Positive, check_sources
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -25,7 +25,7 @@ from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_time
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 Over = Literal["frequency", "amplitude"]
 RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}
@@ -60,7 +60,7 @@ class Branch:
 
 def command(
     *,
-    out: Place,
+    out: Out,
     width: Positive = 0.5,
     height: Positive = 1.5,
     over: Over = "frequency",
@@ -80,8 +80,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     width
         Width B of the block [m].
     height

@@ -9,9 +9,10 @@ import pandas as pd
 
 from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
+from studies.drawing.kept import Pictures
 from studies.histories import STUDY
 from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
+from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.digests import seal
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -24,7 +25,6 @@ from studies.measures.claims import (
     Claim,
     Finding,
     read_findings,
-    sentences,
     tally,
     write_findings,
 )
@@ -56,7 +56,7 @@ TITLES = {
 
 def command(
     *,
-    out: Place,
+    out: Out,
     figure: Annotated[tuple[int, ...], figures(2, 4, 5)] = (2, 4, 5),
     sources: Annotated[tuple[str, ...] | None, PAPERS] = None,
     running: Running = DEFAULT_RUNNING,
@@ -67,8 +67,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     figure
         Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default.
     sources
@@ -177,7 +175,7 @@ def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
     return [item for item in held if item.statement not in {new.statement for new in found}]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw every figure of a folder from its CSV alone."""
     figures = [n for n in HISTORIES if (folder / f"figure-{n}.csv").is_file()]
     return {f"figure-{n}": drawn(folder, n) for n in figures}
@@ -186,11 +184,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say how many of the paper's statements about its histories hold."""
     return tally(read_findings(folder), "the paper's statements about its time histories")
-
-
-def paragraph(folder: Path) -> str:
-    """Say which of the paper's statements hold, with the numbers."""
-    return sentences(read_findings(folder))
 
 
 def drawn(folder: Path, figure: int) -> "Figure":

@@ -143,6 +143,9 @@ def one_of(words: Any) -> Any:
 Place = Annotated[Path, _read("a path; one that begins with a dash is written ./-name", _path)]
 """A file or folder."""
 
+Out = Annotated[Place, Parameter(help="Folder for the results; made if there is none.")]
+"""Where a study leaves what it made."""
+
 
 def figures(*allowed: int) -> Parameter:
     """Return what makes an argument take some of the paper's figures, separated by spaces."""

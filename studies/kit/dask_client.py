@@ -7,19 +7,16 @@ connection is encrypted, and whom it trusts, is Dask's own configuration
 
 import asyncio
 import logging
-from collections.abc import AsyncGenerator
-from contextlib import asynccontextmanager, suppress
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
 
 from studies.kit.arguments import BadInputError
 from studies.kit.refusing import one_line
 from studies.kit.worker import START, fitness, unfit
 
 if TYPE_CHECKING:
-    from distributed import Security
-
-AsyncClient: TypeAlias = Any
-"""A Dask client whose methods are coroutines; Dask's annotations are those of the other kind."""
+    from distributed import Client, Security
 
 CONNECT_S = 10.0
 """How long to wait for the scheduler, and for a first worker [s]."""
@@ -42,8 +39,8 @@ class ClusterError(BadInputError):
         super().__init__(f"--cluster is {address!r}; {problem}")
 
 
-@asynccontextmanager
-async def client_of(address: str) -> AsyncGenerator[AsyncClient, None]:
+@contextmanager
+def client_of(address: str) -> Iterator["Client"]:
     """Connect to a cluster whose workers run this very version.
 
     Raises
@@ -52,27 +49,31 @@ async def client_of(address: str) -> AsyncGenerator[AsyncClient, None]:
         If Dask is not installed, no scheduler answers in time, there is no worker, or one is unfit.
     """
     try:
-        import distributed  # noqa: F401
+        from distributed import utils
     except ImportError:
         raise ClusterError(address, "it needs Dask: pip install 'rocking[cluster]'") from None
     _silence()
+    runner = utils.LoopRunner()
+    runner.start()
     try:
-        async with asyncio.timeout(CONNECT_S):
-            client = await _connected(address)
-    except ClusterError:
-        raise
-    except Exception as error:
-        # whoever listens there may have said anything
-        problem = f"it must be the address of a running Dask scheduler ({_reason(error)})"
-        raise ClusterError(address, problem) from None
-    try:
-        await _refuse_unfit(client, address)
-        yield client
+        try:
+            client = utils.sync(runner.loop, _connected, address, callback_timeout=CONNECT_S)
+        except ClusterError:
+            raise
+        except Exception as error:
+            # whoever listens there may have said anything
+            problem = f"it must be the address of a running Dask scheduler ({_reason(error)})"
+            raise ClusterError(address, problem) from None
+        try:
+            _refuse_unfit(client, address)
+            yield client
+        finally:
+            utils.sync(runner.loop, _close, client)
     finally:
-        await _close(client)
+        runner.stop()
 
 
-async def workers_of(client: AsyncClient, address: str) -> list[str]:
+def workers_of(client: "Client", address: str) -> list[str]:
     """Return the addresses of the present workers.
 
     Raises
@@ -83,8 +84,7 @@ async def workers_of(client: AsyncClient, address: str) -> list[str]:
     if client.status != "running":
         raise gone(address)
     try:
-        async with asyncio.timeout(ANSWER_S):
-            return list(await client.nthreads())
+        return list(client.sync(client.nthreads, callback_timeout=ANSWER_S))
     except TimeoutError:
         raise ClusterError(address, f"its scheduler was silent for {ANSWER_S:g} s") from None
     except OSError:
@@ -103,7 +103,7 @@ def _silence() -> None:
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
-async def _connected(address: str) -> AsyncClient:
+async def _connected(address: str) -> "Client":
     from distributed import Client, Security
 
     security = Security()
@@ -113,10 +113,10 @@ async def _connected(address: str) -> AsyncClient:
     )
     try:
         await client
+        return client
     except BaseException:
         await _close(client)
         raise
-    return client
 
 
 async def _knock(address: str, security: "Security") -> None:
@@ -140,7 +140,7 @@ async def _knock(address: str, security: "Security") -> None:
         raise ClusterError(address, f"it must be the address of a scheduler, not of a {kind}")
 
 
-async def _close(client: AsyncClient) -> None:
+async def _close(client: "Client") -> None:
     with suppress(OSError):
         await client.close(timeout=CLOSE_S)
 
@@ -153,22 +153,25 @@ def _reason(error: Exception) -> str:
     return one_line(error)
 
 
-async def _refuse_unfit(client: AsyncClient, address: str) -> None:
+def _refuse_unfit(client: "Client", address: str) -> None:
     try:
-        async with asyncio.timeout(CONNECT_S):
-            await client.wait_for_workers(1)
+        client.wait_for_workers(1, timeout=CONNECT_S)
     except TimeoutError:
         raise ClusterError(address, f"it has no workers; start one with {START}") from None
     except OSError:
         raise gone(address) from None
-    workers = await workers_of(client, address)
-    problems = await asyncio.gather(*(_problem_of(client, worker) for worker in workers))
-    for worker, problem in zip(workers, problems, strict=True):
+    workers = workers_of(client, address)
+    for worker, problem in zip(workers, client.sync(_problems_of, client, workers), strict=True):
         if problem:
             raise ClusterError(address, f"its worker {worker} cannot be used: {problem}")
 
 
-async def _problem_of(client: AsyncClient, worker: str) -> str:
+async def _problems_of(client: "Client", workers: Sequence[str]) -> list[str]:
+    """Ask all workers at once why they must not run jobs, on the client's own event loop."""
+    return await asyncio.gather(*(_problem_of(client, worker) for worker in workers))
+
+
+async def _problem_of(client: "Client", worker: str) -> str:
     """Ask a worker why it must not run jobs; an empty string if it may."""
     try:
         async with asyncio.timeout(ANSWER_S):

@@ -58,9 +58,6 @@ class StudyModule(Command, Protocol):
     def headline(self, folder: Path) -> str:
         """Return what a folder's tables show first, as a claim of one sentence."""
 
-    def paragraph(self, folder: Path) -> str:
-        """Return what a folder's tables show, in sentences made from them."""
-
     def pictures(self, folder: Path) -> dict[str, Figure]:
         """Draw a folder's figures from its CSVs alone, by name."""
 

@@ -4,7 +4,6 @@ import functools
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -13,8 +12,8 @@ from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
-from studies.kit import provenance
-from studies.kit.arguments import Place
+from studies.drawing.kept import Pictures, keep
+from studies.kit.arguments import Out
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
@@ -24,16 +23,10 @@ from studies.measures.claims import (
     Finding,
     findings_text,
     read_findings,
-    sentences,
     tally,
     write_findings,
 )
 from studies.measures.differences import posed_cases, scientific
-from studies.measures.words import listed, part
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
@@ -94,16 +87,11 @@ def grid(name: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def command(*, out: Place) -> int:
+def command(*, out: Out) -> int:
     """Take a linearization apart: onset, frequency and saddle, each changed alone.
 
     All eight combinations of Housner's and the modified choices, against the exact solution, on
     the paper's cases and on a wider grid; what the paper concludes, with the numbers.
-
-    Parameters
-    ----------
-    out
-        Folder for the results; made if there is none.
     """
     return carry_out(STUDY, Plan(tabulate=tabulate), out, DEFAULT_RUNNING, report)
 
@@ -186,9 +174,6 @@ def key(word: str) -> tuple[int, int, int]:
 
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     table = read(folder, "linearizations")
     found = conclusions(table, all_errors())
     write_findings(folder, found)
@@ -198,8 +183,7 @@ def report(folder: Path) -> str:
             findings_text(found),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
@@ -207,7 +191,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv", dtype={"changed": str})
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
     from studies.linearizations.figure import draw_distributions
 
@@ -218,21 +202,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say which of the paper's conclusions hold."""
     return tally(read_findings(folder), "the paper's conclusions about the linearizations")
-
-
-def paragraph(folder: Path) -> str:
-    """Say how near each named linearization is, and what holds of the paper's conclusions."""
-    table = read(folder, "linearizations")
-    wide = table[(table["grid"] == "wide") & table["changed"].map(lambda word: key(word) in NAMED)]
-    words = [
-        f"{NAMED[key(line['changed'])]} errs by {part(line['median_error'])} in the median, with "
-        f"{part(line['wrong'] / line['cases'])} of the outcomes wrong"
-        for _, line in wide.iterrows()
-    ]
-    return (
-        f"On a wide grid of {wide['cases'].iloc[0]} cases {listed(words)}. "
-        f"{sentences(read_findings(folder))}"
-    )
 
 
 def table_text(table: pd.DataFrame, name: str) -> str:

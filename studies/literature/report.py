@@ -1,33 +1,25 @@
 """What the printed numbers say: which come out to their digits, and by how much the others miss."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
-from studies.measures.differences import scientific
 from studies.measures.words import out_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's literature.csv; write and return the text."""
-    from studies.drawing.figures import save_all
-
     table = agreement(_read(folder / "literature.csv"))
-    text = table.to_csv(index=False, na_rep="nan")
-    provenance.write_text(folder / "agreement.csv", text)
-    save_all(pictures(folder), folder)
-    text = "\n\n".join([table_text(table), *works(table), paragraph(folder)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    write_table(folder / "agreement.csv", table)
+    return keep(
+        folder, pictures(folder), "\n\n".join([table_text(table), *works(table), headline(folder)])
+    )
 
 
 def headline(folder: Path) -> str:
@@ -42,43 +34,7 @@ def _of_theory(table: pd.DataFrame) -> pd.DataFrame:
     return table[(table["source"] == table["model"]) & (table["of"] == "theory")]
 
 
-def paragraph(folder: Path) -> str:
-    """Say how many printed numbers come out to their digits, the largest miss, and the engines."""
-    table = _read(folder / "agreement.csv")
-    mine = _of_theory(table)
-    missed = mine[mine["agrees"] != "True"]
-    words = f"Of {len(mine)} printed numbers {len(mine) - len(missed)} come out to every digit"
-    if len(missed):
-        rounding = int(missed["why"].str.startswith("comes out").sum())
-        words += (
-            f"; the others miss the print by {missed['miss'].min():.1e} to "
-            f"{missed['miss'].max():.1e}, {rounding} of which come out "
-            "with a frequency at most 0.2 % off"
-        )
-    tests = table[(table["of"] == "test") & (table["source"] == table["model"])]
-    if len(tests):
-        ratios = tests["printed"].astype(float)
-        words += (
-            f". Velocity ratios measured in tests are {ratios.min():g} to {ratios.max():g} of "
-            "Housner's, which the exact solution and the engines have"
-        )
-    return words + _engines(table) + "."
-
-
-def _engines(table: pd.DataFrame) -> str:
-    """Return the largest difference of each engine from the exact answers, in words."""
-    others = table[~table["source"].isin(["exact", "housner", "modified"])]
-    words = [
-        f"{source} {scientific(float(rows['from_exact'].abs().max()))} "
-        f"over {int(rows['from_exact'].notna().sum())}"
-        for source, rows in others.groupby("source", sort=False)
-    ]
-    if not words:
-        return ""
-    return f". Engines beside the exact answers, largest difference: {', '.join(words)}"
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
     from studies.literature.figure import draw_literature
 
@@ -87,8 +43,7 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 
 def _read(path: Path) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    words = dict.fromkeys(("message", "measured", "agrees", "printed", "why"), str)
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(path, "measured", "agrees", "printed", "why")
 
 
 def agreement(rows: pd.DataFrame) -> pd.DataFrame:

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from studies.kit.arguments import Place, check_sources
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_engines
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -11,11 +11,11 @@ from studies.literature import STUDY
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
 from studies.literature.readings import reduce, solve_problem, times_of
-from studies.literature.report import headline, paragraph, pictures, report
+from studies.literature.report import headline, pictures, report
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 DEFAULT_SOURCES = core_sources()
 AFTER_A_RELEASE = 3.0
@@ -24,7 +24,7 @@ AFTER_A_RELEASE = 3.0
 
 def command(
     *,
-    out: Place,
+    out: Out,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -35,8 +35,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     sources
         Engines, beside the printed model and the exact one.
     """

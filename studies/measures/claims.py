@@ -8,7 +8,7 @@ from textwrap import fill
 
 import pandas as pd
 
-from studies.kit import provenance
+from studies.kit.tables import read_table, write_table
 from studies.measures.words import out_of
 
 TABLE = "findings.csv"
@@ -75,20 +75,15 @@ def tally(items: Sequence[Finding], whose: str) -> str:
     return f"{words}; not: {'; '.join(failing)}." if failing else f"{words}."
 
 
-def sentences(items: Iterable[Finding]) -> str:
-    """Return the findings as a paragraph, the numbers in brackets."""
-    return " ".join(f"{item.statement}: {item.verdict} ({item.numbers})." for item in items)
-
-
 def write_findings(folder: Path, items: Sequence[Finding]) -> None:
     """Write a folder's findings as a table."""
     table = pd.DataFrame([asdict(item) for item in items])
-    provenance.write_text(folder / TABLE, table.to_csv(index=False, na_rep="nan"))
+    write_table(folder / TABLE, table)
 
 
 def read_findings(folder: Path) -> list[Finding]:
     """Read a folder's findings back."""
-    table = pd.read_csv(folder / TABLE, keep_default_na=False, na_values=["nan"])
+    table = read_table(folder / TABLE)
     return [
         Finding(str(statement), None if _unknown(holds) else str(holds) == "True", str(numbers))
         for statement, holds, numbers in table.to_numpy(object)

@@ -15,6 +15,7 @@ from cyclopts import Parameter
 from studies.kit import app
 from studies.kit.arguments import BadInputError, Place, Positive
 from studies.kit.study import Study
+from studies.kit.tables import read_table
 
 MEASURED = frozenset(
     {
@@ -71,9 +72,7 @@ def differences(before: Path, after: Path, within: float = 0.0) -> Iterator[str]
         if not path.is_file():
             yield words
             return
-    old, new = (
-        pd.read_csv(path, keep_default_na=False, na_values=["nan"]) for path in (before, after)
-    )
+    old, new = (read_table(path) for path in (before, after))
     if list(old.columns) != list(new.columns):
         apart = sorted(set(old.columns) ^ set(new.columns))
         yield f"other columns: {', '.join(apart) or 'another order'}"

@@ -3,29 +3,24 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, keep
 from studies.kit.tables import write_table
 from studies.measures.differences import scientific
-from studies.measures.words import gathered, in_kinds, listed, part, right_but
+from studies.measures.words import gathered, in_kinds, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the summary and the findings as text."""
-    from studies.drawing.figures import save_all
-
     window = window_of(folder)
     areas = read(folder, "map")
     engines = read(folder, "engines")
@@ -36,7 +31,6 @@ def report(folder: Path) -> str:
     if len(differences):
         write_table(folder / "differences.csv", differences)
     write_table(folder / "checks.csv", checked)
-    save_all(pictures(folder), folder)
     text = "\n".join(
         [
             f"Overturning map: {window.title}; parts of the area of the map, exact mode by mode:",
@@ -52,11 +46,10 @@ def report(folder: Path) -> str:
             checks_text(checked),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the figures of a folder from its CSVs alone."""
     from studies.overturning.figure import draw_conditioning, draw_differences, draw_map
 
@@ -85,34 +78,10 @@ def headline(folder: Path) -> str:
     return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {gathered(cells)}."
 
 
-def paragraph(folder: Path) -> str:
-    """Say how much of the map each source gets wrong, on which side and where."""
-    said = [_share(line) for _, line in read(folder, "differences").iterrows()]
-    return f"On the map of the {window_of(folder).title}: {gathered(said)}."
-
-
-def _share(line: "pd.Series[Any]") -> tuple[str, str]:
-    """Return a source, and what part of the map it gets wrong or how many of its cells right."""
-    if math.isnan(line["cells"]):
-        wrong = [
-            f"{words} {part(line[name])}{_between(line, name)}"
-            for name, words in (("false", "overturns falsely in"), ("missed", "misses"))
-            if line[name]
-        ]
-        return line["source"], listed(wrong) if wrong else "gets all of it right"
-    right = right_but(_kinds(line), line["cells"])
-    return line["source"], f"right in {right} cells of a coarse grid"
-
-
 def _kinds(line: "pd.Series[Any]") -> dict[str, int]:
     """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
     fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
     return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}
-
-
-def _between(line: "pd.Series[Any]", name: str) -> str:
-    low, high = line.get(f"{name}_from", math.nan), line.get(f"{name}_to", math.nan)
-    return "" if math.isnan(low) else f" (nine tenths of that at x = {low:.2g} to {high:.2g})"
 
 
 def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, object]]:

@@ -14,7 +14,7 @@ from studies.cases.window import LEAST_ONSETS, Axis, Window
 from studies.kit.arguments import (
     BadInputError,
     Count,
-    Place,
+    Out,
     Positive,
     as_bad_input,
     check_sources,
@@ -36,10 +36,10 @@ from studies.overturning.engine_edges import (
     grid_jobs,
     reduce,
 )
-from studies.overturning.report import headline, paragraph, pictures, report
+from studies.overturning.report import headline, pictures, report
 from studies.sources.groups import core_sources
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
 DEFAULT_SOURCES = (
@@ -85,7 +85,7 @@ DEFAULT_RUNNING = PatientRunning()
 
 def command(
     *,
-    out: Place,
+    out: Out,
     over: Axis = "frequency",
     pulse: Literal["half-sine", "full-sine"] = "full-sine",
     aspect: Positive | None = None,
@@ -105,8 +105,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     over
         The abscissa: frequency (ω/p), slenderness (α) or size (p/2π in Hz).
     pulse

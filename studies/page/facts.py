@@ -52,7 +52,7 @@ NINTH = Path("tests", "plugin", "my_engine.py")
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A chapter in words: where it stands, its question, claim, paragraph and command.
+    """A chapter in words: where it stands, its question, claim and command.
 
     Its pictures are names of files, each with what is seen in it.
     """
@@ -60,7 +60,6 @@ class Told:
     folder: str
     question: str
     claim: str
-    paragraph: str
     command: str
     pictures: tuple[tuple[str, str], ...]
     texts: tuple[str, ...]
@@ -74,7 +73,6 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
         folder=chapter.folder,
         question=chapter.question,
         claim=module.headline(folder),
-        paragraph=module.paragraph(folder),
         command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
         pictures=tuple(
             (path.name, study.captions.get(path.stem, path.stem))

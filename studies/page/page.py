@@ -17,6 +17,7 @@ from studies.catalogue import CHAPTERS
 from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
+from studies.kit.tables import read_table
 from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
 from studies.measures.wrongness import KINDS
@@ -100,7 +101,6 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "folder": chapter.folder,
         "question": chapter.question,
         "claim": module.headline(folder),
-        "paragraph": module.paragraph(folder),
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
@@ -149,7 +149,7 @@ def _address(kind: str, image: io.BytesIO) -> str:
 
 def table(path: Path) -> tuple[list[str], list[list[Cell]]]:
     """Return the heads and rows of a CSV."""
-    rows = pd.read_csv(path, keep_default_na=False, na_values=["nan"])
+    rows = read_table(path)
     return list(rows.columns), [[cell(value) for value in row] for row in rows.to_numpy(object)]
 
 
@@ -167,7 +167,7 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
     """Return how often each source of a study failed, and of what."""
     found: list[dict[Any, Any]] = []
     for path in sorted(folder.glob(pattern)):
-        rows = pd.read_csv(path, keep_default_na=False, na_values=["nan"])
+        rows = read_table(path)
         if {"source", "outcome", "message"} <= set(rows.columns):
             failed = rows[rows["outcome"] == "failed"]
             counts = failed.groupby(["source", "message"], sort=False).size().reset_index(name="n")

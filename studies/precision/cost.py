@@ -25,11 +25,11 @@ from studies.kit.pool import Pool
 from studies.kit.processes import COMPILING_S
 from studies.measures.costs import loop_of
 from studies.precision import COST
-from studies.precision.cost_report import headline, paragraph, pictures, report
+from studies.precision.cost_report import headline, pictures, report
 from studies.precision.repeats import interleaved
 from studies.precision.shares import pose_case, share_table
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 
 BUDGET_S, QUICK_BUDGET_S = 5.0, 0.15

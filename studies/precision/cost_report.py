@@ -2,24 +2,19 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import read_table
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     text = "\n\n".join(
         [
             "Where the time of a step goes:\n" + shares_text(read(folder, "shares")),
@@ -28,16 +23,15 @@ def report(folder: Path) -> str:
             "What the exact solution leaves out:\n" + reference_text(read(folder, "reference")),
         ]
     )
-    provenance.write_text(folder / "cost.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text, "cost.txt")
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
     """Read a table back with empty words as such."""
-    return pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=["nan"])
+    return read_table(folder / f"{name}.csv")
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's scenes.csv: time and error of each thing put back."""
     from studies.precision.cost_figure import draw_scenes
 
@@ -59,11 +53,6 @@ def _step(line: "pd.Series[Any]") -> str:
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"
     return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"
-
-
-def paragraph(folder: Path) -> str:
-    """Say the same; the tables say the rest."""
-    return headline(folder)
 
 
 def shares_text(shares: pd.DataFrame) -> str:

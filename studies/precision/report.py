@@ -4,7 +4,6 @@ import json
 import math
 from dataclasses import asdict
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,12 +13,13 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit import provenance
-from studies.measures.costs import loop_of
+from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import write_table
+from studies.measures.costs import LOOPS, loop_of
 from studies.measures.differences import scientific
+from studies.measures.words import duration, listed, times
 from studies.precision import cost_report
-from studies.precision.choices import cheapest_below
-from studies.precision.claims import claims, first_claim
+from studies.precision.choices import TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS
 from studies.precision.orders import observed_order
 
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
+STRICT = "RK4"
+"""The paper's solver, with a strict criterion for contact."""
+
 CASE = ("figure", "aspect", "width_m", "omega_over_p")
 """Columns that tell one case from another."""
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's precision.csv; return tables and findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "precision.csv", dtype={"message": str})
     table = work_precision(with_errors(rows))
-    provenance.write_text(folder / "work-precision.csv", table.to_csv(index=False, na_rep="nan"))
-    save_all({"precision": drawn(folder)}, folder)
+    write_table(folder / "work-precision.csv", table)
     typical = table[table["set"] == "typical"]
     text = "\n".join(
         [
@@ -47,12 +47,9 @@ def report(folder: Path) -> str:
             cheapest(typical).to_string(index=False),
             "\nErrors at the finest setting, where they stop falling, and the observed order:",
             floor_text(typical),
-            "",
-            fill(claims(table), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, {"precision": drawn(folder)}, text)
 
 
 def headline(folder: Path) -> str:
@@ -60,12 +57,31 @@ def headline(folder: Path) -> str:
     return first_claim(pd.read_csv(folder / "work-precision.csv"))
 
 
-def paragraph(folder: Path) -> str:
-    """Return what a folder's work-precision.csv says."""
-    return claims(pd.read_csv(folder / "work-precision.csv"))
+def first_claim(table: pd.DataFrame) -> str:
+    """Say what the smallest of the targets costs with an engine, and with the paper's solver."""
+    reached = [chosen for chosen in choices(table) if chosen.typical is not None]
+    if not reached:
+        return "No engine setting reaches any of the errors asked for on every typical case."
+    last = reached[-1]
+    engines = [
+        f"{times(chosen.over_exact)} that {words}, {LOOPS[chosen.loop]}"
+        for chosen, words in (
+            (last.typical, "on typical cases"),
+            (last.everywhere, "with those near overturning"),
+        )
+        if chosen is not None
+    ]
+    typical = table[table["set"] == TYPICAL]
+    own = exact_cost(typical)
+    best = cheapest_below(typical[typical["method"] == STRICT], last.target)
+    rival = "" if best is None else f", and RK4 {times(best['wall_s'] / own)} it"
+    return (
+        f"The exact solution takes {duration(own)} a case; an error below {last.target:g} costs "
+        f"an engine {listed(engines)}{rival}."
+    )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
     return {"precision": drawn(folder), **cost_report.pictures(folder)}
 

@@ -15,7 +15,7 @@ from analytic.response import Outcome, Response
 from engines import core_engines
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Place, Positive, check_engines, several
+from studies.kit.arguments import Out, Positive, check_engines, several
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.options import Running
@@ -24,10 +24,10 @@ from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost, cost_report
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
-from studies.precision.report import headline, paragraph, pictures, report
+from studies.precision.report import headline, pictures, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 """Time [s] spent at most on timing one case with one setting."""
@@ -35,7 +35,7 @@ BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 
 def command(
     *,
-    out: Place,
+    out: Out,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     time_limit: Positive = 60.0,
@@ -50,8 +50,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     quick

@@ -1,7 +1,6 @@
 """What was found of restitution, in words and as a table."""
 
 import math
-from typing import Any
 
 import pandas as pd
 
@@ -25,12 +24,6 @@ def _ranges(words: str) -> str:
 
 RANGES = _ranges("steps of {}/p, rates of {} α p, heights of {} m, H/B of {}")
 """Over what strikes are varied."""
-
-LOST = (
-    "Slow bounces are lost where the weight takes their speed within a step, or where a library "
-    "lets nothing bounce below a speed that it has set."
-)
-"""Why a way that holds at first does not over all that is varied."""
 
 
 def findings_text(corners: pd.DataFrame, rates: pd.DataFrame) -> str:
@@ -91,51 +84,3 @@ def _ends(best: pd.DataFrame, column: str) -> str:
     """Return the least and the largest of a column, and of which engine."""
     ends = best.sort_values(column).iloc[[0, -1]].to_dict("records")
     return " to ".join(dict.fromkeys(f"{_off(row[column])} in {row['engine']}" for row in ends))
-
-
-def settings_claim(corners: pd.DataFrame) -> str:
-    """Say with which setting each engine keeps a coefficient best."""
-    words = [
-        f"in {row['engine']} to {_off(row['off_over_all'])} ({_off(row['off'])}) by "
-        f"{row['literal']}"
-        for row in best_of(corners).to_dict("records")
-    ]
-    return (
-        f"It is kept, here one of {SHOWN:g} and over the same (in brackets: where nothing is "
-        f"varied), DT being the step in seconds, {'; '.join(words)}."
-    )
-
-
-def rate_claim(corners: pd.DataFrame, rates: pd.DataFrame) -> str:
-    """Say by which engines a rocking block keeps what the theory says, and by which it does not.
-
-    Each is asked in the way in which its corner comes off best.
-    """
-    best = rates.loc[best_of(corners, "off").index]
-    near, far = best[best["off"] <= GOOD], best[best["off"] > GOOD]
-    words = [
-        f"within {near['off'].max():.3f} in {listed(list(near['engine']))}, and within "
-        f"{near['off_over_all'].max():.3f} over the same"
-    ] * bool(len(near))
-    for row in far.to_dict("records"):
-        slides = f", its corner sliding at {_off(row['slide'])} times the speed of its approach"
-        words.append(
-            f"off by up to {_off(row['off'])} in {row['engine']}"
-            + slides * bool(row["slide"] > GOOD)
-        )
-    return (
-        "Its angular rate should become 1 - 3/2 (1 + e) sin² α of what it was, "
-        f"Housner's for e = 0: it does {'; it is '.join(words)}."
-    )
-
-
-def told(lines: pd.DataFrame, asked: str) -> str:
-    """Say which ways hold over steps, speeds and sizes, and which would but for slow impacts."""
-    ways: pd.Series[Any] = lines["engine"] + "'s " + '"' + lines["way"] + '"'
-    all_over = lines["off_over_all"] <= GOOD
-    at_first = (lines["off"] <= GOOD) & ~all_over
-    held = listed(list(ways[all_over])) if all_over.any() else "no way"
-    sentence = f"Within {GOOD:g} of {asked}, over all that is varied: {held}"
-    if at_first.any():
-        sentence += f"; at the first step, speed and size alone: {listed(list(ways[at_first]))}"
-    return f"{sentence}."

@@ -1,34 +1,27 @@
 """A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from engines import installed_engines
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, check_engines, several
+from studies.drawing.kept import Pictures, keep
+from studies.kit.arguments import BadInputError, Out, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import read_table
 from studies.restitution import STUDY, strikes
 from studies.restitution.report import (
-    LOST,
     findings_text,
     first_claim,
-    rate_claim,
-    settings_claim,
-    told,
 )
 from studies.restitution.ways import WAYS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 ASKED = tuple(name for name in installed_engines() if name in WAYS)
 
 
-def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
+def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
     """Hold what a rocking block keeps at an impact against what was asked.
 
     Coefficients from 0 to 1, wherever in a step the impact falls: a block of 0.5 by 1 m in the
@@ -37,8 +30,6 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED)
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     engines
         Names of engines, without a preset.
     """
@@ -62,20 +53,14 @@ def command(*, out: Place, engines: Annotated[tuple[str, ...], several] = ASKED)
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
-    text = findings_text(_read(folder, "corners"), _read(folder, "rates"))
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(
+        folder, pictures(folder), findings_text(_read(folder, "corners"), _read(folder, "rates"))
+    )
 
 
 def _read(folder: Path, name: str) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
-    words = dict.fromkeys(("way", "varied", "literal"), str)
-    return pd.read_csv(
-        folder / f"{name}.csv", keep_default_na=False, na_values=["nan"], dtype=words
-    )
+    return read_table(folder / f"{name}.csv", "way", "varied", "literal")
 
 
 def headline(folder: Path) -> str:
@@ -83,14 +68,7 @@ def headline(folder: Path) -> str:
     return first_claim(_read(folder, "corners"))
 
 
-def paragraph(folder: Path) -> str:
-    """Say which setting keeps a coefficient, what a block makes of it, and which ways hold."""
-    corners, rates = _read(folder, "corners"), _read(folder, "rates")
-    held = [told(corners, "the coefficient"), told(rates, "the rate")]
-    return " ".join([settings_claim(corners), rate_claim(corners, rates), *held, LOST])
-
-
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw what is found against what is wanted, from a folder's table of rows alone."""
     from studies.restitution.figure import SHOWN, draw_restitution
 

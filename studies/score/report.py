@@ -2,15 +2,17 @@
 
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import Engine, Precision
 from studies.advise.evidence import LADDER
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.kit.digests import check
+from studies.kit.tables import read_table
 from studies.measures.costs import cost_text
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
 from studies.measures.posed import posed
@@ -18,11 +20,7 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
-from studies.stability.findings import first_claim
 from studies.stability.report import failures_text, verdicts_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 WIDTH = 99
 """Of the page, in letters."""
@@ -30,9 +28,6 @@ WIDTH = 99
 
 def report(folder: Path) -> str:
     """Draw a folder's figures, and write and return its page."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
     engine = ENGINES[engine_of(folder)]
     along = ladder(folder)
     extremes = _table(folder, "extremes")
@@ -49,8 +44,7 @@ def report(folder: Path) -> str:
             help_text(engine),
         ]
     )
-    provenance.write_text(folder / "score.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text, "score.txt")
 
 
 def asked_text(folder: Path) -> str:
@@ -78,12 +72,7 @@ def headline(folder: Path) -> str:
     return f"{listed(words)}."
 
 
-def paragraph(folder: Path) -> str:
-    """Say the same, and how many extreme cases are right."""
-    return f"{headline(folder)} {first_claim(_table(folder, 'extremes'))}"
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
     from studies.score.figure import draw_score
     from studies.stability.figure import draw_matrix
@@ -113,8 +102,7 @@ def published() -> pd.DataFrame:
 
 
 def _table(folder: Path, name: str) -> pd.DataFrame:
-    path = folder / f"score-{name}.csv"
-    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
+    return read_table(folder / f"score-{name}.csv")
 
 
 def introduction(engine: Engine) -> str:

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES
-from studies.kit.arguments import BadInputError, Place
+from studies.kit.arguments import BadInputError, Out
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -21,13 +21,13 @@ from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
-from studies.score.report import headline, paragraph, pictures, published, report
+from studies.score.report import headline, pictures, published, report
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
 from studies.sweep.study import sweep_jobs
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11
@@ -40,7 +40,7 @@ def command(
     engine: Annotated[str, Parameter(name="ENGINE")],
     /,
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -51,8 +51,6 @@ def command(
     engine
         Its name, or MODULE:ENGINE where its declaration stands, or MODULE:build of what builds its
         world, in this folder or among the installed packages.
-    out
-        Folder for the results; made if there is none.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
     """

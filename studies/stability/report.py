@@ -3,32 +3,25 @@
 import math
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
-from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.drawing.kept import Pictures, keep
+from studies.kit.tables import left_aligned, read_table, write_table
 from studies.measures.verdicts import Verdict
-from studies.stability.findings import failures, findings, first_claim, verdicts_sentence
+from studies.stability.findings import failures, findings, first_claim
 from studies.stability.largest_step import LARGEST_STEP
 from studies.stability.sensitivity import with_growth
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ORDER = tuple(verdict.value for verdict in Verdict)
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the text, which findings.txt holds too."""
-    from studies.drawing.figures import save_all
-
     matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
     moved = with_growth(moved)
-    text = moved.to_csv(index=False, na_rep="nan")
-    provenance.write_text(folder / "sensitivity.csv", text)
-    save_all(pictures(folder), folder)
+    write_table(folder / "sensitivity.csv", moved)
     text = "\n\n".join(
         [
             "Verdicts on the extreme cases:\n" + verdicts_text(matrix),
@@ -38,11 +31,10 @@ def report(folder: Path) -> str:
             "Change of the peak by a perturbation of the amplitude, over that of the exact\n"
             "solution; the median over the cases:\n" + sensitivity_text(moved, "amplitude"),
             "The same for the width:\n" + sensitivity_text(moved, "width"),
-            fill(findings(matrix, steps, moved), 99),
+            fill(findings(matrix), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def headline(folder: Path) -> str:
@@ -50,12 +42,7 @@ def headline(folder: Path) -> str:
     return first_claim(_table(folder, "stability"))
 
 
-def paragraph(folder: Path) -> str:
-    """Return what the matrix of a folder shows of every source."""
-    return verdicts_sentence(_table(folder, "stability"))
-
-
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the matrix of a folder from its stability.csv alone."""
     from studies.stability.figure import draw_matrix
 
@@ -65,9 +52,7 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def _table(folder: Path, name: str) -> pd.DataFrame:
     """Return a table with empty words as such; empty if none of the sources has a row in it."""
     path = folder / f"{name}.csv"
-    if not path.is_file():
-        return pd.DataFrame()
-    return pd.read_csv(path, dtype={"message": str}, keep_default_na=False, na_values=["nan"])
+    return read_table(path) if path.is_file() else pd.DataFrame()
 
 
 def verdicts_text(matrix: pd.DataFrame) -> str:

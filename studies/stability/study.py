@@ -10,7 +10,7 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Place, Positive, check_sources
+from studies.kit.arguments import Out, Positive, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -23,10 +23,10 @@ from studies.sources.registry import Source
 from studies.stability import STUDY
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
-from studies.stability.report import headline, paragraph, pictures, report
+from studies.stability.report import headline, pictures, report
 from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 METHODS = (
     "exact",
@@ -61,7 +61,7 @@ DEFAULT_RUNNING = PatientRunning()
 
 def command(
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
     running: PatientRunning = DEFAULT_RUNNING,
     sources: Annotated[tuple[str, ...], several_sources] = METHODS,
@@ -70,8 +70,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     quick
         Fewer cases, steps to 30 % and three perturbations: less than a minute on 2 cores.
     sources

@@ -1,21 +1,16 @@
 """What the paper's cases say about each source: the engines by preset, and the linearizations."""
 
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from studies.measures.posed import Posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import (
-    NAMED,
     alike,
     between,
     capital,
-    each_out_of,
     in_kinds,
-    listed,
-    out_of,
     part,
 )
 from studies.measures.wrongness import KINDS
@@ -38,64 +33,6 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     rows = lines.assign(preset=lines["source"].map(preset_of))
     rows = rows[rows["preset"] != ""]
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
-
-
-def preset_claim(preset: str, lines: pd.DataFrame) -> str:
-    """Say how many outcomes the engines get right with a preset, and how far peaks are off."""
-    if len(lines) > NAMED:
-        return capital(_range(preset, lines))
-    names = listed([engine_of(source) for source in lines["source"]])
-    right = each_out_of(list(lines["agree"]), list(lines["cases"]))
-    verb = "get" if len(lines) > 1 else "gets"
-    medians, largest = (list(map(part, lines[f"{name}_error"])) for name in ("median", "max"))
-    return capital(
-        f"{in_words(preset)}, {names} {verb} {right} outcomes right{_kinds(lines)}, and peaks "
-        "wrong by "
-        f"{alike(medians)} in the median and {alike(largest)} at most."
-    )
-
-
-def _kinds(lines: pd.DataFrame) -> str:
-    """Return in brackets what the wrong outcomes of one or several sources are; empty of none."""
-    if (lines["agree"] == lines["cases"]).all():
-        return ""
-    names = lines["source"].map(engine_of)
-    return f" ({between(lines, names) if len(lines) > 1 else in_kinds(lines.iloc[0])})"
-
-
-def _range(preset: str, lines: pd.DataFrame) -> str:
-    """Say between what the engines lie with a preset, and which is the worst."""
-    by_count, cases = lines.sort_values("agree").iloc[[0, -1]], float(lines["cases"].iloc[0])
-    few, most = by_count["agree"]
-    fewest, worst = (
-        engine_of(str(found["source"].iloc[0]))
-        for found in (by_count, lines.sort_values("max_error", ascending=False))
-    )
-    right = out_of(few, cases) if few == most else f"{few} ({fewest}) to {out_of(most, cases)}"
-    medians = dict.fromkeys([part(lines["median_error"].min()), part(lines["median_error"].max())])
-    return (
-        f"{in_words(preset)}, {len(lines)} engines get {right} outcomes right{_kinds(lines)}, and "
-        f"peaks wrong by {' to '.join(medians)} in the median and at most by "
-        f"{part(lines['max_error'].max())} ({worst})."
-    )
-
-
-def model_claim(line: "pd.Series[Any]") -> str:
-    """Say how many outcomes a linearization gets right, on which side it errs, and how far."""
-    sides = [
-        f"{line[column]:.0f} {words}"
-        for column, words in (
-            ("false_overturnings", "falsely overturned"),
-            ("missed_overturnings", "overturnings missed"),
-        )
-        if line[column]
-    ]
-    kinds = _kinds(line.to_frame().T).rstrip(")")
-    return (
-        f"{line['source']} {out_of(line['agree'], line['cases'])}"
-        + (f"{kinds}{f': {listed(sides)}' if sides else ''})" if kinds else "")
-        + f", {part(line['median_error'])} in the median and {part(line['max_error'])} at most"
-    )
 
 
 def first_claim(lines: pd.DataFrame) -> str:
@@ -124,16 +61,6 @@ def linearized(lines: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of the linearizations."""
     kinds = lines["source"].map(lambda source: resolve(source).kind)
     return lines[(kinds == "model") & (lines["source"] != "exact")]
-
-
-def claims(lines: pd.DataFrame) -> str:
-    """Return a sentence for each preset of the engines, and one for the linearizations."""
-    sentences = [preset_claim(*item) for item in engines_by_preset(lines).items()]
-    models = linearized(lines)
-    if len(models):
-        words = "; ".join(model_claim(row) for _, row in models.iterrows())
-        sentences.append(f"Of the linearizations: {words}.")
-    return " ".join(sentences)
 
 
 def preset_table(lines: pd.DataFrame) -> pd.DataFrame:

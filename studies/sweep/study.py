@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.paper import sweep_cases
-from studies.kit import provenance
-from studies.kit.arguments import Place, check_sources, figures, refuse_repeats
+from studies.drawing.kept import Pictures, keep
+from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
@@ -30,18 +30,14 @@ from studies.measures.words import capital
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.sweep import STUDY
-from studies.sweep.claims import claims, first_claim, over_all, preset_table, whole
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+from studies.sweep.claims import first_claim, over_all, preset_table, whole
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 
 
 def command(
     *,
-    out: Place,
+    out: Out,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     effort: EffortOptions = OWN_EFFORT,
@@ -51,8 +47,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     figure
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
     sources
@@ -87,8 +81,6 @@ def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's sweep.csv; return the summary and the findings as text."""
-    from studies.drawing.figures import save_all
-
     rows = read(folder)
     compared = with_reference(rows)
     table = summarize(compared)
@@ -96,8 +88,7 @@ def report(folder: Path) -> str:
     found = findings(compared)
     write_findings(folder, found)
     conclusions = findings_text(found)
-    provenance.write_text(folder / "findings.txt", conclusions + "\n")
-    save_all(drawn(compared, table), folder)
+    keep(folder, drawn(compared, table), conclusions)
     return "\n".join(
         [
             "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
@@ -114,13 +105,13 @@ def report(folder: Path) -> str:
     )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw every figure of a folder from its sweep.csv alone."""
     compared = with_reference(read(folder))
     return drawn(compared, summarize(compared))
 
 
-def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
+def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
     """Draw every figure of the rows beside the exact solution, and of their summary.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.
@@ -139,11 +130,6 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say what each preset of the engines gets wrong, and how far peaks are off."""
     return f"{capital(posed(read(folder)).words)}. {first_claim(whole(folder))}"
-
-
-def paragraph(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and how far its peaks are off."""
-    return claims(whole(folder))
 
 
 def read(folder: Path) -> pd.DataFrame:

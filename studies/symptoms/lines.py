@@ -11,6 +11,7 @@ import pandas as pd
 from engines import ENGINES
 from engines.parts.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from studies.kit.journal import Row
+from studies.kit.tables import read_table
 from studies.measures.formulas import at_step, by_step
 from studies.symptoms.patch import own_step_s, patch
 from studies.symptoms.seen import (
@@ -60,10 +61,8 @@ def lines_of(
     DataFrame
         The columns of symptoms.csv.
     """
-    words = dict.fromkeys(("factor", "level", "trap", "message"), str)
     table, own = (
-        pd.read_csv(published / name, keep_default_na=False, na_values=["nan"], dtype=words)
-        for name in (VARIANTS, OWN)
+        read_table(published / name, "factor", "level", "trap") for name in (VARIANTS, OWN)
     )
     ladder, bounces = (pd.read_csv(published / name) for name in (LADDER, BOUNCES))
     rows: list[Row] = []

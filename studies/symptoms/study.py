@@ -1,11 +1,12 @@
 """The page from what users see to the setting that mends it, from the published tables."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from engines import ENGINES
+from studies.drawing.kept import Pictures
 from studies.kit import provenance
 from studies.kit.arguments import (
     BadInputError,
@@ -19,15 +20,13 @@ from studies.kit.arguments import (
 from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
 from studies.symptoms import STUDY
 from studies.symptoms.lines import TABLES, VARIANTS, lines_of
-from studies.symptoms.words import first_claim, page, told
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.symptoms.words import first_claim, page
 
 
 def command(
@@ -95,9 +94,7 @@ def command(
 def _read(folder: Path) -> pd.DataFrame:
     """Read a table back, with empty words as such."""
     texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
-    words = dict.fromkeys(texts, str)
-    path = folder / "symptoms.csv"
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=words)
+    return read_table(folder / "symptoms.csv", *texts)
 
 
 def headline(folder: Path) -> str:
@@ -105,12 +102,7 @@ def headline(folder: Path) -> str:
     return first_claim(_read(folder))
 
 
-def paragraph(folder: Path) -> str:
-    """Say of every symptom what there is, and what is left of it."""
-    return told(_read(folder))
-
-
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> Pictures:
     """Draw the size of each symptom from a folder's symptoms.csv alone."""
     from studies.symptoms.figure import draw_symptoms
 

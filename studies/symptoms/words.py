@@ -96,27 +96,3 @@ def _helps(row: Mapping[Any, Any]) -> str:
         f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
         f"{part(after)}"
     )
-
-
-def told(lines: pd.DataFrame) -> str:
-    """Say of every symptom where there is most of it, what mends it there, and where is least."""
-    sentences = []
-    for symptom, group in lines.groupby("symptom", sort=False):
-        ordered = group.sort_values("before", key=abs, ascending=False, kind="stable")
-        most, *others = ordered.to_dict("records")
-        words = f"{str(symptom).capitalize()}: most in {_short(most)}"
-        if others:
-            least = others[-1]
-            words += f"; least in {least['engine']}, {_number(float(str(least['before'])))}"
-        sentences.append(f"{words}.")
-    return " ".join(sentences)
-
-
-def _short(row: Mapping[Any, Any]) -> str:
-    number = {name: float(str(row[name])) for name in ("before", "after", "tuned")}
-    words = f"{row['engine']} {_number(number['before'])}"
-    if row["setting"]:
-        words += f", {_number(number['after'])} with {row['setting']}"
-    return words + (
-        f", {_number(number['tuned'])} tuned" if number["tuned"] == number["tuned"] else ""
-    )

@@ -67,18 +67,3 @@ def _one_way(by: str, table: pd.DataFrame) -> str:
     places = shown.pivot(index="source", columns="band", values="cell").fillna("-")
     ordered = places.reindex(index=shown["source"].unique(), columns=shown["band"].unique())
     return str(ordered.reset_index(names=by).rename_axis(columns=None).to_string(index=False))
-
-
-def told(table: pd.DataFrame) -> str:
-    """Say of each band the largest error of any source."""
-    names = {"peak": "Errors by the exact peak over θcr:", "κ": "By κ:"}
-    sentences = []
-    for by, group in table.dropna(subset="max_error").groupby("by", sort=False):
-        words = [_of_band(*item) for item in group.groupby("band", sort=False)]
-        sentences.append(f"{names[str(by)]} {'; '.join(words)}.")
-    return " ".join(sentences)
-
-
-def _of_band(band: object, rows: pd.DataFrame) -> str:
-    worst = rows.sort_values("max_error").iloc[-1]
-    return f"{band} up to {part(float(worst['max_error']))} ({worst['source']})"

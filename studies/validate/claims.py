@@ -4,7 +4,7 @@ import pandas as pd
 
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
-from studies.measures.differences import WELL_CONDITIONED, scientific, sensitivity_of
+from studies.measures.differences import WELL_CONDITIONED, sensitivity_of
 from studies.measures.words import NAMED, gathered, listed, part, right_of
 
 LEFT_OUT = {
@@ -77,17 +77,14 @@ def _sizes(compared: pd.DataFrame) -> str:
     return listed([part(size) for size in largest])
 
 
-def claims(compared: pd.DataFrame, counted: pd.DataFrame) -> str:
-    """Say what was asked, what each source got right of it, and what was not asked.
+def drawn_text(counted: pd.DataFrame) -> str:
+    """Say how many cases were drawn and kept, which were not, and how many of each overturn.
 
     Parameters
     ----------
-    compared : DataFrame
-        The columns of errors.csv.
     counted : DataFrame
         From `census`.
     """
-    words = [_of_source(str(name), rows) for name, rows in compared.groupby("source", sort=False)]
     drawn, kept, *others = (line for _, line in counted.iterrows())
     left = [
         f"in {line['cases']} ({line['overturned']} overturn) {line['why']}"
@@ -95,23 +92,9 @@ def claims(compared: pd.DataFrame, counted: pd.DataFrame) -> str:
         if line["cases"]
     ]
     return (
-        f"On {kept['cases']} random cases ({width(compared)}): {'; '.join(words)}. "
         f"Of {drawn['cases']} drawn "
         f"{part(drawn['share'])} overturn, and {part(kept['share'])} of the {kept['cases']} kept: "
         f"those where the normal force stays above {LEAST_NORMAL:g} of the weight, of a block that "
         "overturns until it passes θcr for good. "
         f"Left out: {'; '.join(left) or 'none'}."
-    )
-
-
-def _of_source(source: str, rows: pd.DataFrame) -> str:
-    """Return outcomes, errors of all peaks and where these hardly move, and over how they move."""
-    judged, errors = sensitivity_of(rows), rows["error"].abs()
-    calm = errors[judged < WELL_CONDITIONED]
-    return (
-        f"{source} gets {right_of(rows)} outcomes right, peaks "
-        f"to {part(float(errors.median()))} in the median, {part(float(errors.max()))} at most, "
-        f"and {part(float(calm.max()))} at most where κ and sensitivity < {WELL_CONDITIONED:g} "
-        f"({len(calm.dropna())} peaks); over the larger of these to "
-        f"{scientific(float((errors / judged).max()))} at most"
     )

@@ -6,13 +6,14 @@ from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.drawn import draw
+from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
-from studies.kit.arguments import Count, Place, check_sources
+from studies.kit.arguments import Count, Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
@@ -31,18 +32,14 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.bands import bands, bands_text
-from studies.validate.bands import told as told_by_band
 from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
-from studies.validate.claims import census, claims, first_claim
+from studies.validate.claims import census, drawn_text, first_claim
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def command(
     *,
-    out: Place,
+    out: Out,
     cases: Count = 500,
     seed: Count = 1,
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
@@ -58,8 +55,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     cases
         Number of random cases.
     seed
@@ -131,15 +126,12 @@ def report(folder: Path) -> str:
     hint, where hints.csv is there; drawn.csv says how many cases were drawn, kept and left out,
     and what share of each overturns.
     """
-    from studies.drawing.figures import save_all
-
     compared = compare(folder, "validate")
     if halves := (folder / f"{HALVES}.csv").exists():
         compared = with_bounds(compared, compare(folder, HALVES))
     write_table(folder / "errors.csv", compared)
     seed = provenance.record_of(folder)["settings"]["seed"]
     write_table(folder / "drawn.csv", census(seed, compared["case"].nunique()))
-    save_all(pictures(folder), folder)
     judged, by_band = sensitivity_of(compared), bands(compared)
     write_table(folder / "bands.csv", by_band)
     calm = compared[judged < WELL_CONDITIONED]
@@ -160,11 +152,10 @@ def report(folder: Path) -> str:
             *leaning_lines(folder, compared),
             *(bounds_lines(folder, compared) if halves else ()),
             "",
-            fill(paragraph(folder), 99),
+            fill(drawn_text(pd.read_csv(folder / "drawn.csv")), 99),
         ]
     )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    return keep(folder, pictures(folder), text)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:
@@ -194,7 +185,7 @@ def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
     from studies.validate.figure import draw_conditioning
 
@@ -204,12 +195,6 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say how many outcomes each source gets right, and its largest errors."""
     return first_claim(pd.read_csv(folder / "errors.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say how many outcomes each source gets right, its errors, and which cases were drawn."""
-    compared, counted = (pd.read_csv(folder / name) for name in ("errors.csv", "drawn.csv"))
-    return f"{claims(compared, counted)} {told_by_band(bands(compared))}"
 
 
 def summary_text(compared: pd.DataFrame) -> str:

@@ -5,7 +5,7 @@ import math
 import pandas as pd
 
 from studies.measures.differences import scientific
-from studies.measures.words import listed, out_of, part
+from studies.measures.words import listed
 
 CASE = ["aspect", "onsets", "omega_over_p"]
 
@@ -25,10 +25,6 @@ def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-SURE = 0.2
-"""Where the normal force stays above this part of the weight the reference is sure to hold."""
-
-
 def first_claim(table: pd.DataFrame) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
     rocked = table[table["outcome"] == "rocked"]
@@ -38,30 +34,6 @@ def first_claim(table: pd.DataFrame) -> str:
         for ends in (group.loc[group["min_normal"] < 0.0, "onsets"].min(),)
     ]
     return f"An engine is right to differ, because the pivot lifts off: {listed(words)}."
-
-
-def claims(table: pd.DataFrame, beside: pd.DataFrame) -> str:
-    """Say where the reference ends for blocks that survive, and how engines agree before that."""
-    rocked = table[table["outcome"] == "rocked"]
-    ends = [_end(float(str(aspect)), group) for aspect, group in rocked.groupby("aspect")]
-    sure = beside[beside["friction_factor"].isna() & (beside["min_normal"] > SURE)]
-    agreed = [
-        f"{source} {out_of(int(rows['agrees'].sum()), len(rows))}"
-        for source, rows in sure.groupby("source", sort=False)
-    ]
-    return (
-        "Under full sines the pivot of a block that survives would have to be held down, so that "
-        f"an engine is right to differ, {listed(ends)}. Where the normal force stays above "
-        f"{SURE:g} of the weight, outcomes as in the reference: {listed(agreed)}."
-    )
-
-
-def _end(aspect: float, survivors: pd.DataFrame) -> str:
-    lost = survivors[survivors["min_normal"] < 0.0]
-    if lost.empty:
-        return f"never at H/B {aspect:g} (up to {survivors['onsets'].max():.3g} onsets)"
-    share = part(len(lost) / len(survivors))
-    return f"from {lost['onsets'].min():.2g} onsets on at H/B {aspect:g} ({share} of the pulses)"
 
 
 def findings(beside: pd.DataFrame, table: pd.DataFrame) -> str:

@@ -3,15 +3,15 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Place, check_sources
+from studies.drawing.kept import Pictures, keep
+from studies.kit.arguments import BadInputError, Out, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_engines
@@ -22,10 +22,7 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import claims, compared, findings, first_claim
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.validity.report import compared, findings, first_claim
 
 MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
 MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
@@ -48,7 +45,7 @@ DEFAULT_SOURCES = core_sources("fixed")
 
 def command(
     *,
-    out: Place,
+    out: Out,
     sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
@@ -57,8 +54,6 @@ def command(
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     sources
         Engines.
     quick
@@ -148,17 +143,12 @@ def _reduce(job: Job, response: Response) -> Row:
 
 def report(folder: Path) -> str:
     """Reduce a folder's tables to compared.csv, the drawing and the findings; return these."""
-    from studies.drawing.figures import save_all
-
     rows = pd.read_csv(folder / "validity.csv", dtype={"message": str})
     table = pd.read_csv(folder / "map.csv")
     exact = reference_map(_cases(rows))
     beside = compared(rows, exact)
     write_table(folder / "compared.csv", beside)
-    text = findings(beside, table)
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    save_all(pictures(folder), folder)
-    return text
+    return keep(folder, pictures(folder), findings(beside, table))
 
 
 def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
@@ -169,7 +159,7 @@ def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
     ]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw a folder's figures from its tables alone."""
     from studies.validity.figure import draw_friction, draw_validity
 
@@ -183,8 +173,3 @@ def pictures(folder: Path) -> dict[str, "Figure"]:
 def headline(folder: Path) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
     return first_claim(pd.read_csv(folder / "map.csv"))
-
-
-def paragraph(folder: Path) -> str:
-    """Say where the reference ends, and whether engines agree with it before."""
-    return claims(*(pd.read_csv(folder / name) for name in ("map.csv", "compared.csv")))

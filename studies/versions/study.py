@@ -24,7 +24,7 @@ from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.versions import STUDY
-from studies.versions.asked import Asked, Asking, ask
+from studies.versions.asked import Asked, ask
 from studies.versions.cases import jobs_of
 from studies.versions.environments import is_made
 from studies.versions.releases import (
@@ -38,13 +38,13 @@ from studies.versions.releases import (
     listed,
     room_mib,
 )
-from studies.versions.report import headline, paragraph, pictures, report
+from studies.versions.report import headline, pictures, report
 from studies.versions.tables import releases_table
 
 MOST_MIB = 2048.0
 """An engine whose releases take more room than this [MiB] is asked only if it is named."""
 
-__all__ = ["command", "headline", "paragraph", "pictures", "report"]
+__all__ = ["command", "headline", "pictures", "report"]
 
 
 def command(
@@ -90,20 +90,18 @@ def command(
     if releases == (INSTALLED,):
         return carry_out(STUDY, plan_here(engines, quick), out, running, report)
     limits = ("--time-limit", repr(time_limit), *(("--jobs", str(jobs)) if jobs else ()))
-    how = Asking(
-        out=out,
-        environments=environments or out / "environments",
-        options=(*limits, *(("--quick",) if quick else ())),
-    )
+    options = (*limits, *(("--quick",) if quick else ()))
+    environments = environments or out / "environments"
     known, unlisted = _known(engines, releases)
     wanted = {engine: chosen(engine, releases, known) for engine in engines}
-    kept, notes = _affordable(wanted, how.environments, named)
+    kept, notes = _affordable(wanted, environments, named)
     if not kept:
         raise BadInputError(f"--engines is not given, and nothing is asked; {'; '.join(notes)}")
 
     def tabulate(_: object) -> Tables:
         print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)
-        asked = [ask(one, how) for one in _progress([one for name in kept for one in wanted[name]])]
+        each = tqdm([one for name in kept for one in wanted[name]], disable=None, unit="release")
+        asked = [ask(one, out, environments, options) for one in each]
         return {"releases": releases_table(asked)}
 
     growing = {"engine": kept, "release": releases}
@@ -169,7 +167,3 @@ def _affordable(
         else:
             notes.append(f"left out: {fetched}; --engines {engine} asks them")
     return kept, notes
-
-
-def _progress(releases: Sequence[Release]) -> "tqdm[Release]":
-    return tqdm(releases, disable=None, unit="release")

@@ -45,12 +45,9 @@ def answering(one: Asked) -> bool:
 
 
 def _lines(one: Asked, before: Asked | None) -> list[Row]:
-    release, made = one.release, one.made
+    release = one.release
     head = {"engine": release.engine, "release": release.version}
-    tail = {
-        "disk_mib": math.nan if made is None else made.disk_mib,
-        "setup_s": math.nan if made is None else made.setup_s,
-    }
+    tail = {"disk_mib": math.nan, "setup_s": math.nan, **one.made}
     if one.answers is None:
         return [{**head, **tail, "source": "", "set": "", "message": one.problem}]
     compared = with_reference(one.answers)

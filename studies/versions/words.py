@@ -84,24 +84,3 @@ def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
 
 def _answered(lines: pd.DataFrame) -> pd.DataFrame:
     return lines[lines["failed"] < lines["cases"]]
-
-
-def told(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
-    """Say of each engine what changed, what its notes say, and which releases had no answer."""
-    sentences = []
-    for engine, mine in lines.groupby("engine", sort=False):
-        moves = [
-            f"from {row['before']} to {row['release']} {_moved(row)} ({row['presets']})"
-            + (f", and the notes say: {row['note']}" if row["note"] else ", and no note says why")
-            for row in changes[changes["engine"] == engine].to_dict("records")
-        ]
-        answered = _answered(mine)
-        if answered["release"].nunique() > 1:
-            most = float(answered["moved"].max())
-            still = f"nothing moved by more than {part(most)}" if most else "nothing moved at all"
-            sentences.append(f"{engine}: {'; '.join(moves) or still}.")
-        lost = mine[~mine["release"].isin(answered["release"])].drop_duplicates("release")
-        if len(lost):
-            names = listed(list(lost["release"]))
-            sentences.append(f"Not asked: {engine} {names} ({lost.iloc[0]['message']}).")
-    return " ".join(sentences) or "Of each engine one release was asked."

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_accelerogram_forms import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
+from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
 from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
 from studies.__main__ import run

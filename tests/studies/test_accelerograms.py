@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from records import SAMPLES
 from scipy.signal import detrend
 
 from analytic import Record, RigidBlock, simulate
@@ -11,7 +12,6 @@ from studies.__main__ import run
 from studies.cases.accelerograms import UNITS, read_record
 from studies.cases.refusal import BadInputError
 
-SAMPLES = [0.0, 0.1, -0.25, 0.4, 0.05, -0.1, 0.0]
 NEW_HEADER = (
     "PEER NGA STRONG MOTION DATABASE RECORD\nStation G, 1999\n"
     "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=     7, DT=   .0050 SEC,\n"
@@ -33,7 +33,7 @@ def written(tmp_path, text):
 def test_peers_headers(header, tmp_path):
     record = read_record(written(tmp_path, header + BODY))
     assert record.dt == 0.005
-    assert record.samples == pytest.approx(9.81 * np.array(SAMPLES))
+    assert record.samples == pytest.approx(9.81 * SAMPLES)
 
 
 @pytest.mark.parametrize("header", ["", "t,a\n", "# a comment\n", "time_s;acc_g\n"])
@@ -43,7 +43,7 @@ def test_tables(header, separator, tmp_path):
     record = read_record(written(tmp_path, header + rows), "g")
     assert record.dt == pytest.approx(0.02, rel=1e-12)
     assert record.duration == pytest.approx(0.12)
-    assert record.samples == pytest.approx(9.81 * np.array(SAMPLES))
+    assert record.samples == pytest.approx(9.81 * SAMPLES)
 
 
 @pytest.mark.parametrize(

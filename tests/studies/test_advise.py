@@ -235,7 +235,6 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert capsys.readouterr().out == (out / "findings.txt").read_text()
     assert (out / "advice.png").stat().st_size > 20_000
     assert study.headline(out).startswith("Errors are kept cheapest: 10 % ")
-    assert "None of these is kept by naive (pybullet, mujoco)." in study.paragraph(out)
     assert Path(out / "provenance.json").is_file()
 
 

@@ -49,7 +49,6 @@ def test_it_goes_through_a_study(name, tmp_path):
     assert run([name, *ARGUMENTS[name], "--out", str(tmp_path)]) in (0, 1)
     module = study.load()
     assert module.headline(tmp_path)
-    assert module.paragraph(tmp_path)
     figures = module.pictures(tmp_path)
     assert all(isinstance(figure, Figure) for figure in figures.values())
     told = [path.name for path in tmp_path.glob("*.csv") if "moreau" in path.read_text()]

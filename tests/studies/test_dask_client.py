@@ -1,12 +1,11 @@
 """A cluster's address: who may answer there, who does not, and whom a client trusts."""
 
-import asyncio
 import http.server
 import socketserver
 import sys
 import threading
-from concurrent.futures import CancelledError
-from contextlib import contextmanager, suppress
+from concurrent.futures import CancelledError, Future
+from contextlib import contextmanager, nullcontext, suppress
 
 import dask
 import pytest
@@ -100,24 +99,32 @@ def test_missing_dask_is_named(monkeypatch):
 
 
 class Breaking:
-    """A client, and a future of it, whose connection breaks at one of the questions."""
+    """A client, and its executor, whose answer to every question is an error."""
 
-    def __init__(self, question, status, error):
-        self.question, self.status, self.error = question, status, error
+    def __init__(self, status, error):
+        self.status, self.error = status, error
 
-    def _break(self, question):
-        if question == self.question:
-            raise self.error
+    def nthreads(self):
+        pass
 
-    def submit(self, *_, **__):
-        self._break("submit")
+    def sync(self, *_, **__):
+        raise self.error
+
+    def get_executor(self, **_):
         return self
 
-    async def nthreads(self):
-        self._break("nthreads")
+    def submit(self, *_):
+        future = Future()
+        future.set_exception(self.error)
+        return future
 
-    async def result(self):
-        self._break("result")
+
+def answered(monkeypatch, status, error):
+    """Return the answer to the one job that a client was given."""
+    client = nullcontext(Breaking(status, error))
+    monkeypatch.setattr("studies.kit.cluster.client_of", lambda _: client)
+    ((_, response),) = Cluster("tcp://127.0.0.1:1", 1.0)(jobs_of("exact"))
+    return response
 
 
 BROKEN = [CommClosedError("in <TCP>: Stream is closed"), OSError("gone"), CancelledError()]
@@ -125,25 +132,26 @@ BROKEN = [CommClosedError("in <TCP>: Stream is closed"), OSError("gone"), Cancel
 
 @pytest.mark.parametrize("error", BROKEN[:2])
 def test_a_connection_that_breaks_at_a_question_is_a_scheduler_that_has_gone(error):
-    address = "tcp://127.0.0.1:1"
     with pytest.raises(ClusterError, match="scheduler has gone"):
-        asyncio.run(workers_of(Breaking("nthreads", "running", error), address))
-    (job,) = jobs_of("exact")
+        workers_of(Breaking("running", error), "tcp://127.0.0.1:1")
+
+
+@pytest.mark.parametrize(
+    ("status", "error"),
+    [
+        ("running", BROKEN[-1]),
+        *((status, error) for status in ("connecting", "closed") for error in BROKEN),
+    ],
+)
+def test_a_connection_that_breaks_before_the_answer_is_a_scheduler_that_has_gone(
+    status, error, monkeypatch
+):
     with pytest.raises(ClusterError, match="scheduler has gone"):
-        asyncio.run(Cluster(address, 1.0)._response(Breaking("submit", "running", error), job))
+        answered(monkeypatch, status, error)
 
 
-@pytest.mark.parametrize("error", BROKEN)
-@pytest.mark.parametrize("status", ["finished", "lost", "cancelled", "pending"])
-def test_a_connection_that_breaks_before_the_answer_is_a_scheduler_that_has_gone(error, status):
-    client, (job,) = Breaking("result", status, error), jobs_of("exact")
-    with pytest.raises(ClusterError, match="scheduler has gone"):
-        asyncio.run(Cluster("tcp://127.0.0.1:1", 1.0)._response(client, job))
-
-
-def test_an_error_of_a_job_is_a_row():
-    client, (job,) = Breaking("result", "error", OSError("no room")), jobs_of("exact")
-    response = asyncio.run(Cluster("tcp://127.0.0.1:1", 1.0)._response(client, job))
+def test_an_error_of_a_job_is_a_row(monkeypatch):
+    response = answered(monkeypatch, "running", OSError("no room"))
     assert response.outcome.value == "failed"
     assert "no room" in response.message
 

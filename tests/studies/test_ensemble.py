@@ -151,7 +151,8 @@ def test_overturning_that_falls_with_the_intensity_has_no_capacity(tmp_path, cap
     assert run([*arguments, "--out", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "exact capacity undetermined [0.00, inf]* onsets" in text
-    assert "fitted capacity over the exact one undetermined" in text
+    (line,) = [line for line in text.splitlines() if line.split()[:1] == ["housner"]][:1]
+    assert " undetermined [" in line
 
 
 def test_bounds_hold_the_truth_as_often_as_they_say():

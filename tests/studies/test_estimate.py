@@ -14,7 +14,7 @@ from studies.__main__ import run
 from studies.estimate import study
 from studies.estimate.calibration import beside_errors, factors, interval
 from studies.estimate.cases import CALIBRATE, TEST, both_sets, survivors
-from studies.estimate.words import factors_text, first_claim, told
+from studies.estimate.words import factors_text, first_claim
 from studies.kit.jobs import Job
 from studies.measures.halving import (
     ELSEWHERE,
@@ -202,31 +202,14 @@ def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
     assert list(rows["half"]) == [0, 1] * 6
     assert list(rows["set"]) == [TEST] * 4 + [CALIBRATE] * 8
     assert study.headline(tmp_path).startswith("The difference from half the step")
-    words = study.paragraph(tmp_path)
-    assert words.startswith("With the libraries' defaults 3 and 10 estimates bound")
     assert (tmp_path / "estimate.png").stat().st_size > 20_000
 
 
 def test_cases_that_do_not_rock_calibrate_nothing():
     overturned = random_rows([0.0], [0.0]).assign(outcome="overturned", peak_ratio=math.inf)
-    text = told(factors(beside_errors(overturned)))
-    assert text == "With the libraries' defaults no case rocked at both steps."
-
-
-def test_a_preset_is_told_engine_by_engine_the_worst_first():
-    lines = pd.DataFrame(
-        {
-            "source": ["mujoco", "pybullet", "mujoco:naive"],
-            **{"survivors": [20, 20, 20], "within_3": [0.9, 0.8, 0.1]},
-            **{"within_10": [1.0, 0.95, 0.4], "wrong": [0, 0, 7], "told": [0, 0, 1]},
-        }
-    )
-    assert told(lines) == (
-        "With the libraries' defaults 3 and 10 estimates bound, of the errors of mujoco 10 % and "
-        "40 %; of their wrong outcomes half the step tells 1 of 7. With steps that land on impacts "
-        "3 and 10 estimates bound, of the errors of pybullet 80 % and 95 % and mujoco 90 % and "
-        "100 %."
-    )
+    (line,) = factors(beside_errors(overturned)).to_dict("records")
+    assert line["survivors"] == 0
+    assert math.isnan(line["factor_95"]) and line["factor_95_high"] == math.inf
 
 
 def test_pairs_are_asked_at_another_step(tmp_path):

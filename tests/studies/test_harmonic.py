@@ -137,7 +137,7 @@ def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
     assert engines["larger_ratio"].to_numpy() == pytest.approx(
         engines["larger_exact"].to_numpy(), rel=1e-3
     )
-    assert "Engines on the exact orbit" in capsys.readouterr().out
+    assert "Engines after some time on the exact orbit" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -108,12 +108,6 @@ def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch
     over = "steps of 0.0001 to 0.004/p, rates of 0.1 to 2 α p, heights of 0.1 to 10 m and H/B of 2"
     assert f" in mujoco over {over} to 4, and all but " in said
     assert " in mujoco at 0.001/p, 0.5 α p, 1 m and H/B 2" in said
-    told = study.paragraph(tmp_path)
-    found = re.search(r"in mujoco to (0[.]\d+) \((0[.]\d+)\) by solref=\"\S+/DT\*\*2 ", told)
-    assert float(found[1]) > float(found[2])
-    assert re.search(r"it does within 0[.]\d+ in mujoco, and within 0[.]\d+ over the same", told)
-    assert "sin² α of what it was, Housner's for e = 0: it does within 0.0" in told
-    assert "over all that is varied: no way" in told
     for name in study.pictures(tmp_path):
         assert (tmp_path / f"{name}.png").stat().st_size > 20_000
     lines = study._read(tmp_path, "corners").set_index("way")
