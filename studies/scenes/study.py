@@ -3,27 +3,25 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Response
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import read_table
 from studies.measures.presets import is_engine
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
 from studies.scenes.findings import frame_sentence, slide_sentence
 from studies.sources.groups import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
@@ -156,43 +154,29 @@ def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-def report(folder: Path) -> str:
-    """Draw a folder's tables; write and return what they show."""
-    from studies.drawing.figures import save_all
-
-    save_all(pictures(folder), folder)
-    tables = [read(folder, name).to_string(index=False, float_format="%.3g") for name in TABLES]
-    text = "\n\n".join([*tables, paragraph(folder)])
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
-
-
 TABLES = ("frame-summary", "slide-summary")
 
 
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table of a folder."""
-    return pd.read_csv(folder / f"{name}.csv")
+def report(folder: Path) -> str:
+    """Draw a folder's tables; write and return what they show."""
+    tables = [read_table(folder / f"{name}.csv") for name in TABLES]
+    shown = [table.to_string(index=False, float_format="%.3g") for table in tables]
+    return keep(folder, pictures(folder), "\n\n".join([*shown, headline(folder)]))
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of both summaries that are of engines."""
-    tables = [read(folder, name) for name in TABLES]
+    tables = [read_table(folder / f"{name}.csv") for name in TABLES]
     return [table[table["source"].map(is_engine)] for table in tables]
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames show."""
-    return frame_sentence(engines_in(folder)[0])
-
-
-def paragraph(folder: Path) -> str:
     """Say what the frames and the slides show."""
     frames, slides = engines_in(folder)
     return f"{frame_sentence(frames)} {slide_sentence(slides)}"
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> Pictures:
     """Draw the errors of frames and slides from their summaries alone."""
     from studies.scenes.figure import draw_frames, draw_slides
 

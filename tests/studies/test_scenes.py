@@ -11,8 +11,9 @@ from analytic.response import Outcome
 from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.kit.jobs import ask
+from studies.kit.tables import read_table
 from studies.scenes.cases import frames, slides, steps
-from studies.scenes.study import read, reduce, tabulate
+from studies.scenes.study import reduce, tabulate
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
 PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
@@ -128,7 +129,7 @@ def test_the_study_leaves_its_tables_and_goes_on(tmp_path, capsys):
     assert run(asked) == 0
     first = capsys.readouterr()
     assert "The peak of a rocking frame is off" in first.out
-    lines = read(tmp_path, "frame-summary")
+    lines = read_table(tmp_path / "frame-summary.csv")
     assert list(lines["source"]) == ["exact", "mujoco:fixed"]
     assert (tmp_path / "frame.png").stat().st_size > 10_000
     before = pd.read_csv(tmp_path / "frame.csv")
