@@ -14,14 +14,11 @@ from typing import Any, TypeVar, cast
 
 from analytic.kernels.kept import FULL, are_compiled, cache_folder, kept_in
 
+Answer = TypeVar("Answer")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
-
-LOADING, COMPILING = 5_000, 30_000
-"""Steps of the reference that a thread interprets: about as long as it takes to load what was
-compiled, and, where nothing was, so many more before seconds are spent on compiling."""
 
 FEW = 100
 """Cases up to which it may take less time to interpret them."""
@@ -34,25 +31,51 @@ class SpentError(Exception):
     """Raised where a thread has interpreted as much as it should."""
 
 
-class Patience(threading.local):
-    """What a thread still interprets.
+class Purse:
+    """Steps that are interpreted before code is compiled.
 
-    Attributes
+    Parameters
     ----------
-    within : bool
-        Whether it is interpreting.
-    left : int
-        Steps that are left to it.
-    extended : bool
-        Whether it has asked for more of them.
+    sources : Path
+        The folder of the code.
+    loading : int
+        About as many steps as are interpreted while what was compiled is loaded.
+    compiling : int
+        How many more are, where nothing was, before seconds are spent on compiling.
     """
 
-    within = False
-    left = LOADING
-    extended = False
+    shut = False
+    """Whether nothing more is interpreted: there are many cases to come."""
+
+    def __init__(self, sources: Path, loading: int, compiling: int) -> None:
+        self._sources, self._left, self._more = sources, loading, compiling
+
+    @property
+    def open(self) -> bool:
+        """Whether anything is left."""
+        return self._left > 0 and not Purse.shut
+
+    def spend(self) -> None:
+        """Take a step out; SpentError if there is none."""
+        self._left -= 1
+        if self._left < 0:
+            if not self._more or are_compiled(self._sources):
+                raise SpentError
+            self._left, self._more = self._more, 0
 
 
-patience = Patience()
+class Within(threading.local):
+    """The purse that a thread is spending while it interprets; None while it does not."""
+
+    purse: Purse | None = None
+
+
+_within = Within()
+
+
+def interpreted() -> bool:
+    """Return whether this thread is interpreting."""
+    return _within.purse is not None
 
 
 def spend() -> None:
@@ -63,41 +86,33 @@ def spend() -> None:
     SpentError
         If it is one too many.
     """
-    patience.left -= 1
-    if patience.left < 0:
-        if patience.extended or are_compiled(SOURCES):
-            raise SpentError
-        patience.left, patience.extended = COMPILING, True
+    if _within.purse is not None:
+        _within.purse.spend()
 
 
 @contextmanager
-def interpreting(steps: int | None = None) -> Iterator[None]:
-    """Let every kernel be interpreted, for no more than so many steps; by default what is left.
+def interpreting(purse: Purse) -> Iterator[None]:
+    """Let every kernel be interpreted, at the expense of a purse.
 
     Raises
     ------
     SpentError
-        If they do not suffice.
+        If it does not suffice.
     """
     import numpy as np
 
-    before = patience.within, patience.left, patience.extended
-    patience.within = True
-    if steps is not None:
-        patience.left, patience.extended = steps, True
+    before, _within.purse = _within.purse, purse
     try:
         # what numpy would only warn of is for compiled code, as what Python raises
         with np.errstate(divide="raise", over="raise", invalid="raise"):
             yield
     finally:
-        patience.within = before[0]
-        if steps is not None:
-            patience.left, patience.extended = before[1:]
+        _within.purse = before
 
 
 def compile_all() -> None:
-    """Let this thread interpret no more: there are many cases to come."""
-    patience.left, patience.extended = 0, True
+    """Interpret nothing more in this process: there are many cases to come."""
+    Purse.shut = True
 
 
 class Kernel:
@@ -113,28 +128,32 @@ class Kernel:
         The folder of the modules that it consists of.
     nogil : bool
         Whether other threads of Python run while it does, compiled.
+    purse : Purse or None
+        At whose expense it is interpreted; None where others decide that.
     """
 
-    def __init__(self, function: Callable[..., Any], sources: Path, nogil: bool) -> None:
+    def __init__(
+        self, function: Callable[..., Any], sources: Path, nogil: bool, purse: Purse | None
+    ) -> None:
         update_wrapper(self, function)
         self.py_func = function
-        self._sources, self._nogil = sources, nogil
+        self._sources, self._nogil, self._purse = sources, nogil, purse
         self._dispatcher: Any = None
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the form that is due."""
-        if patience.within:
+        if interpreted():
             return self.py_func(*arguments)
-        if self._dispatcher is None and patience.left > 0:
-            try:
-                with interpreting():
-                    return self.py_func(*arguments)
-            except (SpentError, *MENDED):
-                pass
-        return self.run(*arguments)
+        if self._dispatcher is not None or self._purse is None or not self._purse.open:
+            return self.run(*arguments)
+        try:
+            with interpreting(self._purse):
+                return self.py_func(*arguments)
+        except (SpentError, *MENDED):
+            return self.run(*arguments)
 
     def run(self, *arguments: Any) -> Any:
-        """Call the compiled form, whatever patience is left."""
+        """Call the compiled form, whatever is left."""
         try:
             return self.compiled(*arguments)
         except OSError as error:
@@ -162,17 +181,19 @@ def form_for(cases: int, kernel: Function) -> Function:
     return known.run if cases > FEW else kernel
 
 
-def keeper(sources: Path, *, nogil: bool = True) -> Callable[[Function], Function]:
+def keeper(
+    sources: Path, *, nogil: bool = True, purse: Purse | None = None
+) -> Callable[[Function], Function]:
     """Return the decorator of the kernels in a folder, which call no kernel of another one.
 
     Compiled, a kernel is kept on disk, and releases the GIL unless told not to. No operation is
     merged with another: whether it is would depend on what the compiler inlines, and the last digit
     on which process compiled.
     """
-    return lambda function: cast(Function, Kernel(function, sources, nogil))
+    return lambda function: cast(Function, Kernel(function, sources, nogil, purse))
 
 
-kernel = keeper(SOURCES)
+kernel = keeper(SOURCES, purse=Purse(SOURCES, loading=5_000, compiling=30_000))
 """Let a function have both forms, and be called from Python."""
 
 

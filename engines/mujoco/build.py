@@ -19,6 +19,7 @@ from engines.mujoco.settings import (
     MujocoSettings,
     kept,
 )
+from engines.parts.compiled import INTERPRETED, interpreted
 from engines.parts.readback import disagreement
 from engines.scene import Scene
 from engines.world import Driver, Moment, Pose, Step
@@ -74,7 +75,7 @@ class MujocoWorld:
     @property
     def obstacle(self) -> str:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
-        return obstacle()
+        return INTERPRETED if interpreted() else obstacle()
 
     def pose(self) -> Pose:
         """Read the block's pose back."""

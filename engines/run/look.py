@@ -13,7 +13,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Problem, Response
 from engines.declaration import Stepping
-from engines.parts.compiled import FloatArray, State, kernel, shared
+from engines.parts.compiled import FloatArray, State, kernel, shared, spend
 from engines.run.ground import rows_of
 from engines.run.steps import Pace, begin_pace, next_step
 from engines.run.timetable import timetable
@@ -74,6 +74,7 @@ def look(
     rate: float,
 ) -> bool:
     """See a pose, and choose the next step unless the run is over; return whether it goes on."""
+    spend()
     run, pose = runs[0], Pose(x, z, theta, rate)
     if run.pace.time > 0.0 and not undecided(run, lists, pose):
         return False
