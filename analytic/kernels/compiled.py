@@ -190,7 +190,11 @@ def keeper(
     merged with another: whether it is would depend on what the compiler inlines, and the last digit
     on which process compiled.
     """
-    return lambda function: cast(Function, Kernel(function, sources, nogil, purse))
+
+    def decorate(function: Function) -> Function:
+        return cast(Function, Kernel(function, sources, nogil, purse))
+
+    return decorate
 
 
 kernel = keeper(SOURCES, purse=Purse(SOURCES, loading=5_000, compiling=30_000))
@@ -242,10 +246,11 @@ def _introduce() -> None:
     """Tell numba what stands in compiled code for the functions that Python calls."""
     from numba.extending import overload
 
+    tell: Any = overload
     while _waiting:
         of, function, options = _waiting.pop(0)
         known = {"error_model": "numpy", "no_cfunc_wrapper": True, **options}
-        overload(of, jit_options=known, strict=False)(_always(function))
+        tell(of, jit_options=known, strict=False)(_always(function))
 
 
 def _always(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -26,6 +26,8 @@ def are_compiled(sources: Path) -> bool:
     """Return whether any kernel in a folder was compiled before, by this process or another one."""
     folder = kept_in(sources)
     return folder is not None and any(folder.rglob("*.nbi"))
+
+
 def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
     """Return a folder in the first of these places that can be written, for these sources alone.
 

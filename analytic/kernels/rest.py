@@ -1,6 +1,7 @@
 """Leaving rest and coming to rest: uplift, and the sum of infinitely many impacts."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def shaking(segment: FloatArray, tau: float) -> float:
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
 
 
-def then_still(segments: list[list[float]], end: float) -> list[list[float]]:
+def then_still(segments: Any, end: float) -> Any:
     """Return a ground motion with one segment more, on which nothing moves until `end`."""
     return [*segments, [segments[-1][1], end, 0.0, 0.0, 0.0, 0.0, 0.0]]
 

@@ -1,5 +1,7 @@
 """Random cases at the published steps: which of these keep an error on them, too."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
@@ -188,6 +190,6 @@ def told(table: pd.DataFrame) -> str:
     return f"{first_claim(table)}{words}"
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw nothing: `rocking advise` draws what follows."""
     return {}

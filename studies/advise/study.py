@@ -1,5 +1,7 @@
 """Advice from the published tables: which setting keeps an error, in the library's words."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
@@ -149,7 +151,7 @@ def paragraph(folder: Path) -> str:
     return told(read(folder))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 

@@ -1,5 +1,7 @@
 """One block in several sources side by side, on the same shaken base and the same clock."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path

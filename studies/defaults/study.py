@@ -1,5 +1,7 @@
 """Engines as they come, asked over the plane of pulses, of blocks that similarity makes alike."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -140,7 +142,7 @@ def paragraph(folder: Path) -> str:
     return claims(shares(rows), rows)
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the maps of the smallest and of the largest block from a folder's defaults.csv."""
     from studies.defaults.figure import draw_maps
 

@@ -7,6 +7,8 @@ bounds are quantiles over resampled motions, whole, since what one motion does a
 not independent.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -193,14 +195,14 @@ class Fragility:
         self.resampled = fit_lognormal(intensity, draws @ overturned, draws @ usable)
 
     @classmethod
-    def of(cls, group: pd.DataFrame, resamples: int) -> "Fragility":
+    def of(cls, group: pd.DataFrame, resamples: int) -> Fragility:
         """Return that of the rows of one block and source."""
         table = group.pivot(index="motion", columns="intensity", values="outcome")
         overturned = (table == "overturned").to_numpy(float)
         usable = (table != "failed").to_numpy(float)
         return cls(table.columns.to_numpy(float), overturned, usable, resamples)
 
-    def where(self, usable: FloatArray) -> "Fragility":
+    def where(self, usable: FloatArray) -> Fragility:
         """Return that of the cases in which another source has a result too."""
         if usable.all():
             return self

@@ -1,5 +1,7 @@
 """Many motions, blocks and intensities: are statistics predicted where single responses are not?"""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -240,7 +242,7 @@ def report(folder: Path) -> str:
     return text
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw a folder's figures from its tables alone; single responses where it holds them."""
     from studies.ensemble.figure import draw_fragility, draw_singles
 

@@ -1,5 +1,7 @@
 """Random cases, each at a step and at half of it: what the difference says of the error."""
 
+from __future__ import annotations
+
 from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import fill as wrapped
@@ -132,7 +134,7 @@ def paragraph(folder: Path) -> str:
     return told(pd.read_csv(folder / "factors.csv"))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the errors of the cases that calibrate, from a folder's estimates.csv alone."""
     from studies.estimate.figure import draw_estimates
 

@@ -1,5 +1,7 @@
 """What free rocking shows: the largest errors of period, decay and drift, in tables and words."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,7 +73,7 @@ def paragraph(folder: Path) -> str:
     )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the errors of a folder from its free.csv alone."""
     from studies.free.figure import draw_free
 

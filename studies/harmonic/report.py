@@ -1,5 +1,7 @@
 """What the steady states say: branches, their shares of the starts, and the engines on them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -56,11 +58,11 @@ def branches_text(table: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def _range(values: "pd.Series[float]", form: str) -> str:
+def _range(values: pd.Series[float], form: str) -> str:
     return " to ".join(dict.fromkeys(format(end, form) for end in (values.min(), values.max())))
 
 
-def kind_of(row: "pd.Series[Any]") -> str:
+def kind_of(row: pd.Series[Any]) -> str:
     """Return what a row of harmonic.csv is: an orbit of some period, or another end."""
     if row["outcome"] != Outcome.ROCKED.value:
         return str(row["outcome"])
@@ -141,7 +143,7 @@ def paragraph(folder: Path) -> str:
     return sentence
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the diagram of a folder from its tables alone."""
     from studies.harmonic.figure import draw_harmonic
 

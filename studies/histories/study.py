@@ -1,5 +1,7 @@
 """The paper's time histories, figures 2, 4 and 5, and what it says about them."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -177,7 +179,7 @@ def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
     return [item for item in held if item.statement not in {new.statement for new in found}]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw every figure of a folder from its CSV alone."""
     figures = [n for n in HISTORIES if (folder / f"figure-{n}.csv").is_file()]
     return {f"figure-{n}": drawn(folder, n) for n in figures}
@@ -193,7 +195,7 @@ def paragraph(folder: Path) -> str:
     return sentences(read_findings(folder))
 
 
-def drawn(folder: Path, figure: int) -> "Figure":
+def drawn(folder: Path, figure: int) -> Figure:
     """Draw one figure from its CSV alone."""
     from studies.drawing.figures import draw_histories
 

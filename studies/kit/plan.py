@@ -1,12 +1,14 @@
 """What a study makes, and the one way it is made: jobs in; a folder, a report and a code out."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import pandas as pd
 
@@ -24,7 +26,7 @@ from studies.kit.study import Study
 from studies.kit.tables import write_table
 from studies.sources.registry import Source
 
-Tables = Mapping[str, pd.DataFrame]
+Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
 """Tables by the names of their files, without .csv."""
 
 

@@ -1,5 +1,7 @@
 """What in a linearization matters: its onset, its frequency, its saddle, each changed alone."""
 
+from __future__ import annotations
+
 import functools
 import itertools
 from collections.abc import Sequence
@@ -207,7 +209,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv", dtype={"changed": str})
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
     from studies.linearizations.figure import draw_distributions
 
@@ -334,6 +336,6 @@ def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
     ]
 
 
-def shares(values: "pd.Series[float]") -> str:
+def shares(values: pd.Series[float]) -> str:
     """Return the values of housner, modified and onset-matched in per cent."""
     return ", ".join(f"{float(values[changed]):.1%}" for changed in ("000", "111", "100"))

@@ -1,5 +1,7 @@
 """What the printed numbers say: which come out to their digits, and by how much the others miss."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -78,7 +80,7 @@ def _engines(table: pd.DataFrame) -> str:
     return f". Engines beside the exact answers, largest difference: {', '.join(words)}"
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
     from studies.literature.figure import draw_literature
 

@@ -1,5 +1,7 @@
 """What an overturning map says: who differs from the exact solution, and where; as text."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -56,7 +58,7 @@ def report(folder: Path) -> str:
     return text
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the figures of a folder from its CSVs alone."""
     from studies.overturning.figure import draw_conditioning, draw_differences, draw_map
 
@@ -91,7 +93,7 @@ def paragraph(folder: Path) -> str:
     return f"On the map of the {window_of(folder).title}: {gathered(said)}."
 
 
-def _share(line: "pd.Series[Any]") -> tuple[str, str]:
+def _share(line: pd.Series[Any]) -> tuple[str, str]:
     """Return a source, and what part of the map it gets wrong or how many of its cells right."""
     if math.isnan(line["cells"]):
         wrong = [
@@ -104,13 +106,13 @@ def _share(line: "pd.Series[Any]") -> tuple[str, str]:
     return line["source"], f"right in {right} cells of a coarse grid"
 
 
-def _kinds(line: "pd.Series[Any]") -> dict[str, int]:
+def _kinds(line: pd.Series[Any]) -> dict[str, int]:
     """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
     fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
     return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}
 
 
-def _between(line: "pd.Series[Any]", name: str) -> str:
+def _between(line: pd.Series[Any], name: str) -> str:
     low, high = line.get(f"{name}_from", math.nan), line.get(f"{name}_to", math.nan)
     return "" if math.isnan(low) else f" (nine tenths of that at x = {low:.2g} to {high:.2g})"
 

@@ -1,5 +1,7 @@
 """Error against run time in sentences, each made from the lines of work-precision.csv."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import replace

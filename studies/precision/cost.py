@@ -1,5 +1,7 @@
 """What a scene costs and what leaving things out of it saves: measured by putting them back."""
 
+from __future__ import annotations
+
 import math
 import time
 from collections.abc import Callable, Sequence

@@ -1,5 +1,7 @@
 """What a scene costs, reported: three tables and a figure, from their CSVs alone."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,7 +39,7 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=["nan"])
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw a folder's scenes.csv: time and error of each thing put back."""
     from studies.precision.cost_figure import draw_scenes
 
@@ -54,7 +56,7 @@ def headline(folder: Path) -> str:
     return f"A step of the stepping loop takes {', '.join(words)}."
 
 
-def _step(line: "pd.Series[Any]") -> str:
+def _step(line: pd.Series[Any]) -> str:
     """Return how long a step takes, who takes it, and what of it is the engine's own."""
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"

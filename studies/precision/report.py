@@ -1,5 +1,7 @@
 """Error against run time, reported: errors, orders, cheapest settings, from the CSV alone."""
 
+from __future__ import annotations
+
 import json
 import math
 from dataclasses import asdict
@@ -65,12 +67,12 @@ def paragraph(folder: Path) -> str:
     return claims(pd.read_csv(folder / "work-precision.csv"))
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
     return {"precision": drawn(folder), **cost_report.pictures(folder)}
 
 
-def drawn(folder: Path) -> "Figure":
+def drawn(folder: Path) -> Figure:
     """Draw the work-precision diagram of a folder's work-precision.csv."""
     from studies.precision.figure import draw_precision
 

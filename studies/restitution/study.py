@@ -1,5 +1,7 @@
 """A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -90,7 +92,7 @@ def paragraph(folder: Path) -> str:
     return " ".join([settings_claim(corners), rate_claim(corners, rates), *held, LOST])
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw what is found against what is wanted, from a folder's table of rows alone."""
     from studies.restitution.figure import SHOWN, draw_restitution
 

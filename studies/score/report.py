@@ -1,5 +1,7 @@
 """An engine's page, from its three tables and the published ones."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -83,7 +85,7 @@ def paragraph(folder: Path) -> str:
     return f"{headline(folder)} {first_claim(_table(folder, 'extremes'))}"
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
     from studies.score.figure import draw_score
     from studies.stability.figure import draw_matrix
@@ -161,7 +163,7 @@ def places_text(along: pd.DataFrame) -> str:
     ).to_string(index=False)
 
 
-def _setting(line: "pd.Series[Any] | None") -> str:
+def _setting(line: pd.Series[Any] | None) -> str:
     if line is None:
         return "none"
     cost = cost_text(line["wall_s"], line["runs"])

@@ -1,5 +1,7 @@
 """What the study of extreme cases found, in a paragraph made from its tables."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 
@@ -114,7 +116,7 @@ def verdicts_sentence(matrix: pd.DataFrame) -> str:
     )
 
 
-def _score(source: str, verdicts: "pd.Series[str]") -> str:
+def _score(source: str, verdicts: pd.Series[str]) -> str:
     counts = verdicts.value_counts()
     beyond, unseen = (
         int(counts.get(verdict.value, 0)) for verdict in (Verdict.INVALID, Verdict.UNSEEN)
@@ -201,7 +203,7 @@ def _on_steps(steps: pd.DataFrame) -> list[str]:
     return [words, *_on_contacts(steps)]
 
 
-def with_own_contact(steps: pd.DataFrame) -> "pd.Series[bool]":
+def with_own_contact(steps: pd.DataFrame) -> pd.Series[bool]:
     """Return which rows are of a contact that was given a time of its own.
 
     With its defaults a library may have one by itself.
@@ -220,7 +222,7 @@ def _on_contacts(steps: pd.DataFrame) -> list[str]:
     ]
 
 
-def span(values: "pd.Series[float]") -> str:
+def span(values: pd.Series[float]) -> str:
     """Return the least and the largest of some numbers."""
     low, high = values.min(), values.max()
     if math.isnan(low):
@@ -249,14 +251,14 @@ def _on_sensitivity(moved: pd.DataFrame) -> list[str]:
     return sentences
 
 
-def _from_which(follows: "pd.Series[bool]", delta: "pd.Series[float]") -> str:
+def _from_which(follows: pd.Series[bool], delta: pd.Series[float]) -> str:
     """Say from which size of perturbation on all are followed."""
     rough = delta[~follows].max()
     smooth = delta[delta > rough] if (~follows).any() else delta
     return f"from {smooth.min():.0e} on" if len(smooth) else "at no size tried"
 
 
-def _largest(values: "pd.Series[float]") -> float:
+def _largest(values: pd.Series[float]) -> float:
     return float(values.abs().max())
 
 

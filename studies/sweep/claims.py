@@ -1,5 +1,7 @@
 """What the paper's cases say about each source: the engines by preset, and the linearizations."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +82,7 @@ def _range(preset: str, lines: pd.DataFrame) -> str:
     )
 
 
-def model_claim(line: "pd.Series[Any]") -> str:
+def model_claim(line: pd.Series[Any]) -> str:
     """Say how many outcomes a linearization gets right, on which side it errs, and how far."""
     sides = [
         f"{line[column]:.0f} {words}"
@@ -109,7 +111,7 @@ def first_claim(lines: pd.DataFrame) -> str:
     return capital("; ".join(parts)) + "."
 
 
-def _wrong_by_up_to(preset: str, errors: "pd.Series[float]", lines: pd.DataFrame) -> str:
+def _wrong_by_up_to(preset: str, errors: pd.Series[float], lines: pd.DataFrame) -> str:
     """Say of a preset what is wrong, source by source or between which counts, and how far."""
     cases = alike([f"{count:.0f}" for count in lines["cases"]])
     said = between(lines, lines["source"].map(engine_of))

@@ -1,5 +1,7 @@
 """The paper's sensitivity analysis, figures 6 to 9: every case through every named source."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -114,13 +116,13 @@ def report(folder: Path) -> str:
     )
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw every figure of a folder from its sweep.csv alone."""
     compared = with_reference(read(folder))
     return drawn(compared, summarize(compared))
 
 
-def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, "Figure"]:
+def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> dict[str, Figure]:
     """Draw every figure of the rows beside the exact solution, and of their summary.
 
     Engines with several presets each are drawn preset by preset, and all of them in one figure.

@@ -1,5 +1,7 @@
 """The page from what users see to the setting that mends it, from the published tables."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -98,7 +100,7 @@ def paragraph(folder: Path) -> str:
     return told(_read(folder))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the size of each symptom from a folder's symptoms.csv alone."""
     from studies.symptoms.figure import draw_symptoms
 

@@ -1,5 +1,7 @@
 """Random cases that no setting was tuned on: sources beside the exact solution, κ among it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -194,7 +196,7 @@ def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
     return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
     from studies.validate.figure import draw_conditioning
 

@@ -1,5 +1,7 @@
 """Where the reference is valid: no lift-off, no slip; and what the engines do beyond."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -169,7 +171,7 @@ def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
     ]
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw a folder's figures from its tables alone."""
     from studies.validity.figure import draw_friction, draw_validity
 

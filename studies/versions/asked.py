@@ -1,5 +1,7 @@
 """A release is asked: by this command once more, in the Python of its environment."""
 
+from __future__ import annotations
+
 import os
 import subprocess
 import sys

@@ -1,5 +1,7 @@
 """What the releases of the engines say: text, pictures, and the table of what changed."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,7 +46,7 @@ def paragraph(folder: Path) -> str:
     return told(read(folder, "releases"), read(folder, "changes"))
 
 
-def pictures(folder: Path) -> "dict[str, Figure]":
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw errors by release from a folder's releases.csv and changes.csv alone."""
     from studies.versions.figure import draw_versions
 
