@@ -85,7 +85,7 @@ def command(
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
         raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
-    executor = computing.executor()
+    executor = computing.executor(at_once=True)
     rows = shown(block, posed, sources, times, executor)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
     if usable:

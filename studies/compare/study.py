@@ -101,7 +101,7 @@ def command(
         effort=effort,
         yours=yours,
         estimate=estimate,
-        executor=computing.executor(),
+        executor=computing.executor(at_once=True),
     )
     if json:
         print(json_lines(conditioned(rows, block, posed), note))

@@ -41,16 +41,20 @@ class Local:
         Wall-clock time [s] after which a case in a process of its own is given up.
     ask : callable, optional
         How a job is put to its source.
+    at_once : bool, optional
+        Whether somebody waits for the answers and nobody for their run times: of a few jobs,
+        nothing is compiled.
     """
 
     workers: int
     time_limit_s: float
     ask: Callable[[Job, Source], Response] = ask
+    at_once: bool = False
 
     def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
         """Run the jobs."""
         slow: dict[int, Job] = {}
-        many = len(jobs) > FEW
+        many = not self.at_once or len(jobs) > FEW
         if many:
             compile_all()
         loaded: set[str] = set()
@@ -94,6 +98,8 @@ def choose(
     time_limit_s: float,
     cluster: str | None,
     ask: Callable[[Job, Source], Response] = ask,
+    *,
+    at_once: bool = False,
 ) -> Executor:
     """Return the executor that the command line's --jobs, --time-limit and --cluster ask for.
 
@@ -107,7 +113,7 @@ def choose(
     """
     if cluster is None:
         refuse_excess(f"--jobs is {jobs}", (jobs or 1) * PROCESS_BYTES)
-        return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
+        return Local(jobs or provenance.usable_cores(), time_limit_s, ask, at_once)
     # asyncio takes a tenth of a second to load, and most runs have no cluster
     from studies.kit.cluster import Cluster
 

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 
 import pandas as pd
 
+from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
@@ -94,6 +95,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     FolderError
         If a folder cannot be used: results of another study or of other settings are refused.
     """
+    compile_all()  # what a folder holds may be a run time
     executor = running.executor(plan.ask)
     began = time.perf_counter()
     subject = provenance.subject(study.name, **plan.settings)

@@ -12,6 +12,7 @@ from studies.kit import provenance
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
+from studies.precision.starts import starts_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,12 +23,14 @@ def report(folder: Path) -> str:
     from studies.drawing.figures import save_all
 
     save_all(pictures(folder), folder)
+    starts = (folder / "starts.csv").is_file()
     text = "\n\n".join(
         [
             "Where the time of a step goes:\n" + shares_text(read(folder, "shares")),
             "What a scene leaves out, put back one at a time (time over the scene as it is):\n"
             + scenes_text(read(folder, "scenes")),
             "What the exact solution leaves out:\n" + reference_text(read(folder, "reference")),
+            *(["What a user waits for:\n" + starts_text(read(folder, "starts"))] if starts else []),
         ]
     )
     provenance.write_text(folder / "cost.txt", text + "\n")
