@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import housner_restitution
 from analytic.checks import MOST_HALF_CYCLES
-from analytic.kernels.compiled import inner, kernel
+from analytic.kernels.compiled import form_for, inner, kernel
 from analytic.kernels.law import FloatArray, Law
 from analytic.models import Model, find_model
 
@@ -57,7 +56,7 @@ class Cases:
             part = slice(start, min(start + PART, self.size))
             cases = np.array([column.flat[part] for column in self.columns], dtype=np.float64)
             if not self.restitution:
-                fill_restitution(cases[0], cases[4])
+                form_for(self.size, fill_restitution)(cases[0], cases[4])
             check_cases(cases)
             solve(part, self.model.linear, np.stack(self.model.constants(cases[0])), cases)
 
@@ -91,37 +90,38 @@ def pose(
     return Cases(declared, tuple(columns), restitution is not None)
 
 
-compiled_restitution = kernel(housner_restitution)
-
-
-@inner
+@kernel
 def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
-    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness."""
-    for i in range(alpha.size):
-        eta[i] = max(compiled_restitution(alpha[i]), 0.0)
+    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness.
+
+    See `analytic.block.housner_restitution`.
+    """
+    for i in range(len(alpha)):
+        sine = math.sin(alpha[i])
+        eta[i] = max(1.0 - 1.5 * (sine * sine), 0.0)
 
 
 def housner_restitutions(alpha: ArrayLike) -> FloatArray:
     """Return what a case has without a restitution of its own, in the shape of the slenderness."""
     slender = np.array(alpha, dtype=np.float64)
     found = np.empty(slender.size)
-    fill_restitution(slender.ravel(), found)
+    form_for(found.size, fill_restitution)(slender.ravel(), found)
     return found.reshape(slender.shape)
 
 
 @inner
-def law_of(linear: bool, constants: FloatArray, eta: float) -> Law:
-    """Return the law of a case from a column of the constants."""
-    k, saddle, factor, alpha, onset = constants
-    return Law(linear, k, saddle, factor, alpha, onset, eta)
+def law_of(linear: bool, constants: FloatArray, cases: FloatArray, i: int) -> Law:
+    """Return the law of a case, from its column of the constants and of the cases."""
+    k, saddle, factor = constants[0][i], constants[1][i], constants[2][i]
+    return Law(linear, k, saddle, factor, constants[3][i], constants[4][i], cases[4][i])
 
 
 @inner
-def write_pulse(case: FloatArray, segment: FloatArray) -> None:
+def write_pulse(cases: FloatArray, i: int, segment: FloatArray) -> None:
     """Write the pulse of a case into a row of `motion.SEGMENT_COLUMNS` that is zero elsewhere."""
-    _, amplitude, omega, half_cycles, _ = case
-    segment[1] = half_cycles * math.pi / omega
-    segment[2] = amplitude
+    omega = cases[2][i]
+    segment[1] = cases[3][i] * math.pi / omega
+    segment[2] = cases[1][i]
     segment[3] = omega
 
 

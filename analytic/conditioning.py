@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.block import Rocker
 from analytic.cases import housner_restitutions, law_of, pose, write_pulse
 from analytic.kernels.closed_form import free_peak, work_to
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import form_for, inner, kernel, listed, maker
 from analytic.kernels.excursions import (
     RESTED,
     ROCKED,
@@ -73,9 +73,10 @@ def condition_numbers(
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     exactly = accuracy(TOLERANCE)
     by_amplitude, by_eta = np.empty(cases.size), np.empty(cases.size)
+    solver = form_for(cases.size, condition_pulses)
 
     def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
-        condition_pulses(linear, exactly, constants, given, by_amplitude[part], by_eta[part])
+        solver(linear, exactly, constants, given, by_amplitude[part], by_eta[part])
 
     cases.solve(solve)
     return Conditioning(by_amplitude.reshape(cases.shape), by_eta.reshape(cases.shape))
@@ -187,11 +188,11 @@ def condition_pulses(
     by_eta: FloatArray,
 ) -> None:
     """Write the condition numbers of each case, one a column."""
-    work = workspace()
+    given, held, work = listed(cases), listed(constants), workspace()
     segments = np.zeros((1, 7))
-    for i in range(cases.shape[1]):
-        law = law_of(linear, constants[:, i], cases[4, i])
-        write_pulse(cases[:, i], segments[0])
+    for i in range(len(given[0])):
+        law = law_of(linear, held, given, i)
+        write_pulse(given, i, segments[0])
         by_amplitude[i], by_eta[i] = condition(law, exactly, segments, UPRIGHT, work)
 
 
@@ -210,7 +211,7 @@ def condition(
         log = np.empty((end.events, 4))
     if end.outcome != ROCKED:
         return math.nan, math.nan
-    return follow(law, accuracy, segments, log[: end.events], work)
+    return follow(law, accuracy, listed(segments), listed(log[: end.events]), listed(work))
 
 
 class Slopes(NamedTuple):
@@ -223,16 +224,16 @@ class Slopes(NamedTuple):
     peak: FloatArray
 
 
-@kernel
+@maker
 def follow(
     law: Law, accuracy: Accuracy, segments: FloatArray, log: FloatArray, work: FloatArray
 ) -> tuple[float, float]:
     """Follow the derivatives through the excursions between the events of a march's log."""
-    slopes = Slopes(np.zeros((2, 2)), np.zeros(2))
-    last = segments[-1, 1]
+    slopes = Slopes(listed(np.zeros((2, 2))), listed(np.zeros(2)))
+    last = segments[-1][1]
     peak = y = v = 0.0
     j = 0
-    for n in range(log.shape[0]):
+    for n in range(len(log)):
         kind, tau, before, after = log[n]
         if kind == RESTED:
             continue
@@ -245,33 +246,34 @@ def follow(
         elif kind == UPLIFT:
             side = -math.copysign(1.0, a)
             lead, v = int(before), 0.0
-            slopes.now[:] = 0.0
+            for i in range(2):
+                slopes.now[i][0] = slopes.now[i][RATE] = 0.0
         else:
             side, v, lead = math.copysign(1.0, after), abs(after), 1
             strike(law, side, a, -abs(before), slopes.now)
             if v == 0.0:
                 side, lead = -math.copysign(1.0, a), 2
-        until = log[n + 1, 1] if n + 1 < log.shape[0] else last
+        until = log[n + 1][1] if n + 1 < len(log) else last
         begin = State(side, tau, lead, y, v)
         y, v, peak = fly(law, accuracy, segments[j:], begin, until, peak, slopes, work)
-    if log[-1, 0] != RESTED:
+    if log[-1][0] != RESTED:
         peak = peak_to_come(law, y, v, peak, slopes)
     return slopes.peak[AMPLITUDE] / peak, slopes.peak[RESTITUTION] / peak
 
 
-@kernel
+@inner
 def strike(law: Law, side: float, a: float, before: float, now: FloatArray) -> None:
     """Take `Slopes.now` through an impact, onto `side`; `before` < 0 is the velocity of y."""
     here, there = acceleration(law, -side, a, 0.0), acceleration(law, side, a, 0.0)
     for i in range(2):
-        later = -now[i, 0] / before
+        later = -now[i][0] / before
         lost = law.eta * before if i == RESTITUTION else 0.0
-        velocity = -law.eta * (now[i, RATE] + here * later) - lost
-        now[i, 0] = law.eta * before * later
-        now[i, RATE] = velocity - there * later
+        velocity = -law.eta * (now[i][RATE] + here * later) - lost
+        now[i][0] = law.eta * before * later
+        now[i][RATE] = velocity - there * later
 
 
-@kernel
+@maker
 def fly(
     law: Law,
     accuracy: Accuracy,
@@ -303,14 +305,14 @@ def fly(
     y, v, peak : float
     """
     series, d, spare = work[0], work[4], work[5:]
-    delta = np.empty((3, ORDER + 1))
+    delta = listed(np.empty((3, ORDER + 1)))
     order = accuracy.order
     side, tau, lead, y, v = begin
     j = 0
     while tau < until:
         j = segment_at(segments, j, tau)
         h = expand(law, accuracy, segments[j], State(side, tau, lead, y, v), work)
-        end = min(segments[j, 1], until)
+        end = min(segments[j][1], until)
         landed = tau + h >= end
         if landed:
             h = end - tau
@@ -321,14 +323,14 @@ def fly(
             stretch(delta[i], order, h, delta[i])
             if where >= 0.0:
                 slopes.peak[i] = value(delta[i], order, where)
-            slopes.now[i, 0] = value(delta[i], order, 1.0)
-            slopes.now[i, RATE] = slope(delta[i], order, 1.0) / h
+            slopes.now[i][0] = value(delta[i], order, 1.0)
+            slopes.now[i][RATE] = slope(delta[i], order, 1.0) / h
         y, v, lead = value(d, order, 1.0), slope(d, order, 1.0) / h, 0
         tau = end if landed else tau + h
     return y, v, peak
 
 
-@kernel
+@inner
 def expand_derivatives(
     law: Law, order: int, work: FloatArray, now: FloatArray, delta: FloatArray
 ) -> None:
@@ -338,8 +340,8 @@ def expand_derivatives(
     """
     f, sine, cosine = work[1], work[2], work[3]
     stiff = delta[2]
-    delta[:2, 0] = now[:, 0]
-    delta[:2, 1] = now[:, RATE]
+    for i in range(2):
+        delta[i][0], delta[i][1] = now[i][0], now[i][RATE]
     for n in range(order - 1):
         forced = law.k * law.k * law.factor * f[n]
         if not law.linear:
@@ -348,16 +350,16 @@ def expand_derivatives(
                 forced += f[m] * cosine[n - m]
                 stiff[n] -= f[m] * sine[n - m]
         for i in range(2):
-            pulled = law.k * law.k * delta[i, n]
+            pulled = law.k * law.k * delta[i][n]
             if not law.linear:
                 pulled = 0.0
                 for m in range(n + 1):
-                    pulled += stiff[m] * delta[i, n - m]
+                    pulled += stiff[m] * delta[i][n - m]
             shaken = forced if i == AMPLITUDE else 0.0
-            delta[i, n + 2] = (pulled - shaken) / ((n + 1) * (n + 2))
+            delta[i][n + 2] = (pulled - shaken) / ((n + 1) * (n + 2))
 
 
-@kernel
+@inner
 def peak_to_come(law: Law, y: float, v: float, peak: float, slopes: Slopes) -> float:
     """Take the derivatives on to the peak of the free rocking after the motion, if it is higher."""
     ahead = free_peak(law, y, v)
@@ -367,7 +369,7 @@ def peak_to_come(law: Law, y: float, v: float, peak: float, slopes: Slopes) -> f
     here, there = -acceleration(law, 1.0, 0.0, y), -acceleration(law, 1.0, 0.0, ahead)
     work = 0.5 * v * v + work_to(law, y)
     for i in range(2):
-        change = kept * (v * slopes.now[i, RATE] + here * slopes.now[i, 0])
+        change = kept * (v * slopes.now[i][RATE] + here * slopes.now[i][0])
         if i == RESTITUTION and v < 0.0:
             change += 2.0 * kept * work
         slopes.peak[i] = change / there

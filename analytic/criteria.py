@@ -7,9 +7,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
-from scipy.special import ellipk, ellipkinc
 
 from analytic.block import RigidBlock, Rocker
 from analytic.models import find_model
@@ -26,6 +23,8 @@ def quarter_period(block: Rocker, theta: float, model: str = "exact") -> float:
     ValueError
         If theta is not between 0 and the rotation at which the model's block overturns.
     """
+    from scipy.special import ellipk, ellipkinc
+
     law = find_model(model).law(block.alpha, block.restitution)
     if not 0.0 < theta < law.saddle:
         raise ValueError(f"theta is {theta!r}; it must be between 0 and {law.saddle}")
@@ -60,6 +59,8 @@ def frictionless_fall(block: RigidBlock, theta: float) -> tuple[float, float]:
     ValueError
         If theta is not between 0 and alpha, from where the block falls back.
     """
+    from scipy.integrate import quad
+
     if not 0.0 < theta < block.alpha:
         raise ValueError(f"theta is {theta!r}; it must be between 0 and {block.alpha}")
     gyration = (block.width**2 + block.height**2) / 12.0
@@ -105,6 +106,8 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
 
 def first_root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return a bracketed root to full precision; raise ValueError where there is none."""
+    from scipy.optimize import brentq
+
     if function(low) * function(high) > 0.0:
         raise ValueError(f"no root between {low} and {high}")
     return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))

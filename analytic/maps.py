@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic.cases import law_of, pose
 from analytic.kernels.closed_form import work_to
-from analytic.kernels.compiled import inner, kernel
+from analytic.kernels.compiled import form_for, inner, kernel, listed
 from analytic.kernels.excursions import MAX_STEPS
 from analytic.kernels.law import Law
 from analytic.kernels.rest import ANGLE_TOLERANCE, side_after, time_to_rest
@@ -165,11 +165,12 @@ def solve_modes(
     steps: NDArray[np.int32],
 ) -> None:
     """Solve a part of `overturning_modes`, one case a column."""
-    work, segment = np.empty((5, MAP_ORDER + 1)), np.zeros(7)
-    for i in range(cases.shape[1]):
-        law = law_of(linear, constants[:, i], cases[4, i])
-        _, amplitude, omega, half_cycles, _ = cases[:, i]
-        pulse = Pulse(abs(amplitude), omega, int(half_cycles))
+    given, held = listed(cases), listed(constants)
+    work, segment = listed(np.empty((5, MAP_ORDER + 1))), listed(np.zeros(7))
+    for i in range(len(given[0])):
+        law = law_of(linear, held, given, i)
+        omega = given[2][i]
+        pulse = Pulse(abs(given[1][i]), omega, int(given[3][i]))
         segment[1], segment[2], segment[3] = math.pi / omega, pulse.amplitude, omega
         modes[i], margins[i], steps[i] = pulse_mode(law, pulse, work, segment)
 
@@ -208,9 +209,10 @@ def overturning_modes(
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     size = cases.size
     mode, margin, steps = np.empty(size, np.int32), np.empty(size), np.empty(size, np.int32)
+    solver = form_for(size, solve_modes)
 
     def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
-        solve_modes(linear, constants, given, mode[part], margin[part], steps[part])
+        solver(linear, constants, given, mode[part], margin[part], steps[part])
 
     cases.solve(solve, threads)
     shape = cases.shape

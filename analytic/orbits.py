@@ -7,8 +7,6 @@ each swing is the mirror image of the one before.
 
 import math
 
-from scipy.optimize import brentq
-
 from analytic.checks import positive
 
 
@@ -43,6 +41,8 @@ def orbit_limits(restitution: float, omega_over_p: float, n: int) -> tuple[float
     one impact to the mirrored next, the determinant is r^2; the orbit is stable until one of its
     eigenvalues is -1, where 1 + trace + r^2 = 0.
     """
+    from scipy.optimize import brentq
+
     w = positive("omega_over_p", omega_over_p)
     if not 0.0 < restitution < 1.0:
         raise ValueError(f"restitution is {restitution!r}; it must be between 0 and 1")

@@ -12,7 +12,7 @@ from analytic.cart import CartBlock
 from analytic.cart_motion import ridden
 from analytic.cases import law_of, pose, write_pulse
 from analytic.checks import finite
-from analytic.kernels.compiled import kernel
+from analytic.kernels.compiled import form_for, kernel, listed
 from analytic.kernels.excursions import (
     BROKEN,
     IMPACT,
@@ -159,7 +159,7 @@ def _other(
 
 def strongest(motion: Motion) -> float:
     """Return the largest abs(acceleration) [m/s2] of a ground motion."""
-    return float(strongest_between(motion.segments(), 0, 0.0, motion.duration))
+    return float(strongest_between(motion.segments().tolist(), 0, 0.0, motion.duration))
 
 
 def as_response(
@@ -258,9 +258,10 @@ def peak_ratios(
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     exactly = accuracy(TOLERANCE)
     peaks, codes = np.empty(cases.size), np.empty(cases.size, dtype=np.int8)
+    solver = form_for(cases.size, solve_pulses)
 
     def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
-        solve_pulses(linear, exactly, constants, given, peaks[part], codes[part])
+        solver(linear, exactly, constants, given, peaks[part], codes[part])
 
     cases.solve(solve, threads)
     outcomes = np.array(OUTCOMES, dtype=object)[codes]
@@ -277,12 +278,12 @@ def solve_pulses(
     codes: NDArray[np.int8],
 ) -> None:
     """Solve a part of `peak_ratios`, one case a column."""
-    work = workspace()
-    segments = np.zeros((1, 7))
+    given, held, work = listed(cases), listed(constants), listed(workspace())
+    segments = listed(np.zeros((1, 7)))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
-    for i in range(cases.shape[1]):
-        law = law_of(linear, constants[:, i], cases[4, i])
-        write_pulse(cases[:, i], segments[0])
+    for i in range(len(given[0])):
+        law = law_of(linear, held, given, i)
+        write_pulse(given, i, segments[0])
         end = march(law, exactly, segments, UPRIGHT, 0.0, notes, work)
         codes[i] = end.outcome
         peaks[i] = end.peak / law.alpha

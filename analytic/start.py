@@ -38,7 +38,7 @@ def folded(
     if abs(theta) >= 0.5 * math.pi:
         raise ValueError(f"theta of the start is {theta!r}; it must be between -pi/2 and pi/2 rad")
     balanced = abs(theta) == law.saddle and rate == 0.0
-    if balanced and strongest_between(motion.segments(), 0, 0.0, motion.duration) == 0.0:
+    if balanced and strongest_between(motion.segments().tolist(), 0, 0.0, motion.duration) == 0.0:
         raise ValueError(
             f"start is {start!r}; it must not be the unstable equilibrium where nothing moves"
         )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from analytic.block import Rocker
 from analytic.checks import positive
 from analytic.kernels.closed_form import free_peak
-from analytic.kernels.compiled import inner, kernel
+from analytic.kernels.compiled import inner, kernel, listed, spend
 from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
@@ -54,6 +54,8 @@ EVENT_TOLERANCE = 1e-6
 """Default tolerance of an impact [rad], the paper's."""
 FRACTION = 0.1
 MAX_STEPS = 50_000_000
+SOME = 10
+"""Steps that take about as long as one of the exact solution."""
 
 
 def integrate(
@@ -198,10 +200,10 @@ def turning_value(path: Cubic) -> float:
     return cubic_at(path, low)[0]
 
 
-@kernel
+@inner
 def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
     """Sample a step from a state; return the number of samples so far."""
-    while n < notes.times.size and notes.times[n] <= begin.tau + path.h:
+    while n < len(notes.times) and notes.times[n] <= begin.tau + path.h:
         theta, speed = cubic_at(path, (notes.times[n] - begin.tau) / path.h)
         notes.samples[0, n] = begin.side * theta
         notes.samples[1, n] = begin.side * speed
@@ -246,11 +248,12 @@ def tread(
 
     With `until` before the end of the ground motion the march ends when the peak is decided.
     """
-    if not is_finite(segments):
+    given = listed(segments)
+    if not is_finite(given):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    ended = segments[-1, 1]
+    ended = given[-1][1]
     last, followed = max(until, ended), until > ended
-    moving = then_still(segments, until if followed else math.inf)
+    moving = then_still(given, until if followed else math.inf)
     side, y, v = start
     tau, peak, h = 0.0, y, solver.step
     j = steps = impacts = events = n = 0
@@ -273,6 +276,8 @@ def tread(
         if steps == MAX_STEPS:
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
+        if steps % SOME == 0:
+            spend()
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]

@@ -1,5 +1,6 @@
 """What an import costs: nothing is compiled, and no engine, table or plot is loaded."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -7,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-HEAVY = ("scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
+from studies.__main__ import COMMANDS
+
+HEAVY = ("numba", "scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("analytic", "engines", "studies")
 SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
@@ -19,21 +22,56 @@ def loaded_by(statement):
     return set(done.stdout.split())
 
 
-def test_importing_the_reference_compiles_nothing():
-    code = (
-        "import analytic, sys, types\n"
-        "kernels = [f for name, m in list(sys.modules.items()) if name.startswith('analytic')\n"
-        "           for f in vars(m).values() if hasattr(f, 'signatures')]\n"
-        "assert len(kernels) > 10\n"
-        "print(sum(len(kernel.signatures) for kernel in kernels))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "0"
-
-
 @pytest.mark.parametrize("module", ["analytic", "engines", "studies", "studies.__main__"])
 def test_imports_are_light(module):
     assert not loaded_by(f"import {module}") & set(HEAVY)
+
+
+SCIENCE = "numba llvmlite scipy matplotlib pandas.core asyncio heyoka distributed"
+LIBRARIES = "pybullet mujoco pymunk Box2D dartpy rapier3d pydrake warp"
+EACH = (*SCIENCE.split(), *LIBRARIES.split())
+"""What no answer at once may load."""
+
+ONE = "compare --width 0.5 --height 1.5 --amplitude 0.4 --omega 6.2832 --json --sources"
+
+
+def told_by(*arguments):
+    """Return what a command loads in its own process."""
+    code = (
+        "import sys, json; from studies.__main__ import run; run(sys.argv[1:]);"
+        "print(); print(json.dumps([*sys.modules]))"
+    )
+    asked = [sys.executable, "-c", code, *arguments]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--help"],
+        [*ONE.split(), "exact", "housner", "modified"],
+        [*ONE.split(), "exact", "mujoco:fixed"],
+    ],
+    ids=["help", "models", "engine"],
+)
+def test_an_answer_at_once_loads_nothing_that_it_does_not_need(arguments):
+    """An engine's library is loaded in a process of the engine's own."""
+    assert not told_by(*arguments) & set(EACH)
+
+
+@pytest.mark.parametrize("command", [study.name for study in COMMANDS])
+def test_help_loads_no_table_and_no_plot(command):
+    assert not told_by(command, "--help") & set(EACH)
+
+
+def test_a_run_of_an_engine_loads_its_library_alone():
+    statement = (
+        "from analytic import RigidBlock, SinePulse; from studies import respond;"
+        "block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=3.9, omega=6.3);"
+        "assert respond('mujoco', block, pulse).steps > 100"
+    )
+    assert loaded_by(statement) & set(EACH) == {"mujoco"}
 
 
 def test_nothing_is_loaded_before_signals_are_dealt_with():

@@ -16,6 +16,12 @@ LOST = 1e-17
 
 
 @inner
+def square(x: float) -> float:
+    """Return x^2, as a product: Python's power would round otherwise than a compiled one."""
+    return x * x
+
+
+@inner
 def sine_minus_sinh(x: float, u: float) -> float:
     """Return sin(x)/x - sinh(u)/u without cancellation."""
     if max(x, u) > SERIES_BELOW:
@@ -37,8 +43,8 @@ def sine_minus_sinh(x: float, u: float) -> float:
 def cosh_minus_cosine(x: float, u: float) -> float:
     """Return (cosh(u) - 1)/u^2 - (1 - cos(x))/x^2 without cancellation."""
     if max(x, u) > SERIES_BELOW:
-        second = 2.0 * (math.sin(0.5 * x) / x) ** 2 if x > 0.0 else 0.5
-        return 2.0 * (math.sinh(0.5 * u) / u) ** 2 - second
+        second = 2.0 * square(math.sin(0.5 * x) / x) if x > 0.0 else 0.5
+        return 2.0 * square(math.sinh(0.5 * u) / u) - second
     total = 0.0
     px, pu, factorial = 1.0, 1.0, 2.0
     for i in range(1, 11):
@@ -78,11 +84,11 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
     rate = force * slope
     C = force * amplitude * k * k / (k * k + omega * omega)
     u, x = k * h, omega * h
-    sinh, cosh_1 = math.sinh(u), 2.0 * math.sinh(0.5 * u) ** 2
+    sinh, cosh_1 = math.sinh(u), 2.0 * square(math.sinh(0.5 * u))
     g3 = sine_minus_sinh(x, u)
     forced = C * x * (x * sine * cosh_minus_cosine(x, u) + cosine * g3)
     end = y * (1.0 + cosh_1) + v / k * sinh - D * cosh_1 + rate * (h - sinh / k) + forced
-    shaken = C * omega * (x * sine * g3 + cosine * (2.0 * math.sin(0.5 * x) ** 2 + cosh_1))
+    shaken = C * omega * (x * sine * g3 + cosine * (2.0 * square(math.sin(0.5 * x)) + cosh_1))
     velocity = k * (y - D) * sinh + v * (1.0 + cosh_1) - rate * cosh_1 - shaken
     return end, velocity
 

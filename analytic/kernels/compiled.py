@@ -1,122 +1,286 @@
-"""One decorator for every compiled kernel of a package, and where the compiled code is kept."""
+"""Kernels in two forms, which agree to the bit: Python for a few cases, compiled code for many.
 
-import hashlib
-import os
-import stat
-import tempfile
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
-from functools import cache
+Compiling takes seconds, and to load what was compiled takes longer than a case or two in Python. So
+a kernel is interpreted until a thread has spent its patience, or something is found that Python
+raises where compiled code goes on; from then on it is compiled.
+"""
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import update_wrapper
 from pathlib import Path
-from shutil import rmtree
 from typing import Any, TypeVar, cast
 
-import numba
+from analytic.kernels.kept import FULL, are_compiled, cache_folder, kept_in
 
+Answer = TypeVar("Answer")
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-_numba: Any = numba.config
 
 SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
 
+FEW = 100
+"""Cases up to which it may take less time to interpret them."""
 
-def keeper(
-    sources: Path, *, counted: bool = True, nogil: bool = True
-) -> Callable[[Function], Function]:
-    """Return the decorator of the kernels in a folder, which call no kernel of another one.
+MENDED = (ArithmeticError, ValueError)
+"""What Python raises where compiled code goes on with inf or nan."""
 
-    It compiles a function at its first call, keeps the result on disk, and releases the GIL unless
-    told not to. What makes no array needs no references to its arrays counted.
 
-    No operation is merged with another: whether it is would depend on what the compiler inlines,
-    and the last digit on which process compiled.
+class SpentError(Exception):
+    """Raised where a thread has interpreted as much as it should."""
+
+
+class Purse:
+    """Steps that are interpreted before code is compiled.
+
+    Parameters
+    ----------
+    sources : Path
+        The folder of the code.
+    loading : int
+        About as many steps as are interpreted while what was compiled is loaded.
+    compiling : int
+        How many more are, where nothing was, before seconds are spent on compiling.
     """
 
-    def kernel(function: Function) -> Function:
-        folder = kept_in(sources)
-        njit: Any = numba.njit  # its types leave out what it takes with an underscore
-        compile_ = njit(cache=folder is not None, nogil=nogil, error_model="numpy", _nrt=counted)
-        with _cache_folder(folder):
-            return cast(Function, compile_(function))
+    shut = False
+    """Whether nothing more is interpreted: there are many cases to come."""
 
-    return kernel
+    def __init__(self, sources: Path, loading: int, compiling: int) -> None:
+        self._sources, self._left, self._more = sources, loading, compiling
 
+    @property
+    def open(self) -> bool:
+        """Whether anything is left."""
+        return self._left > 0 and not Purse.shut
 
-kernel = keeper(SOURCES)
-"""Compile a kernel of the reference at its first call."""
-
-inner = keeper(SOURCES, counted=False)
-"""Compile, as `kernel`, what makes no array and assigns to no slice of one.
-
-It counts no references to the arrays that it is given, which in the step of a response take as long
-as its arithmetic.
-"""
-
-
-@cache
-def kept_in(sources: Path = SOURCES) -> Path | None:
-    """Return the folder of the compiled kernels; None where no place can be written."""
-    return folder_for(sources, places(sources))
+    def spend(self) -> None:
+        """Take a step out; SpentError if there is none."""
+        self._left -= 1
+        if self._left < 0:
+            if not self._more or are_compiled(self._sources):
+                raise SpentError
+            self._left, self._more = self._more, 0
 
 
-def are_compiled(sources: Path = SOURCES) -> bool:
-    """Return whether any kernel in a folder was compiled before, by this process or another one."""
-    folder = kept_in(sources)
-    return folder is not None and any(folder.rglob("*.nbi"))
+class Within(threading.local):
+    """The purse that a thread is spending while it interprets; None while it does not."""
+
+    purse: Purse | None = None
 
 
-def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:
-    """Return a folder in the first of these places that can be written, for these sources alone.
+_within = Within()
 
-    It is named by what all modules of the package say, and by how they are compiled: numba sees a
-    change of a kernel's own module, not of a kernel that it calls in another one.
+
+def interpreted() -> bool:
+    """Return whether this thread is interpreting."""
+    return _within.purse is not None
+
+
+def spend() -> None:
+    """Count a step that is interpreted; in compiled code, nothing.
+
+    Raises
+    ------
+    SpentError
+        If it is one too many.
     """
-    digest = hashlib.sha256(Path(__file__).read_bytes())
-    for path in sorted(sources.rglob("*.py")):
-        digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")
-    name = f"kernels-{digest.hexdigest()[:16]}"
-    for place in where:
-        with suppress(OSError):
-            (place / name).mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=place / name).close()
-            if place.parent == sources:
-                _forget(path for path in place.glob("kernels-*") if path.name != name)
-            return place / name
-    return None
-
-
-def places(sources: Path) -> Iterator[Path]:
-    """Yield where compiled kernels may be kept: as numba would, then where temporary files are."""
-    if _numba.CACHE_DIR:
-        yield Path(_numba.CACHE_DIR)
-    yield sources / "__pycache__"
-    with suppress(RuntimeError):
-        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking"
-    with suppress(OSError):
-        yield _private(Path(tempfile.gettempdir(), f"rocking-{os.getuid()}"))
-
-
-def _private(folder: Path) -> Path:
-    """Make a folder that nobody else can write to: what lies in it will be run."""
-    folder.mkdir(mode=0o700, exist_ok=True)
-    found = folder.lstat()
-    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
-        raise PermissionError(f"{folder} is open to others")
-    return folder
-
-
-def _forget(folders: Iterable[Path]) -> None:
-    for folder in folders:
-        rmtree(folder, ignore_errors=True)
+    if _within.purse is not None:
+        _within.purse.spend()
 
 
 @contextmanager
-def _cache_folder(folder: Path | None) -> Iterator[None]:
-    """Let numba keep what is decorated meanwhile in a folder; it asks when it decorates."""
-    before = _numba.CACHE_DIR
-    _numba.CACHE_DIR = str(folder or "")
+def interpreting(purse: Purse) -> Iterator[None]:
+    """Let every kernel be interpreted, at the expense of a purse.
+
+    Raises
+    ------
+    SpentError
+        If it does not suffice.
+    """
+    import numpy as np
+
+    before, _within.purse = _within.purse, purse
     try:
-        yield
+        # what numpy would only warn of is for compiled code, as what Python raises
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            yield
     finally:
-        _numba.CACHE_DIR = before
+        _within.purse = before
+
+
+def compile_all() -> None:
+    """Interpret nothing more in this process: there are many cases to come."""
+    Purse.shut = True
+
+
+class Kernel:
+    """A function in both forms.
+
+    It may be called a second time with the same arguments: what it writes, it does not read before.
+
+    Parameters
+    ----------
+    function : callable
+        What is interpreted, and what is compiled.
+    sources : Path
+        The folder of the modules that it consists of.
+    nogil : bool
+        Whether other threads of Python run while it does, compiled.
+    purse : Purse or None
+        At whose expense it is interpreted; None where others decide that.
+    """
+
+    def __init__(
+        self, function: Callable[..., Any], sources: Path, nogil: bool, purse: Purse | None
+    ) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._sources, self._nogil, self._purse = sources, nogil, purse
+        self._dispatcher: Any = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the form that is due."""
+        if interpreted():
+            return self.py_func(*arguments)
+        if self._dispatcher is not None or self._purse is None or not self._purse.open:
+            return self.run(*arguments)
+        try:
+            with interpreting(self._purse):
+                return self.py_func(*arguments)
+        except (SpentError, *MENDED):
+            return self.run(*arguments)
+
+    def run(self, *arguments: Any) -> Any:
+        """Call the compiled form, whatever is left."""
+        try:
+            return self.compiled(*arguments)
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            self._dispatcher = _compiled(self.py_func, None, self._nogil)
+            return self._dispatcher(*arguments)
+
+    @property
+    def compiled(self) -> Any:
+        """The compiled form, a dispatcher of numba's."""
+        if self._dispatcher is None:
+            self._dispatcher = _compiled(self.py_func, kept_in(self._sources), self._nogil)
+        return self._dispatcher
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What other kernels know it by."""
+        return self.compiled._numba_type_
+
+
+def form_for(cases: int, kernel: Function) -> Function:
+    """Return the form of a kernel that is called for so many cases."""
+    known: Any = kernel
+    return known.run if cases > FEW else kernel
+
+
+def keeper(
+    sources: Path, *, nogil: bool = True, purse: Purse | None = None
+) -> Callable[[Function], Function]:
+    """Return the decorator of the kernels in a folder, which call no kernel of another one.
+
+    Compiled, a kernel is kept on disk, and releases the GIL unless told not to. No operation is
+    merged with another: whether it is would depend on what the compiler inlines, and the last digit
+    on which process compiled.
+    """
+
+    def decorate(function: Function) -> Function:
+        return cast(Function, Kernel(function, sources, nogil, purse))
+
+    return decorate
+
+
+kernel = keeper(SOURCES, purse=Purse(SOURCES, loading=5_000, compiling=30_000))
+"""Let a function have both forms, and be called from Python."""
+
+
+def instead(of: Callable[..., Any], **options: Any) -> Callable[[Function], Function]:
+    """Let kernels that are compiled call a function in place of one that Python calls."""
+
+    def decorate(function: Function) -> Function:
+        _waiting.append((of, function, options))
+        return function
+
+    return decorate
+
+
+def inner(function: Function) -> Function:
+    """Let kernels call a function that makes no array.
+
+    It counts no references to the arrays that it is given, which in the step of a response take as
+    long as its arithmetic.
+    """
+    return instead(function, _nrt=False)(function)
+
+
+def maker(function: Function) -> Function:
+    """Let kernels call a function that makes arrays."""
+    return instead(function)(function)
+
+
+_waiting: list[tuple[Callable[..., Any], Callable[..., Any], dict[str, Any]]] = []
+"""What is compiled into kernels, and not yet known to numba."""
+
+_compiling = threading.RLock()
+
+
+def _compiled(function: Callable[..., Any], folder: Path | None, nogil: bool) -> Any:
+    import numba
+
+    njit: Any = numba.njit  # its types leave out what it takes with an underscore
+    with _compiling:
+        _introduce()
+        compile_ = njit(cache=folder is not None, nogil=nogil, error_model="numpy")
+        with cache_folder(folder):
+            return compile_(function)
+
+
+def _introduce() -> None:
+    """Tell numba what stands in compiled code for the functions that Python calls."""
+    from numba.extending import overload
+
+    tell: Any = overload
+    while _waiting:
+        of, function, options = _waiting.pop(0)
+        known = {"error_model": "numpy", "no_cfunc_wrapper": True, **options}
+        tell(of, jit_options=known, strict=False)(_always(function))
+
+
+def _always(function: Callable[..., Any]) -> Callable[..., Any]:
+    def typed(*_: Any, **__: Any) -> Callable[..., Any]:
+        return function
+
+    return typed
+
+
+def listed(numbers: Any) -> Any:
+    """Return an array as lists, which Python reads faster; in compiled code, the array."""
+    return numbers if isinstance(numbers, list) else numbers.tolist()
+
+
+def constant(numbers: Any) -> Callable[[int], float]:
+    """Return what reads a number of an array that stays as it is."""
+    lists = numbers.tolist()
+
+    def number(i: int) -> Any:
+        return lists[i]
+
+    instead(number, _nrt=False)(lambda i: numbers[i])
+    return number
+
+
+@instead(spend, _nrt=False)
+def _spend_nothing() -> None:
+    return None
+
+
+@instead(listed)
+def _as_it_is(numbers: Any) -> Any:
+    return numbers

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
-from analytic.kernels.compiled import inner, kernel
+from analytic.kernels.compiled import inner, kernel, listed, maker, spend
 from analytic.kernels.forces import (
     forget_fall,
     watch_free,
@@ -117,7 +117,7 @@ def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after:
     return n + 1
 
 
-@kernel
+@maker
 def workspace() -> FloatArray:
     """Return the workspace that `march` needs."""
     return np.empty((MAX_DEPTH + 12, ORDER + 1))
@@ -233,7 +233,7 @@ def sample_step(
 ) -> int:
     """Sample a step, whose series on [0, 1] is d; return the number of samples so far."""
     h = step.h
-    while n < notes.times.size and notes.times[n] <= begin.tau + step.x * h:
+    while n < len(notes.times) and notes.times[n] <= begin.tau + step.x * h:
         at = notes.times[n] - begin.tau
         if law.linear:
             theta, rate = linear_state(law, segment, begin, at)
@@ -248,7 +248,7 @@ def sample_step(
 @inner
 def sample_rest(notes: Notes, until: float, n: int) -> int:
     """Sample a rest up to a time; return the number of samples so far."""
-    while n < notes.times.size and notes.times[n] <= until:
+    while n < len(notes.times) and notes.times[n] <= until:
         notes.samples[0, n] = notes.samples[1, n] = 0.0
         n += 1
     return n
@@ -282,10 +282,15 @@ def march(
     work : ndarray
         From `workspace()`.
     """
-    if not is_finite(segments):
+    given = listed(segments)
+    if not is_finite(given):
         return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    moving = then_still(segments, max(until, segments[-1, 1]))
-    return follow(law, accuracy, moving, start, notes, work)
+    moving = then_still(given, max(until, given[-1][1]))
+    seen = Notes(listed(notes.times), notes.samples, notes.log, listed(notes.limits))
+    end = follow(law, accuracy, moving, start, seen, listed(work))
+    for i in range(len(seen.limits)):
+        notes.limits[i] = seen.limits[i]
+    return end
 
 
 @inner
@@ -293,7 +298,7 @@ def follow(
     law: Law, accuracy: Accuracy, moving: FloatArray, start: Start, notes: Notes, work: FloatArray
 ) -> End:
     """Follow one response to the end of a motion whose last segment is still; as `march`."""
-    watched, last = notes.limits.size > 0, moving[-1, 1]
+    watched, last = len(notes.limits) > 0, moving[-1][1]
     side, y, v = start
     tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
@@ -321,6 +326,7 @@ def follow(
         if steps == MAX_STEPS:
             return End(TOO_LONG, peak, steps, impacts, events, tau)
 
+        spend()
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
         step = take_step(law, accuracy, segment, begin, peak, work)

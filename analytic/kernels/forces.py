@@ -79,7 +79,7 @@ def watch_to_passing(
     """
     beyond, spare = work[5], work[6:]
     for i in range(order + 1):
-        beyond[i] = work[4, i]
+        beyond[i] = work[4][i]
     beyond[0] -= law.alpha
     passed = -1.0
     root = next_root(beyond, order, 0.0, spare)

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from analytic.kernels.compiled import inner
+from analytic.kernels.compiled import constant, inner
 from analytic.kernels.law import FloatArray
 
 ORDER = 24
@@ -25,8 +25,14 @@ NEWTON_DONE = 1e-9
 SAME_ROOT = 1e-15
 """Distance within which a root is not told from another."""
 
-INVERSE_BINOMIALS = np.array(
-    [[1.0 / math.comb(n, i) if i <= n else 0.0 for i in range(ORDER + 1)] for n in range(ORDER + 1)]
+inverse_binomial = constant(
+    np.array(
+        [
+            1.0 / math.comb(n, i) if i <= n else 0.0
+            for n in range(ORDER + 1)
+            for i in range(ORDER + 1)
+        ]
+    )
 )
 
 
@@ -87,8 +93,9 @@ def trend(d: FloatArray, degree: int, lead: int) -> int:
 @inner
 def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
     """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
+    row = degree * (ORDER + 1)
     for i in range(degree + 1):
-        b[i] = a[i] * INVERSE_BINOMIALS[degree, i]
+        b[i] = a[i] * inverse_binomial(row + i)
     for r in range(1, degree + 1):
         for i in range(degree, r - 1, -1):
             b[i] += b[i - 1]
@@ -184,7 +191,7 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
         changes = sign_changes(b, degree) if low + width > start else 0
         if changes > 1 and depth < MAX_DEPTH:
             for i in range(degree + 1):
-                pool[top + 1, i] = b[i]
+                pool[top + 1][i] = b[i]
             halve(pool[top + 1], degree, b)
             top += 1
             depth += 1

@@ -1,10 +1,11 @@
 """Leaving rest and coming to rest: uplift, and the sum of infinitely many impacts."""
 
 import math
+from typing import Any
 
 import numpy as np
 
-from analytic.kernels.compiled import inner, kernel
+from analytic.kernels.compiled import inner, instead
 from analytic.kernels.law import FloatArray, Law
 
 ANGLE_TOLERANCE = 1e-14
@@ -18,7 +19,7 @@ MOMENT = 1e-12
 @inner
 def ground(segments: FloatArray, j: int, tau: float) -> float:
     """Return the ground acceleration [g] on segment j; zero after the last."""
-    return shaking(segments[j], tau) if j < segments.shape[0] else 0.0
+    return shaking(segments[j], tau) if j < len(segments) else 0.0
 
 
 @inner
@@ -29,25 +30,32 @@ def shaking(segment: FloatArray, tau: float) -> float:
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
 
 
-@kernel
-def then_still(segments: FloatArray, end: float) -> FloatArray:
+def then_still(segments: Any, end: float) -> Any:
     """Return a ground motion with one segment more, on which nothing moves until `end`."""
-    count = segments.shape[0]
-    longer = np.zeros((count + 1, segments.shape[1]))
-    longer[:count] = segments
-    longer[count, 0], longer[count, 1] = segments[count - 1, 1], end
+    return [*segments, [segments[-1][1], end, 0.0, 0.0, 0.0, 0.0, 0.0]]
+
+
+@instead(then_still)
+def _then_still(segments: FloatArray, end: float) -> FloatArray:
+    count = len(segments)
+    longer = np.zeros((count + 1, 7))
+    # a slice would compile for seconds
+    for i in range(count):
+        for j in range(7):
+            longer[i][j] = segments[i][j]
+    longer[count][0], longer[count][1] = segments[count - 1][1], end
     return longer
 
 
 @inner
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
     """Return on which segment a time is, j or later; their number after the last."""
-    while j < segments.shape[0] and tau >= segments[j, 1]:
+    while j < len(segments) and tau >= segments[j][1]:
         j += 1
     return j
 
 
-@kernel
+@inner
 def is_finite(segments: FloatArray) -> bool:
     """Tell whether floating point holds a ground motion in the units of a block."""
     for row in segments:
@@ -61,8 +69,8 @@ def is_finite(segments: FloatArray) -> bool:
 def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
     """Return the largest abs(acceleration) of the ground between two times, from segment j on."""
     most = 0.0
-    for i in range(j, segments.shape[0]):
-        first, last = max(begin, segments[i, 0]), min(end, segments[i, 1])
+    for i in range(j, len(segments)):
+        first, last = max(begin, segments[i][0]), min(end, segments[i][1])
         if first > last:
             break
         most = max(most, abs(ground(segments, i, first)), abs(ground(segments, i, last)))
@@ -134,16 +142,16 @@ def next_uplift(
         Power of time with which the rotation grows: 3 where the ground passes through the onset,
         2 where it is beyond the onset at once.
     """
-    for i in range(j, segments.shape[0]):
-        begin = max(tau, segments[i, 0])
-        if segments[i, 2] != 0.0:
+    for i in range(j, len(segments)):
+        begin = max(tau, segments[i][0])
+        if segments[i][2] != 0.0:
             time, smooth = sine_uplift(segments[i], begin, onset)
         else:
             time, smooth = ramp_uplift(segments[i], begin, onset)
-        if time < segments[i, 1]:
+        if time < segments[i][1]:
             side = -math.copysign(1.0, ground(segments, i, time))
             return i, time, side, 3 if smooth else 2
-    return segments.shape[0], math.inf, 0.0, 0
+    return len(segments), math.inf, 0.0, 0
 
 
 @inner
@@ -211,7 +219,8 @@ def after_impact(
     """
     a = ground(segments, j, tau)
     wait = time_to_rest(law, side, v, a)
-    return side_after(law, side, v, a, ground(segments, j, tau + wait), wait), wait
+    later = ground(segments, j, tau + wait) if wait < math.inf else a
+    return side_after(law, side, v, a, later, wait), wait
 
 
 ZENO = 1e-4

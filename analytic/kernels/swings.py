@@ -17,11 +17,11 @@ import math
 from typing import NamedTuple
 
 from analytic.kernels.closed_form import linear_state
-from analytic.kernels.compiled import inner
+from analytic.kernels.compiled import inner, spend
 from analytic.kernels.excursions import LYING, MAX_STEPS
 from analytic.kernels.law import FloatArray, Law, State
 from analytic.kernels.polynomial import slope, value
-from analytic.kernels.taylor import PARTS, expand_exact
+from analytic.kernels.taylor import expand_exact, part
 
 LANDED, TOPPLED, LEFT_OVER, STUCK = 0, 1, 2, 3
 """How a swing ends: an impact, overturned, still up when the pulse ends, too many steps."""
@@ -177,6 +177,7 @@ def swing_linear(
     n = steps = 0
     out = side < 0.0
     while steps < MAX_STEPS:
+        spend()
         lifts, stop = stretch(out, angle, level)
         onward = out and c <= LYING and n == pulse.half_cycles - 1
         if onward and y >= c and v >= 0.0:
@@ -244,7 +245,7 @@ def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None
     f[1] = side * pulse.amplitude * pulse.omega * math.cos(angle)
     square = pulse.omega * pulse.omega
     for i in range(2, MAP_ORDER + 1):
-        f[i] = -square * PARTS[i] * PARTS[i - 1] * f[i - 2]
+        f[i] = -square * part(i) * part(i - 1) * f[i - 2]
 
 
 @inner
@@ -310,6 +311,7 @@ def swing_exact(
     t, angle, y, top = 0.0, start, 0.0, 0.0
     n = steps = 0
     while steps < MAX_STEPS:
+        spend()
         steps += 1
         out, last = side < 0.0, n >= pulse.half_cycles - 1
         expand_pulse(pulse, angle, side, f)

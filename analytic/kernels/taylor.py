@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.kernels.compiled import inner
+from analytic.kernels.compiled import constant, inner
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import ORDER
 
@@ -20,7 +20,7 @@ TOLERANCE = 1e-16
 """Default truncation error of a step, relative to the rotation it covers."""
 
 
-PARTS = np.array([0.0, *(1.0 / i for i in range(1, ORDER + 1))])
+part = constant(np.array([0.0, *(1.0 / i for i in range(1, ORDER + 1))]))
 """1/i: where a division by a whole number would be waited for."""
 
 
@@ -54,7 +54,7 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
     f[1] = side * amplitude * omega * math.cos(angle)
     square = omega * omega
     for i in range(2, order + 1):
-        f[i] = -square * PARTS[i] * PARTS[i - 1] * f[i - 2]
+        f[i] = -square * part(i) * part(i - 1) * f[i - 2]
     f[0] += side * (offset + slope * (tau - start))
     f[1] += side * slope
 
@@ -89,16 +89,22 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
             s += rate[1] * cosine[i]
             c += rate[1] * sine[i]
             forced += f[i] * cosine[0]
-            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * PARTS[i + 1] * PARTS[i + 2]
-        sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * PARTS[i + 1]
-        cosine[i + 1] = (c + rate[i + 1] * sine[0]) * PARTS[i + 1]
+            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * part(i + 1) * part(i + 2)
+        sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * part(i + 1)
+        cosine[i + 1] = (c + rate[i + 1] * sine[0]) * part(i + 1)
 
 
 @inner
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
     """Extend the series y[0], y[1], y[2] by a linear model, y'' = -k^2 [saddle - y + q f]."""
     for i in range(1, order - 1):
-        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * PARTS[i + 1] * PARTS[i + 2]
+        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * part(i + 1) * part(i + 2)
+
+
+@inner
+def logarithm(x: float) -> float:
+    """Return ln(x), of zero, too."""
+    return math.log(x) if x != 0.0 else -math.inf
 
 
 @inner
@@ -109,9 +115,9 @@ def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
     a step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
     """
     order, tolerance = accuracy
-    last, before = math.log(abs(y[order]) / tolerance), math.log(abs(y[order - 1]) / tolerance)
+    last, before = logarithm(abs(y[order]) / tolerance), logarithm(abs(y[order - 1]) / tolerance)
     h = 1.0
     for _ in range(2):
-        size = math.log(max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h))
+        size = logarithm(max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h))
         h = min(LONGEST_STEP, math.exp(min((size - last) / order, (size - before) / (order - 1))))
     return h

@@ -19,7 +19,7 @@ from engines.mujoco.settings import (
     MujocoSettings,
     kept,
 )
-from engines.parts.compiled import FloatArray
+from engines.parts.compiled import INTERPRETED, FloatArray, interpreted
 from engines.parts.readback import disagreement
 from engines.scene import Scene
 from engines.world import Driver, Moment, Step
@@ -75,7 +75,7 @@ class MujocoWorld:
     @property
     def obstacle(self) -> str:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
-        return obstacle()
+        return INTERPRETED if interpreted() else obstacle()
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""

@@ -12,19 +12,22 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import llvmlite.binding
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
 from engines.mujoco.contact import Arrays, Forces, Hold, notice, prepare, read
-from engines.parts.compiled import SWITCHED_OFF, FloatArray, kernel, shared, switched_off
+from engines.parts.compiled import (
+    SWITCHED_OFF,
+    CFunction,
+    FloatArray,
+    interpreted,
+    kernel,
+    shared,
+    switched_off,
+)
 from engines.run.look import Lists, Run, onward, undecided
 
-mj_step: Any = types.ExternalFunction(
-    "mj_step",
-    types.void(types.intp, types.intp),
-)
+mj_step = CFunction("mj_step", "void", "intp", "intp")
 
 C_TYPES: Mapping[str, Any] = {
     "int": ctypes.c_int,
@@ -111,7 +114,7 @@ def forces_in(memory: Memory) -> Forces:
 
 def memory_of(model: Any, data: Any) -> Memory | None:
     """Return the memory of a model and its data; None where it is not what it should be."""
-    return None if obstacle() else _memory(model, data)
+    return None if interpreted() or obstacle() else _memory(model, data)
 
 
 @cache
@@ -120,6 +123,8 @@ def obstacle() -> str:
     if switched_off():
         return SWITCHED_OFF
     try:
+        import llvmlite.binding
+
         mj: Any = import_module("mujoco")
         (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
         llvmlite.binding.load_library_permanently(str(library))

@@ -1,20 +1,30 @@
 """What compiled functions of engines are made of: a decorator, and the numbers that they keep.
 
-There is one source for both uses: where numba is switched off, as by NUMBA_DISABLE_JIT=1, the same
-functions run as Python.
+There is one source for both uses: where a few cases are interpreted, and where numba is switched
+off, as by NUMBA_DISABLE_JIT=1, the same functions run as Python.
 """
 
+import os
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar, cast, get_args, get_origin, get_type_hints
 
-import numba
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from analytic.kernels.compiled import keeper
+from analytic.kernels.compiled import (
+    MENDED,
+    Purse,
+    SpentError,
+    interpreted,
+    interpreting,
+    keeper,
+    maker,
+    spend,
+)
+
+__all__ = ["interpreted", "spend"]
 
 FloatArray = NDArray[np.float64]
 
@@ -22,54 +32,112 @@ PACKAGE = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the engines' kernels and all that they call."""
 
 kernel = keeper(PACKAGE)
-"""Compile a function at its first call; see `analytic.kernels.compiled.keeper`."""
+"""Let a function be called from Python in either form; see `analytic.kernels.compiled.keeper`."""
 
 exclusive = keeper(PACKAGE, nogil=False)
-"""Compile, as `kernel`, what calls a library that keeps some of its numbers for the whole process:
+"""Do, as `kernel`, with what calls a library that keeps some of its numbers for the whole process:
 no other thread of Python runs meanwhile."""
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+shared = maker
+"""Let kernels call a function, compiled into them; called from Python it remains Python."""
 
+PURSE = Purse(PACKAGE, loading=20_000, compiling=100_000)
+
+Answer = TypeVar("Answer")
 
 SWITCHED_OFF = "numba is switched off"
+INTERPRETED = "a few steps need not be compiled"
+
+
+class CFunction:
+    """A function of a library's as compiled code calls it.
+
+    Parameters
+    ----------
+    symbol : str
+        Its name.
+    result, arguments : str
+        What it returns and takes, as numba names them.
+    """
+
+    def __init__(self, symbol: str, result: str, *arguments: str) -> None:
+        self.symbol = symbol
+        self._result, self._arguments = result, arguments
+
+    def __call__(self, *_: Any) -> Any:
+        """Refuse to be called from Python."""
+        raise TypeError(f"{self.symbol} is called by compiled code alone")
+
+    @property
+    def _numba_type_(self) -> Any:
+        from numba import types
+
+        result, *arguments = (getattr(types, name) for name in (self._result, *self._arguments))
+        return types.ExternalFunction(self.symbol, result(*arguments))
 
 
 def switched_off() -> bool:
     """Return whether compiled functions run as Python."""
-    settings: Any = numba.config
-    return bool(settings.DISABLE_JIT)
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
-def shared(function: Function) -> Function:
-    """Let kernels call a function, compiled into them; called from Python it remains Python."""
-    return register_jitable(error_model="numpy", no_cfunc_wrapper=True)(function)
+def interpreted_first(run: Callable[[], Answer]) -> Answer:
+    """Return what a run answers: interpreted, if this process still may; else compiled."""
+    if PURSE.open:
+        try:
+            with interpreting(PURSE):
+                return run()
+        except (SpentError, *MENDED):
+            pass
+    return run()
 
 
 class State:
-    """Numbers under names, which a compiled function reads and writes in place.
+    """Numbers under names, which functions read and write in place.
 
     A subclass names its fields, each a float, an int, a bool, another state, or an array of
-    floats: ``Annotated[FloatArray, (4, 4)]``. What is made of it is one of numpy's records, which
-    stay in an array.
+    floats: ``Annotated[FloatArray, (4, 4)]``. For compiled functions what is made of it is one of
+    numpy's records, which stay in an array; for Python, which reads those slowly, an object.
     """
 
     @classmethod
     @cache
     def kind(cls) -> np.dtype[np.void]:
         """Return the names and kinds of the fields."""
-        hints = get_type_hints(cls, include_extras=True)
-        return np.dtype([(name, *_kind(hint)) for name, hint in hints.items()], align=True)
+        return np.dtype([(name, *_kind(hint)) for name, hint in cls.fields().items()], align=True)
+
+    @classmethod
+    @cache
+    def fields(cls) -> dict[str, Any]:
+        """Return what the fields are declared as."""
+        return get_type_hints(cls, include_extras=True)
 
     @classmethod
     def blank(cls, count: int = 1) -> Sequence[Self]:
         """Return an array of such states, all zeros; a state alone is slow to hand over."""
+        if interpreted():
+            return [cls.plain() for _ in range(count)]
         return cast(Sequence[Self], np.zeros(count, np.dtype((np.record, cls.kind()))))
+
+    @classmethod
+    def plain(cls) -> Self:
+        """Return such a state as an object."""
+        state = cls()
+        for name, hint in cls.fields().items():
+            setattr(state, name, _zero(hint))
+        return state
 
 
 def _kind(hint: Any) -> tuple[Any, ...]:
     if get_origin(hint) is Annotated:
         return (np.float64, get_args(hint)[1])
     return (hint.kind() if issubclass(hint, State) else np.dtype(hint),)
+
+
+def _zero(hint: Any) -> Any:
+    if get_origin(hint) is Annotated:
+        return np.zeros(get_args(hint)[1])
+    return hint.plain() if issubclass(hint, State) else hint()
 
 
 def fill(state: State, **values: float) -> None:

@@ -10,7 +10,13 @@ import numpy as np
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from engines.parts.compiled import SWITCHED_OFF, FloatArray, switched_off
+from engines.parts.compiled import (
+    INTERPRETED,
+    SWITCHED_OFF,
+    FloatArray,
+    interpreted,
+    switched_off,
+)
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
 from engines.pybullet.calls import (
@@ -68,7 +74,7 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
-        loops = scene.compiled and loop_agrees()
+        loops = scene.compiled and not interpreted() and loop_agrees()
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
@@ -108,8 +114,8 @@ class BulletWorld:
     @property
     def obstacle(self) -> str:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
-        if switched_off():
-            return SWITCHED_OFF
+        if switched_off() or interpreted():
+            return SWITCHED_OFF if switched_off() else INTERPRETED
         if not clients(self._p).size:
             return "the library is another build, whose clients are not known"
         return "" if loop_agrees() else "its loop does not step as Python does"

@@ -12,13 +12,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import llvmlite.binding
-import numba
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
-from engines.parts.compiled import FloatArray, State, exclusive, fill, shared
+from engines.parts.compiled import (
+    CFunction,
+    FloatArray,
+    State,
+    exclusive,
+    fill,
+    shared,
+    switched_off,
+)
 from engines.pybullet.addresses import spans
 from engines.pybullet.calls import base_place
 from engines.pybullet.clients import given_back, taken
@@ -27,29 +32,23 @@ from engines.run.look import Lists, Run, onward, undecided
 from engines.scene import Scene
 from engines.world import Grip, Step
 
-HANDLE, NUMBER, REAL = types.intp, types.intc, types.float64
+HANDLE, NUMBER, REAL = "intp", "intc", "float64"
 
-
-def c_function(name: str, result: Any, *arguments: Any) -> Any:
-    """Return a function of the library's as compiled code calls it."""
-    return types.ExternalFunction(name, result(*arguments))
-
-
-submit = c_function("b3SubmitClientCommandAndWaitStatus", HANDLE, HANDLE, HANDLE)
-parameters = c_function("b3InitPhysicsParamCommand", HANDLE, HANDLE)
-put_time_step = c_function("b3PhysicsParamSetTimeStep", NUMBER, HANDLE, REAL)
-put_gravity = c_function("b3PhysicsParamSetGravity", NUMBER, HANDLE, REAL, REAL, REAL)
-put_contact_erp = c_function("b3PhysicsParamSetDefaultContactERP", NUMBER, HANDLE, REAL)
-put_friction_erp = c_function("b3PhysicsParamSetDefaultFrictionERP", NUMBER, HANDLE, REAL)
-pose = c_function("b3CreatePoseCommandInit", HANDLE, HANDLE, NUMBER)
-put_place = c_function("b3CreatePoseCommandSetBasePosition", NUMBER, HANDLE, REAL, REAL, REAL)
-put_turn = c_function(
+submit = CFunction("b3SubmitClientCommandAndWaitStatus", HANDLE, HANDLE, HANDLE)
+parameters = CFunction("b3InitPhysicsParamCommand", HANDLE, HANDLE)
+put_time_step = CFunction("b3PhysicsParamSetTimeStep", NUMBER, HANDLE, REAL)
+put_gravity = CFunction("b3PhysicsParamSetGravity", NUMBER, HANDLE, REAL, REAL, REAL)
+put_contact_erp = CFunction("b3PhysicsParamSetDefaultContactERP", NUMBER, HANDLE, REAL)
+put_friction_erp = CFunction("b3PhysicsParamSetDefaultFrictionERP", NUMBER, HANDLE, REAL)
+pose = CFunction("b3CreatePoseCommandInit", HANDLE, HANDLE, NUMBER)
+put_place = CFunction("b3CreatePoseCommandSetBasePosition", NUMBER, HANDLE, REAL, REAL, REAL)
+put_turn = CFunction(
     "b3CreatePoseCommandSetBaseOrientation", NUMBER, HANDLE, REAL, REAL, REAL, REAL
 )
-put_velocity = c_function("b3CreatePoseCommandSetBaseLinearVelocity", NUMBER, HANDLE, HANDLE)
-advance = c_function("b3InitStepSimulationCommand", HANDLE, HANDLE)
-state = c_function("b3RequestActualStateCommandInit", HANDLE, HANDLE, NUMBER)
-state_in = c_function("b3GetStatusActualState", NUMBER, HANDLE, *7 * (HANDLE,))
+put_velocity = CFunction("b3CreatePoseCommandSetBaseLinearVelocity", NUMBER, HANDLE, HANDLE)
+advance = CFunction("b3InitStepSimulationCommand", HANDLE, HANDLE)
+state = CFunction("b3RequestActualStateCommandInit", HANDLE, HANDLE, NUMBER)
+state_in = CFunction("b3GetStatusActualState", NUMBER, HANDLE, *7 * (HANDLE,))
 
 FUNCTIONS = (
     *(submit, parameters, put_time_step, put_gravity, put_contact_erp, put_friction_erp),
@@ -259,10 +258,11 @@ def client_of(p: Any, number: int, body: int, state: FloatArray) -> Client:
 @cache
 def clients(p: Any) -> NDArray[np.int64]:
     """Return the addresses of Python's clients, by their numbers; none where they are not known."""
-    compiled: Any = numba.config
     with suppress(Exception):  # whatever is different about another build
+        import llvmlite.binding
+
         llvmlite.binding.load_library_permanently(p.__file__)
-        if not compiled.DISABLE_JIT and all(address_of(function.symbol) for function in FUNCTIONS):
+        if not switched_off() and all(address_of(function.symbol) for function in FUNCTIONS):
             exported, table, kind = spans(Path(p.__file__), EXPORTED, CLIENTS, DIRECT)
             loaded = address_of(EXPORTED) - exported[0]
             if _is_one(p, loaded + table[0], loaded + kind[0] + VIRTUAL):
@@ -294,6 +294,8 @@ def word_at(address: int) -> int:
 
 def address_of(symbol: str) -> Any:
     """Return where a function of the library's is; None where there is none."""
+    import llvmlite.binding
+
     return llvmlite.binding.address_of_symbol(symbol)
 
 

@@ -15,7 +15,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import History, Problem, Response
 from engines.declaration import Stepping
-from engines.parts.compiled import FloatArray, State, kernel, shared
+from engines.parts.compiled import FloatArray, State, interpreted, kernel, shared, spend
 from engines.run.ground import rows_of
 from engines.run.steps import Pace, begin_pace, next_step
 from engines.run.timetable import timetable
@@ -73,7 +73,8 @@ def onward(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
 @shared
 def pose_in(state: FloatArray, body: int) -> Pose:
     """Return the pose of a body in a state."""
-    return Pose(state[body, 0], state[body, 1], state[body, 2], state[body, 3])
+    row = state[body]
+    return Pose(row[0], row[1], row[2], row[3])
 
 
 @shared
@@ -100,6 +101,7 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
 @kernel
 def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
     """See a state, and choose the next step unless the run is over; return whether it goes on."""
+    spend()
     if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
         return False
     put_step(step, onward(runs, lists, state))
@@ -198,7 +200,9 @@ class Look:
         if where.shape != self._shape:
             words = f"it must be {self._shape}, a row for each body"
             raise ValueError(f"the engine's state has the shape {where.shape}; {words}")
-        if not look(self.runs, self.lists, self._numbers, where):
+        # plain numbers are the faster ones for Python
+        seen: Any = where.tolist() if interpreted() else where
+        if not look(self.runs, self.lists, self._numbers, seen):
             return None
         numbers: list[Any] = self._numbers.tolist()
         numbers[GRIP] = GRIPS[int(numbers[GRIP])]

@@ -41,10 +41,10 @@ def see_spread(spread: Spread, state: FloatArray) -> None:
     if columns == 0:
         return
     for column in range(1, columns):
-        spread.parting = max(spread.parting, abs(state[column, 2] - state[0, 2]))
-    spread.tilt = max(spread.tilt, abs(state[columns, 2]))
+        spread.parting = max(spread.parting, abs(state[column][2] - state[0][2]))
+    spread.tilt = max(spread.tilt, abs(state[columns][2]))
     # a corner on top of a column moves twice as far as the column's centre
-    slid = state[columns, 0] - 2.0 * state[0, 0] - spread.homes
+    slid = state[columns][0] - 2.0 * state[0][0] - spread.homes
     spread.drift = max(spread.drift, abs(slid))
 
 

@@ -1,5 +1,7 @@
 """The cheapest published setting that keeps an error."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -76,7 +78,7 @@ def _of_engine(
 
 
 def _extreme(
-    published: Path, best: "pd.Series[Any] | None", engine: str, preset: Preset, target: float
+    published: Path, best: pd.Series[Any] | None, engine: str, preset: Preset, target: float
 ) -> dict[str, int]:
     """Count extreme cases where they were run with the very setting that is advised."""
     if best is None or not np.array_equal(best["value"], declared_value(preset), equal_nan=True):
@@ -85,7 +87,7 @@ def _extreme(
     return extremes(published, source, target)
 
 
-def _chosen(best: "pd.Series[Any] | None", preset: Preset, block: RigidBlock) -> Row:
+def _chosen(best: pd.Series[Any] | None, preset: Preset, block: RigidBlock) -> Row:
     if best is None:
         nothing = ("value", "dt_s", "wall_s", "max_error")
         none = dict.fromkeys(("runs", "cases", *COUNTS), 0)
@@ -102,7 +104,7 @@ def _chosen(best: "pd.Series[Any] | None", preset: Preset, block: RigidBlock) ->
     }
 
 
-def cheapest(known: pd.DataFrame, target: float) -> "pd.Series[Any] | None":
+def cheapest(known: pd.DataFrame, target: float) -> pd.Series[Any] | None:
     """Return the cheapest setting of a preset that keeps an error; None where there is none.
 
     Parameters
@@ -116,7 +118,7 @@ def cheapest(known: pd.DataFrame, target: float) -> "pd.Series[Any] | None":
     return None if good.empty else good.sort_values("wall_s").iloc[0]
 
 
-def _alone(known: pd.DataFrame, target: float) -> "pd.Series[bool]":
+def _alone(known: pd.DataFrame, target: float) -> pd.Series[bool]:
     """Say which settings keep an error by themselves, whatever finer ones do."""
     return (known["max_error"] <= target) & (known["random_calm_off"] == 0)
 
@@ -137,7 +139,7 @@ def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
     return f"{NOTHING}: at best {_missed(best, preset, target)}"
 
 
-def _missed(line: "pd.Series[Any]", preset: Preset, target: float) -> str:
+def _missed(line: pd.Series[Any], preset: Preset, target: float) -> str:
     """Say what a setting misses: on the published cases, or else on random ones."""
     at, error = in_words(preset, float(line["value"])), float(line["max_error"])
     if math.isinf(error):
@@ -147,7 +149,7 @@ def _missed(line: "pd.Series[Any]", preset: Preset, target: float) -> str:
     return random_text(line, f"at {at}")
 
 
-def random_text(line: "pd.Series[Any]", where: str = "at this step") -> str:
+def random_text(line: pd.Series[Any], where: str = "at this step") -> str:
     """Return how many random cases are off, and of those with a small κ; empty where none ran."""
     if not line["random_cases"]:
         return ""

@@ -1,5 +1,7 @@
 """What the published tables know of every setting: on how many cases, how wrong, how dear."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The price of an error: a case's time with the cheapest setting that keeps it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from textwrap import wrap
 

@@ -1,5 +1,7 @@
 """Random cases at the published steps: which of these keep an error on them, too."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice

@@ -1,5 +1,7 @@
 """Random cases at the published steps: what each setting errs by on what it was not chosen by."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -46,7 +48,7 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
     return lines.assign(**{name: lines[name].map(_short) for name in numbers})
 
 
-def _condition(compared: pd.DataFrame) -> "pd.Series[float]":
+def _condition(compared: pd.DataFrame) -> pd.Series[float]:
     falls = compared["exact_outcome"] == "overturned"
     nearby = [
         exact_peaks(compared.assign(amplitude_g=compared["amplitude_g"] * (1.0 + sign * EDGE)))[0]

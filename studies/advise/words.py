@@ -1,5 +1,7 @@
 """A setting in the library's own words, and advice as text."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import asdict
 from textwrap import indent
@@ -93,12 +95,12 @@ def _mark(cheapest: bool) -> str:
     return "the engine's cheapest" if cheapest else ""
 
 
-def preset_of(line: "pd.Series[Any]") -> Preset:
+def preset_of(line: pd.Series[Any]) -> Preset:
     """Return the preset of a line of advice."""
     return ENGINES[str(line["engine"])].preset(str(line["preset"]))
 
 
-def _setting(line: "pd.Series[Any]") -> str:
+def _setting(line: pd.Series[Any]) -> str:
     return "-" if line["message"] else in_words(preset_of(line), float(line["value"]))
 
 
@@ -106,7 +108,7 @@ def _time(value: float) -> str:
     return "-" if math.isnan(value) else duration(value)
 
 
-def off_text(line: "pd.Series[Any]") -> str:
+def off_text(line: pd.Series[Any]) -> str:
     """Return how many random and extreme cases are off with the very setting that is advised."""
     if line["message"]:
         return "-"
@@ -139,19 +141,19 @@ def claim(lines: pd.DataFrame) -> str:
     return f"Errors are kept cheapest: {'; '.join(words)}."
 
 
-def best_by_driver(lines: pd.DataFrame) -> "dict[str, pd.Series[Any]]":
+def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
     """Return for each loop that takes steps, compiled or Python, the cheapest line of advice."""
     kept = lines[lines["message"] == ""].sort_values("wall_s").drop_duplicates("driver")
     return {str(line["driver"]): line for _, line in kept.sort_values("driver").iterrows()}
 
 
-def _advised(line: "pd.Series[Any]") -> str:
+def _advised(line: pd.Series[Any]) -> str:
     """Return a line of advice in words: setting, time, who takes the steps."""
     cost = cost_text(line["wall_s"], line["runs"], " a case")
     return f"{setting_text(line)} ({cost}, {LOOPS[str(line['driver'])]})"
 
 
-def setting_text(line: "pd.Series[Any]") -> str:
+def setting_text(line: pd.Series[Any]) -> str:
     """Return the engine, the preset and the setting of a line of advice."""
     at = in_words(preset_of(line), float(line["value"]))
     return f"{line['engine']} {line['preset']} at {at}"

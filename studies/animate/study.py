@@ -1,5 +1,7 @@
 """One block in several sources side by side, on the same shaken base and the same clock."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -83,7 +85,7 @@ def command(
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
         raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
-    executor = computing.executor()
+    executor = computing.executor(at_once=True)
     rows = shown(block, posed, sources, times, executor)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
     if usable:

@@ -1,7 +1,10 @@
 """How a comparison is shown: as JSON, as a table, as time histories over each other."""
 
+from __future__ import annotations
+
 import json
 import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,15 +77,13 @@ def table_text(
     Those are the messages of its rows, and what an answer near the edge hangs on.
     """
     motion, scale = posed.motion, math.degrees(block.alpha) if degrees else 1.0
-    table = pd.DataFrame(
-        {
-            "source": [row["source"] for row in rows],
-            "outcome": [row["outcome"] for row in rows],
-            **columns_of(block, rows, scale, degrees, _estimates(rows)),
-            "steps": [row["steps"] for row in rows],
-            "time": [duration(row["wall_s"]) for row in rows],
-        }
-    )
+    columns: dict[str, list[Any]] = {
+        "source": [row["source"] for row in rows],
+        "outcome": [row["outcome"] for row in rows],
+        **columns_of(block, rows, scale, degrees, _estimates(rows)),
+        "steps": [row["steps"] for row in rows],
+        "time": [duration(row["wall_s"]) for row in rows],
+    }
     notes = [f"{row['source']}: {row['message']}" for row in rows if row["message"]]
     return "\n".join(
         [
@@ -91,12 +92,21 @@ def table_text(
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
             *meanings(block, posed, rows[0]["exact"]),
+            "time    of this one run; of many cases each takes less, as its functions are compiled",
             "",
-            table.to_string(index=False),
+            right_aligned(columns),
             *notes,
             *([edge] if edge else []),
         ]
     )
+
+
+def right_aligned(columns: Mapping[str, Sequence[Any]]) -> str:
+    """Return a table of columns by their names."""
+    texts = [[name, *map(str, cells)] for name, cells in columns.items()]
+    widths = [max(map(len, column)) for column in texts]
+    lines = (zip(row, widths, strict=True) for row in zip(*texts, strict=True))
+    return "\n".join(" ".join(text.rjust(width) for text, width in line) for line in lines)
 
 
 def _estimates(rows: list[Row]) -> dict[str, list[str]]:

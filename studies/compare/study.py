@@ -1,5 +1,7 @@
 """One block, one pulse, record or release, every named source side by side."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import replace
@@ -107,7 +109,7 @@ def command(
         effort=effort,
         yours=yours,
         estimate=estimate,
-        executor=computing.executor(),
+        executor=computing.executor(at_once=True),
     )
     rows = conditioned(rows, block, posed)
     if json:

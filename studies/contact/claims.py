@@ -4,6 +4,8 @@ Two things are told apart: by how far a setting moves a peak of its preset, and 
 that it leaves.
 """
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -28,12 +30,12 @@ FROM = {BEST: "from the tuned preset", DEFAULT: "from the defaults"}
 """Preset -> where one setting at a time is changed."""
 
 
-def name_of(line: "pd.Series[Any]") -> str:
+def name_of(line: pd.Series[Any]) -> str:
     """Return a variant's name."""
     return f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
 
 
-def errors_of(line: "pd.Series[Any]") -> str:
+def errors_of(line: pd.Series[Any]) -> str:
     """Return the largest error on typical cases, and how many of all cases fail or are wrong."""
     broken = int(line["failed"]) + int(line["wrong"])
     words = f"{broken} of {line['cases']} failed or wrong" if broken else ""
@@ -43,7 +45,7 @@ def errors_of(line: "pd.Series[Any]") -> str:
     return f"{error} ({words})" if words else error
 
 
-def error_words(line: "pd.Series[Any]") -> str:
+def error_words(line: pd.Series[Any]) -> str:
     """Return the same for a sentence or a table of few words."""
     if line["failed"] == line["cases"]:
         return "no result"
@@ -51,7 +53,7 @@ def error_words(line: "pd.Series[Any]") -> str:
     return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
 
 
-def both_errors(line: "pd.Series[Any]") -> str:
+def both_errors(line: pd.Series[Any]) -> str:
     """Return the median and the largest error in few words, and how many cases are wrong."""
     words = error_words(line)
     return words if line["failed"] == line["cases"] else f"{part(line['median_error'])}, {words}"
@@ -110,7 +112,7 @@ def ranked(varied: pd.DataFrame, column: str, shown: int = SHOWN) -> str:
     return listed([f"{name_of(line)} ({_amount(line, column)})" for _, line in first.iterrows()])
 
 
-def _amount(line: "pd.Series[Any]", column: str) -> str:
+def _amount(line: pd.Series[Any], column: str) -> str:
     wrong = f", {line['wrong']} of {line['cases']} outcomes wrong" if line["worse"] else ""
     return part(line[column]) + wrong
 
@@ -186,7 +188,7 @@ def frames(lines: pd.DataFrame) -> list[tuple[str, str, str]]:
 
 def variant_of(
     lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
-) -> "pd.Series[Any] | None":
+) -> pd.Series[Any] | None:
     """Return the line of a preset, or of a variant of it; None where there is none."""
     wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
     wanted &= lines["factor"] == factor

@@ -1,5 +1,7 @@
 """The largest error of each contact variant, a panel for each engine."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import pandas as pd
@@ -105,7 +107,7 @@ def _summed(others: pd.DataFrame) -> str:
     return f"{len(others)} others matter less: {', '.join(words)}"
 
 
-def _one_variant(axes: Axes, place: int, line: "pd.Series[Any]") -> None:
+def _one_variant(axes: Axes, place: int, line: pd.Series[Any]) -> None:
     colour = told(str(line["preset"])).colour
     error = max(float(line["max_error"]), LOWEST)
     if line["max_error"] == line["max_error"]:
@@ -132,7 +134,7 @@ def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
     axes.axhline(places[0] - 0.5, color="#999999", linewidth=0.8)
 
 
-def _label(line: "pd.Series[Any]") -> str:
+def _label(line: pd.Series[Any]) -> str:
     name = f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
     return f"{name}  [trap]" if line["trap"] else name
 

@@ -1,5 +1,7 @@
 """Contact models, reported: a line for each variant, what to set, and what it buys."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 from typing import Any
@@ -152,12 +154,12 @@ def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def _with_ratio(line: "pd.Series[Any]") -> str:
+def _with_ratio(line: pd.Series[Any]) -> str:
     ratio = float(line["ratio_over_eta"])
     return errors_of(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
 
 
-def _weight(*found: "pd.Series[Any] | None") -> float:
+def _weight(*found: pd.Series[Any] | None) -> float:
     """Return by how much a setting matters: what it moves, all where it breaks something."""
     lines = [line for line in found if line is not None]
     if any(line["worse"] for line in lines):

@@ -1,5 +1,7 @@
 """What engines as they come get right of the plane of pulses, and what they make of similarity."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -52,7 +54,7 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(error=np.where(both_rocked, error, np.nan), verdict=verdict)
 
 
-def friction_needed(case: "pd.Series[float]") -> float:
+def friction_needed(case: pd.Series[float]) -> float:
     """Return the friction without which the block would slide; inf if it would lift off."""
     block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
     pulse = SinePulse(

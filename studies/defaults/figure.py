@@ -1,5 +1,7 @@
 """A map of pulses for each engine: where it is right as it comes, and in what it is wrong."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

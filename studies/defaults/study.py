@@ -1,5 +1,7 @@
 """Engines as they come, asked over the plane of pulses, of blocks that similarity makes alike."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Time histories over each other, and how a figure is written to a file."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -97,7 +99,7 @@ def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
     axes.grid(alpha=0.25)
 
 
-def _caption(row: "pd.Series[Any]") -> str:
+def _caption(row: pd.Series[Any]) -> str:
     label = f"({row['panel']})  " if isinstance(row["panel"], str) and row["panel"] else ""
     size = f"B = {row['width_m']:g} m, H = {row['height_m']:g} m"
     ground = f"{row['amplitude_g']:g} g, {row['pulse']}" if row["amplitude_g"] else "released"

@@ -1,5 +1,7 @@
 """One block and one pulse: who is on the exact solution, and who is not."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -55,14 +57,14 @@ def _at(samples: pd.DataFrame, source: str, instant: float) -> float:
     return float(np.interp(instant, points["time_s"], points["theta_ratio"]))
 
 
-def _title(line: "pd.Series[Any]") -> str:
+def _title(line: pd.Series[Any]) -> str:
     source = str(line["source"])
     if not is_engine(source):
         return "Housner's linearization" if source == "housner" else source
     return f"{engine_of(source)}, {told(preset_of(source)).short}"
 
 
-def _verdict(line: "pd.Series[Any]") -> str:
+def _verdict(line: pd.Series[Any]) -> str:
     if line["outcome"] != "rocked":
         return str(line["outcome"])
     error = float(line["error"])

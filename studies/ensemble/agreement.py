@@ -1,10 +1,11 @@
 """Sources beside the exact solution of an ensemble, case by case and in distribution."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
 import pandas as pd
-from scipy.stats import binomtest, ks_2samp
 
 from studies.ensemble.fragility import (
     BLOCK,
@@ -118,6 +119,8 @@ def _one_by_one(group: pd.DataFrame, usable: pd.DataFrame) -> dict[str, object]:
 
 
 def _in_distribution(usable: pd.DataFrame) -> dict[str, object]:
+    from scipy.stats import binomtest, ks_2samp
+
     if usable.empty:
         unknown = dict.fromkeys(("ks", "ks_p", "mcnemar_p"), math.nan)
         return {**unknown, "ks_tests": 0, "ks_rejected": 0}

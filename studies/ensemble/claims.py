@@ -1,5 +1,7 @@
 """Are statistics predicted where single responses are not? What the tests say, as they say it."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -82,7 +84,7 @@ AT_EDGE = "*"
 """What follows bounds of which one is none of the intensities' making."""
 
 
-def interval(row: "pd.Series[Any]", name: str = "capacity_ratio", prefix: str = "ratio") -> str:
+def interval(row: pd.Series[Any], name: str = "capacity_ratio", prefix: str = "ratio") -> str:
     """Return a fitted number with its bounds; it may be one that the outcomes do not tell."""
     value, *bounds = (row[it] for it in (name, f"{prefix}_low", f"{prefix}_high"))
     middle = "undetermined" if math.isnan(value) else f"{value:.{DIGITS}f}"

@@ -1,5 +1,7 @@
 """The ensemble drawn: single responses; the fragility of each block, and the capacity by each."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 
@@ -93,7 +95,7 @@ def _of(table: pd.DataFrame, size: tuple[float, float]) -> pd.DataFrame:
     return table[(table["width_m"] == size[0]) & (table["height_m"] == size[1])]
 
 
-def _shown(peaks: "pd.Series[float]") -> "pd.Series[float]":
+def _shown(peaks: pd.Series[float]) -> pd.Series[float]:
     return peaks.replace(math.inf, BEYOND).clip(LEAST, BEYOND)
 
 

@@ -7,14 +7,14 @@ bounds are quantiles over resampled motions, whole, since what one motion does a
 not independent.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from scipy.special import log_ndtr, ndtr, ndtri
-from scipy.stats import binomtest
 
 from analytic.motion import FloatArray
 
@@ -46,6 +46,8 @@ class Fit(NamedTuple):
 
     def probability(self, intensity: FloatArray) -> FloatArray:
         """Return the probabilities of overturning: for each fit, at each intensity."""
+        from scipy.special import ndtr
+
         median, beta, level = (np.asarray(value)[..., np.newaxis] for value in self)
         with np.errstate(divide="ignore", invalid="ignore"):
             rising = ndtr(np.log(intensity / median) / beta)
@@ -64,6 +66,8 @@ def fit_lognormal(intensity: FloatArray, overturned: FloatArray, cases: FloatArr
     overturned, cases : ndarray, shape (..., k)
         Counts at each intensity.
     """
+    from scipy.special import ndtri
+
     overturned, cases = np.broadcast_arrays(overturned, cases)
     *shape, number = cases.shape
     overturned, cases = overturned.reshape(-1, number), cases.reshape(-1, number)
@@ -102,6 +106,8 @@ def _likeliest(
     By Newton's method, all at once, each step halved until the likelihood grows: its logarithm is
     concave.
     """
+    from scipy.special import log_ndtr
+
     line = np.zeros((len(logs), 2))
     powers = np.stack([np.ones_like(logs), logs], axis=-1)
     known = _likelihood(line, powers, overturned, survived)
@@ -129,6 +135,8 @@ def _likelihood(
     line: FloatArray, powers: FloatArray, overturned: FloatArray, survived: FloatArray
 ) -> FloatArray:
     """Return the logarithm of the likelihood of each line."""
+    from scipy.special import log_ndtr
+
     z = (powers @ line[..., np.newaxis])[..., 0]
     return np.asarray((overturned * log_ndtr(z) + survived * log_ndtr(-z)).sum(axis=-1))
 
@@ -160,6 +168,8 @@ def bounds(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def share_bounds(successes: int, cases: int) -> tuple[float, float]:
     """Return the exact confidence bounds of a share (Clopper and Pearson 1934)."""
+    from scipy.stats import binomtest
+
     if cases == 0:
         return 0.0, 1.0
     interval = binomtest(successes, cases).proportion_ci(CONFIDENCE, method="exact")
@@ -194,14 +204,14 @@ class Fragility:
         self.resampled = fit_lognormal(intensity, draws @ overturned, draws @ usable)
 
     @classmethod
-    def of(cls, group: pd.DataFrame, resamples: int) -> "Fragility":
+    def of(cls, group: pd.DataFrame, resamples: int) -> Fragility:
         """Return that of the rows of one block and source."""
         table = group.pivot(index="motion", columns="intensity", values="outcome")
         overturned = (table == "overturned").to_numpy(float)
         usable = (table != "failed").to_numpy(float)
         return cls(table.columns.to_numpy(float), overturned, usable, resamples)
 
-    def where(self, usable: FloatArray) -> "Fragility":
+    def where(self, usable: FloatArray) -> Fragility:
         """Return that of the cases in which another source has a result too."""
         if usable.all():
             return self

@@ -1,5 +1,7 @@
 """What an ensemble says: stripes, fragility curves, agreement one by one and in distribution."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 

@@ -1,5 +1,7 @@
 """Many motions, blocks and intensities: are statistics predicted where single responses are not?"""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product

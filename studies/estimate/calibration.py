@@ -1,9 +1,10 @@
 """Estimates beside the true errors, and by how much they are to be multiplied."""
 
+from __future__ import annotations
+
 import math
 
 import pandas as pd
-from scipy.stats import binom
 
 from studies.estimate.cases import CALIBRATE, TEST
 from studies.measures.differences import with_reference
@@ -90,13 +91,15 @@ def _found(rows: pd.DataFrame) -> dict[str, float]:
     }
 
 
-def interval(values: "pd.Series[float]", level: float) -> tuple[float, float]:
+def interval(values: pd.Series[float], level: float) -> tuple[float, float]:
     """Return the ends of the interval that holds a quantile with `CONFIDENCE`, whatever is drawn.
 
     How many of n values are below the quantile is binomial, so that its ends are values themselves
     (Conover, "Practical Nonparametric Statistics", 1999, section 3.2); the upper is inf where the
     values are too few for one.
     """
+    from scipy.stats import binom
+
     ordered = values.sort_values(ignore_index=True)
     if ordered.empty:
         return 0.0, math.inf
@@ -106,7 +109,7 @@ def interval(values: "pd.Series[float]", level: float) -> tuple[float, float]:
     return float(ordered[first]), float(ordered[last]) if last < len(ordered) else math.inf
 
 
-def _quantile(values: "pd.Series[float]", level: float) -> float:
+def _quantile(values: pd.Series[float], level: float) -> float:
     """Return the smallest value that so much of all are not above; nan without any."""
     ordered = values.sort_values(ignore_index=True)
     if ordered.empty:

@@ -1,5 +1,7 @@
 """How many of the errors so many estimates bound: to the right of 10, an estimate is blind."""
 
+from __future__ import annotations
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

@@ -1,5 +1,7 @@
 """Random cases, each at a step and at half of it: what the difference says of the error."""
 
+from __future__ import annotations
+
 from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import fill as wrapped

@@ -1,5 +1,7 @@
 """What estimates tell of the errors, in words and as a table."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -1,5 +1,7 @@
 """The errors of period, decay and drift in free rocking, over the tilt of the release."""
 
+from __future__ import annotations
+
 import pandas as pd
 from matplotlib.figure import Figure
 

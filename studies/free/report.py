@@ -1,5 +1,7 @@
 """What free rocking shows: the largest errors of period, decay and drift, in tables and words."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pandas as pd

@@ -1,5 +1,7 @@
 """The steady-state diagram: every orbit that was found, and its share of the starts."""
 
+from __future__ import annotations
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

@@ -1,5 +1,7 @@
 """What the steady states say: branches, their shares of the starts, and the engines on them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -53,11 +55,11 @@ def branches_text(table: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def _range(values: "pd.Series[float]", form: str) -> str:
+def _range(values: pd.Series[float], form: str) -> str:
     return " to ".join(dict.fromkeys(format(end, form) for end in (values.min(), values.max())))
 
 
-def kind_of(row: "pd.Series[Any]") -> str:
+def kind_of(row: pd.Series[Any]) -> str:
     """Return what a row of harmonic.csv is: an orbit of some period, or another end."""
     if row["outcome"] != Outcome.ROCKED.value:
         return str(row["outcome"])

@@ -1,5 +1,7 @@
 """Steady states under sustained harmonic shaking: every attractor that is found, and engines."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache

@@ -1,5 +1,7 @@
 """The paper's time histories, figures 2, 4 and 5, and what it says about them."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -186,7 +188,7 @@ def headline(folder: Path) -> str:
     return tally(read_findings(folder), "the paper's statements about its time histories")
 
 
-def drawn(folder: Path, figure: int) -> "Figure":
+def drawn(folder: Path, figure: int) -> Figure:
     """Draw one figure from its CSV alone."""
     from studies.drawing.figures import draw_histories
 

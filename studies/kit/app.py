@@ -74,7 +74,9 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
 
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
+    from studies.kit.lazily import postpone
 
+    postpone("pandas")
     if "--version" in arguments and len(arguments) > 1:
         return refuse(f"--version is one of {len(arguments)} arguments; it must stand alone")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):

@@ -5,14 +5,18 @@ from concurrent.futures import as_completed
 from dataclasses import dataclass
 from typing import Protocol
 
+from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool, StartError
-from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
+from studies.kit.processes import ask_loaded, ask_one, compile_ahead, outcome_of
 from studies.sources.registry import Source
+
+FEW = 32
+"""Jobs up to which to interpret what they need takes less time than to compile or to load it."""
 
 
 class Executor(Protocol):
@@ -37,38 +41,49 @@ class Local:
         Wall-clock time [s] after which a case in a process of its own is given up.
     ask : callable, optional
         How a job is put to its source.
+    at_once : bool, optional
+        Whether somebody waits for the answers and nobody for their run times: of a few jobs,
+        nothing is compiled.
     """
 
     workers: int
     time_limit_s: float
     ask: Callable[[Job, Source], Response] = ask
+    at_once: bool = False
 
     def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
         """Run the jobs."""
         slow: dict[int, Job] = {}
+        many = not self.at_once or len(jobs) > FEW
+        if many:
+            compile_all()
         loaded: set[str] = set()
         for number, job in enumerate(jobs):
             source = job.asked
             if job.needs_process(source):
                 slow[number] = job
                 continue
-            if job.source not in loaded:
+            if many and job.source not in loaded:
                 # loading the compiled kernels is no part of the first case's run time
                 loaded.add(job.source)
                 self.ask(job, source)
             yield number, self.ask(job, source)
         if slow:
-            yield from self._in_processes(slow)
+            yield from self._in_processes(slow, many)
 
-    def _in_processes(self, jobs: Mapping[int, Job]) -> Generator[tuple[int, Response], None, None]:
+    def _in_processes(
+        self, jobs: Mapping[int, Job], many: bool
+    ) -> Generator[tuple[int, Response], None, None]:
         firsts: dict[str, Job] = {}
         for job in jobs.values():
             firsts.setdefault(job.source, job)
         with Pool(min(self.workers, len(jobs))) as pool:
-            compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
+            if many:
+                compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
+            put = ask_loaded if many else ask_one
             # the source travels with the job, so that a worker needs no registry of its own
             tasks = {
-                pool.schedule(ask_loaded, (self.ask, job, job.asked), self.time_limit_s): number
+                pool.schedule(put, (self.ask, job, job.asked), self.time_limit_s): number
                 for number, job in jobs.items()
             }
             try:
@@ -83,6 +98,8 @@ def choose(
     time_limit_s: float,
     cluster: str | None,
     ask: Callable[[Job, Source], Response] = ask,
+    *,
+    at_once: bool = False,
 ) -> Executor:
     """Return the executor that the command line's --jobs, --time-limit and --cluster ask for.
 
@@ -96,7 +113,7 @@ def choose(
     """
     if cluster is None:
         refuse_excess(f"--jobs is {jobs}", (jobs or 1) * PROCESS_BYTES)
-        return Local(jobs or provenance.usable_cores(), time_limit_s, ask)
+        return Local(jobs or provenance.usable_cores(), time_limit_s, ask, at_once)
     # asyncio takes a tenth of a second to load, and most runs have no cluster
     from studies.kit.cluster import Cluster
 

@@ -45,15 +45,17 @@ class Computing:
     time_limit: Positive = 60.0
     cluster: str | None = None
 
-    def executor(self, ask: Callable[[Job, Source], Response] = ask) -> Executor:
-        """Return what runs jobs, each put to its source by `ask`.
+    def executor(
+        self, ask: Callable[[Job, Source], Response] = ask, *, at_once: bool = False
+    ) -> Executor:
+        """Return what runs jobs, each put to its source by `ask`; `at_once` as of `Local`.
 
         Raises
         ------
         BadInputError, studies.kit.dask_client.ClusterError
             As `studies.kit.executors.choose`.
         """
-        return choose(self.jobs, self.time_limit, self.cluster, ask)
+        return choose(self.jobs, self.time_limit, self.cluster, ask, at_once=at_once)
 
     def refuse_too_much(
         self,

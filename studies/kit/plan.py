@@ -1,15 +1,18 @@
 """What a study makes, and the one way it is made: jobs in; a folder, a report and a code out."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import pandas as pd
 
+from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
@@ -24,7 +27,7 @@ from studies.kit.study import Study
 from studies.kit.tables import write_table
 from studies.sources.registry import Source
 
-Tables = Mapping[str, pd.DataFrame]
+Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
 """Tables by the names of their files, without .csv."""
 
 
@@ -92,6 +95,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     FolderError
         If a folder cannot be used: results of another study or of other settings are refused.
     """
+    compile_all()  # what a folder holds may be a run time
     executor = running.executor(plan.ask)
     began = time.perf_counter()
     subject = provenance.subject(study.name, **plan.settings)

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from analytic.kernels.compiled import compile_all
 from analytic.response import Reason, Response
 from engines import ENGINES
 from engines.run.look import compile_look
@@ -56,9 +57,15 @@ def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source
 
     A job that is long is not asked twice: what loads the compiled kernels is a short one.
     """
+    compile_all()
     if source.kind != "engine" and job.source not in _loaded:
         _loaded.add(job.source)
         ask(short(job), source)
+    return ask_one(ask_, job, source)
+
+
+def ask_one(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -> Response:
+    """Put one of a few jobs, which need not be compiled, to its source in a process of its own."""
     response = ask_(job, source)
     if response.message.startswith(MemoryError.__name__):
         words = f"{response.message.rstrip(': ')}; a process may take {MEMORY_BYTES / 1e9:g} GB"

@@ -112,7 +112,8 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     FolderError
         If there is a provenance of something else.
     """
-    from analytic.kernels.compiled import are_compiled
+    from analytic.kernels.compiled import SOURCES
+    from analytic.kernels.kept import are_compiled
 
     earlier = _earlier(path, subject)
     record = {
@@ -130,7 +131,7 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
             *earlier["runs"],
             {
                 "start": datetime.now(UTC).isoformat(timespec="seconds"),
-                "first": not are_compiled(),
+                "first": not are_compiled(SOURCES),
                 "git": git_commit(),
                 **arguments,
             },

@@ -1,5 +1,7 @@
 """Tables as text."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pandas as pd

@@ -13,6 +13,7 @@ from concurrent.futures import CancelledError
 from functools import cache
 from typing import TYPE_CHECKING
 
+from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
@@ -78,6 +79,7 @@ def work(
     """
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
+    compile_all()
     if job.needs_process(source):
         return _work_in_process(job, source, ask, time_limit_s)
     if job.source not in _loaded:

@@ -1,5 +1,7 @@
 """By how much a part of the cases errs at most, for every variant of a linearization."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import pandas as pd

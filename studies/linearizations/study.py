@@ -1,5 +1,7 @@
 """What in a linearization matters: its onset, its frequency, its saddle, each changed alone."""
 
+from __future__ import annotations
+
 import functools
 import itertools
 from collections.abc import Sequence
@@ -303,6 +305,6 @@ def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
     ]
 
 
-def shares(values: "pd.Series[float]") -> str:
+def shares(values: pd.Series[float]) -> str:
     """Return the values of housner, modified and onset-matched in per cent."""
     return ", ".join(f"{float(values[changed]):.1%}" for changed in ("000", "111", "100"))

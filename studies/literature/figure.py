@@ -1,5 +1,7 @@
 """How far each answer is from the print, in units of what the print allows."""
 
+from __future__ import annotations
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

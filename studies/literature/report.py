@@ -1,5 +1,7 @@
 """What the printed numbers say: which come out to their digits, and by how much the others miss."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Any
 

@@ -1,10 +1,13 @@
 """Statements that a table decides, reported whichever way they fall."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from textwrap import fill
+from typing import TypeAlias
 
 import pandas as pd
 
@@ -35,7 +38,7 @@ class Finding:
         return {True: "holds", False: "does not hold", None: "not tested"}[self.holds]
 
 
-Check = Callable[[pd.DataFrame], tuple[bool, str]]
+Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
 """Says of a table whether a statement holds, and the numbers."""
 
 

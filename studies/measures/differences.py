@@ -1,5 +1,7 @@
 """Rows beside the exact solution: errors, outcomes, the summary table."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -117,12 +119,12 @@ def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def conditioning_of(cases: pd.DataFrame) -> "pd.Series[float]":
+def conditioning_of(cases: pd.DataFrame) -> pd.Series[float]:
     """Return the larger of abs(kappa) and abs(kappa_eta), at least 1."""
     return cases[["kappa", "kappa_eta"]].abs().max(axis=1, skipna=False).clip(lower=1.0)
 
 
-def sensitivity_of(cases: pd.DataFrame) -> "pd.Series[float]":
+def sensitivity_of(cases: pd.DataFrame) -> pd.Series[float]:
     """Return what errors are judged against: the larger of `conditioning_of` and sensitivity."""
     return conditioning_of(cases).clip(lower=cases["sensitivity"])
 

@@ -3,6 +3,8 @@
 For a change that should change no result: run a study, or a whole report, before and after it.
 """
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -83,9 +85,7 @@ def differences(before: Path, after: Path, within: float = 0.0) -> Iterator[str]
             yield from _apart(name, old[name], new[name], within)
 
 
-def _apart(
-    name: str, old: "pd.Series[float]", new: "pd.Series[float]", within: float
-) -> Iterator[str]:
+def _apart(name: str, old: pd.Series[float], new: pd.Series[float], within: float) -> Iterator[str]:
     numbers = pd.api.types.is_numeric_dtype(old) and pd.api.types.is_numeric_dtype(new)
     if not numbers:
         other = int((old.astype(object).fillna("") != new.astype(object).fillna("")).sum())

@@ -1,5 +1,7 @@
 """The paper's conclusions held against a sweep's numbers, reported whichever way they fall."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import pandas as pd

@@ -1,11 +1,13 @@
 """Errors along a method's settings: a lucky setting is told by those that are finer."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import pandas as pd
 
 
-def with_every_finer(keeps: "pd.Series[Any]") -> "pd.Series[bool]":
+def with_every_finer(keeps: pd.Series[Any]) -> pd.Series[bool]:
     """Return which settings keep an error together with every finer one.
 
     Parameters

@@ -1,5 +1,7 @@
 """How far off an answer may be, from the engine itself: the same run at half the step."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

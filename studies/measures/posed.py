@@ -1,5 +1,7 @@
 """How many problems a sweep's cases are: similarity makes one of all that differ in size alone."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import pandas as pd

@@ -1,5 +1,7 @@
 """A history as a table."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import pandas as pd

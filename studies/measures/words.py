@@ -1,5 +1,7 @@
 """Words of a claim made from its counts and numbers, so that no sentence says more than a table."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -113,7 +115,7 @@ def meant() -> str:
     return listed([f"{name} ({MEANINGS[kind]})" for kind, name in WORDS.items()])
 
 
-def between(lines: pd.DataFrame, names: "pd.Series[Any]") -> str:
+def between(lines: pd.DataFrame, names: pd.Series[Any]) -> str:
     """Return between what counts several sources lie, kind by kind, and who is at the ends.
 
     "the fall wrong in 1 (a) to 44 (b) and no answer in up to 3 (b)"; never the sum over sources,
@@ -132,7 +134,7 @@ def between(lines: pd.DataFrame, names: "pd.Series[Any]") -> str:
     return listed(words) if words else "none wrong"
 
 
-def _ends(counts: "pd.Series[Any]", names: "pd.Series[Any]") -> str:
+def _ends(counts: pd.Series[Any], names: pd.Series[Any]) -> str:
     low, high = counts.min(), counts.max()
     least, most = (names.iloc[int(place)] for place in (counts.argmin(), counts.argmax()))
     if low == high:

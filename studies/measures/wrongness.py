@@ -3,6 +3,8 @@
 Only two outcomes are compared, so that whoever reads a published table can count the same.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
@@ -58,11 +60,11 @@ def kinds_of(found: ArrayLike, right: ArrayLike) -> NDArray[np.str_]:
     )
 
 
-def wrong_in(rows: pd.DataFrame) -> "pd.Series[Any]":
+def wrong_in(rows: pd.DataFrame) -> pd.Series[Any]:
     """Return the kind of each row that has an outcome and an exact_outcome."""
     return pd.Series(kinds_of(rows["outcome"], rows["exact_outcome"]), rows.index, object)
 
 
-def counted(kinds: "pd.Series[Any]") -> dict[str, int]:
+def counted(kinds: pd.Series[Any]) -> dict[str, int]:
     """Return how many there are of each kind."""
     return {kind: int((kinds == kind).sum()) for kind in KINDS}

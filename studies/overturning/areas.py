@@ -1,5 +1,7 @@
 """A folder's map read back: its tables, its window, and the mode at any point of it."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 

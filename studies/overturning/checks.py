@@ -5,6 +5,8 @@ them. The tables and figures of Makris and Roussos (2000) and of Zhang and Makri
 be read, so no number of theirs stands here.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 

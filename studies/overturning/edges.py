@@ -16,6 +16,8 @@ The first two are certain. What the third can miss is an island far from any edg
 does not show on the grid, or one of several between the same two points of the finest grid.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple, Protocol
 
 import numpy as np

@@ -3,6 +3,8 @@
 The edges are those of the exact solution; the adapters never see them, only pulses.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

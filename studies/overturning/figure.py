@@ -1,5 +1,7 @@
 """The pictures of an overturning map: the modes, and where the sources differ from exact."""
 
+from __future__ import annotations
+
 import math
 from textwrap import fill
 

@@ -1,5 +1,7 @@
 """What an overturning map says: who differs from the exact solution, and where; as text."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -78,7 +80,7 @@ def headline(folder: Path) -> str:
     return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {gathered(cells)}."
 
 
-def _kinds(line: "pd.Series[Any]") -> dict[str, int]:
+def _kinds(line: pd.Series[Any]) -> dict[str, int]:
     """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
     fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
     return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}

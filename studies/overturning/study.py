@@ -1,5 +1,7 @@
 """Overturning maps: which pulses overturn a block, by which mode, and who gets that wrong."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache

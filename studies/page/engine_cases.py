@@ -1,5 +1,7 @@
 """What engines answer over the plane of pulses, small enough to be held by a page."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 from typing import Any

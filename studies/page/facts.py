@@ -1,5 +1,7 @@
 """What README.md and the page of the published results say, from the published tables alone."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -145,7 +147,7 @@ def presets_short(lines: pd.DataFrame) -> str:
     return table(("", *heads), rows)
 
 
-def _short(row: "pd.Series[Any]") -> str:
+def _short(row: pd.Series[Any]) -> str:
     """Return a line of the presets in a cell: outcomes, errors of the peak, time."""
     wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
     parts = (
@@ -194,7 +196,7 @@ def advised(published: Path) -> str:
     return table(heads, rows)
 
 
-def _advice(line: "pd.Series[Any] | None") -> tuple[str, str]:
+def _advice(line: pd.Series[Any] | None) -> tuple[str, str]:
     if line is None:
         return "nothing does", "–"
     at = setting_text(line)

@@ -1,5 +1,7 @@
 """The case on the first screen: one block, one pulse, the exact solution and who misses it."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import numpy as np

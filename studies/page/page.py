@@ -1,5 +1,7 @@
 """One self-contained page: what each study found, its figures, its tables, what failed."""
 
+from __future__ import annotations
+
 import base64
 import io
 import itertools
@@ -78,7 +80,7 @@ def first_sight(folder: Path) -> dict[str, Any]:
     }
 
 
-def _tile(row: "pd.Series[Any]") -> dict[str, str]:
+def _tile(row: pd.Series[Any]) -> dict[str, str]:
     """Return a line of presets in words, and whether it is good, bad or neither."""
     lost = any(row[list(KINDS)])
     good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD

@@ -1,5 +1,7 @@
 """README.md and the pages of the published results, written from the published tables."""
 
+from __future__ import annotations
+
 import json
 from pathlib import Path
 

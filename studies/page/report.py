@@ -12,7 +12,6 @@ from studies.kit import app, provenance
 from studies.kit.arguments import Place
 from studies.kit.journal import FolderError
 from studies.kit.study import Chapter, Study
-from studies.page.page import write_page
 
 PAGE = "report.html"
 
@@ -28,6 +27,8 @@ def command(*, out: Place, full: bool = False) -> int:
     full
         The full studies, as published, instead of the quick ones.
     """
+    from studies.page.page import write_page
+
     _prepare(out, full)
     codes = []
     minutes = sum(chapter.minutes[full] for _, chapter in CHAPTERS)

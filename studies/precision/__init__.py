@@ -48,7 +48,8 @@ COST = Study(
     help="""What a scene costs, and what each thing left out of it would cost and change.
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
-history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv.""",
+history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv, and,
+with --starts, how long whole commands take, starts.csv.""",
     table="shares.csv",
-    products=("shares.csv", "scenes.csv", "reference.csv", "cost.png", "cost.txt"),
+    products=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "cost.png", "cost.txt"),
 )

@@ -1,5 +1,7 @@
 """Which setting of an engine for which accuracy: the cheapest, and what it does elsewhere."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -107,7 +109,7 @@ def _choice(
     )
 
 
-def cheapest_below(lines: pd.DataFrame, target: float) -> "pd.Series[Any] | None":
+def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
     """Return the cheapest line whose largest error is below a target, if there is one.
 
     Every finer setting of its method must stay below it, too: a coarse one may be lucky.
@@ -154,7 +156,7 @@ def exact_cost(lines: pd.DataFrame) -> float:
     return float(np.average(tight["wall_s"], weights=tight["cases"]))
 
 
-def setting_of(line: "pd.Series[Any]") -> str:
+def setting_of(line: pd.Series[Any]) -> str:
     """Return a method and its setting in words."""
     method = METHODS[str(line["method"])]
     if not method.setting:

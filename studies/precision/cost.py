@@ -1,5 +1,7 @@
 """What a scene costs and what leaving things out of it saves: measured by putting them back."""
 
+from __future__ import annotations
+
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -28,6 +30,7 @@ from studies.precision import COST
 from studies.precision.cost_report import headline, pictures, report
 from studies.precision.repeats import interleaved
 from studies.precision.shares import pose_case, share_table
+from studies.precision.starts import start_table
 
 __all__ = ["command", "headline", "pictures", "report"]
 
@@ -69,6 +72,7 @@ def command(
     out: Place,
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
+    starts: bool = False,
 ) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
@@ -83,9 +87,16 @@ def command(
         Names of engines, without a preset.
     quick
         Shorter timing: a few seconds.
+    starts
+        How long whole commands take, too: minutes, or half a minute if quick.
     """
     check_engines(engines)
-    made = Plan(settings={"quick": quick}, tabulate=lambda _: measured(engines, quick))
+
+    def tabulate(_: object) -> Tables:
+        more = {"starts": start_table(quick)} if starts else {}
+        return {**measured(engines, quick), **more}
+
+    made = Plan(settings={"quick": quick}, tabulate=tabulate)
     return carry_out(COST, made, out, DEFAULT_RUNNING, report)
 
 

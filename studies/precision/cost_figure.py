@@ -1,5 +1,7 @@
 """What each thing put back into a scene costs and changes."""
 
+from __future__ import annotations
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure

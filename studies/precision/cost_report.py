@@ -1,5 +1,7 @@
 """What a scene costs, reported: three tables and a figure, from their CSVs alone."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 from typing import Any
@@ -11,16 +13,19 @@ from studies.kit.tables import read_table
 from studies.measures.costs import LOOPS
 from studies.measures.differences import scientific
 from studies.measures.words import duration, listed
+from studies.precision.starts import starts_text
 
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
+    starts = (folder / "starts.csv").is_file()
     text = "\n\n".join(
         [
             "Where the time of a step goes:\n" + shares_text(read(folder, "shares")),
             "What a scene leaves out, put back one at a time (time over the scene as it is):\n"
             + scenes_text(read(folder, "scenes")),
             "What the exact solution leaves out:\n" + reference_text(read(folder, "reference")),
+            *(["What a user waits for:\n" + starts_text(read(folder, "starts"))] if starts else []),
         ]
     )
     return keep(folder, pictures(folder), text, "cost.txt")
@@ -48,7 +53,7 @@ def headline(folder: Path) -> str:
     return f"A step of the stepping loop takes {', '.join(words)}."
 
 
-def _step(line: "pd.Series[Any]") -> str:
+def _step(line: pd.Series[Any]) -> str:
     """Return how long a step takes, who takes it, and what of it is the engine's own."""
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"

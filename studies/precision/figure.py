@@ -1,5 +1,7 @@
 """Work-precision diagrams: error against run time, a line for each method."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """The order of a method: the power of the step with which its error falls."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

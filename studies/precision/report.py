@@ -1,5 +1,7 @@
 """Error against run time, reported: errors, orders, cheapest settings, from the CSV alone."""
 
+from __future__ import annotations
+
 import json
 import math
 from dataclasses import asdict
@@ -86,7 +88,7 @@ def pictures(folder: Path) -> Pictures:
     return {"precision": drawn(folder), **cost_report.pictures(folder)}
 
 
-def drawn(folder: Path) -> "Figure":
+def drawn(folder: Path) -> Figure:
     """Draw the work-precision diagram of a folder's work-precision.csv."""
     from studies.precision.figure import draw_precision
 

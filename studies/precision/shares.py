@@ -1,5 +1,7 @@
 """Where the time of a step goes: clocks around its parts."""
 
+from __future__ import annotations
+
 import contextlib
 import functools
 import importlib

@@ -1,5 +1,7 @@
 """Error against run time: every method along its own setting, on the same cases."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace

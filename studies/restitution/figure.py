@@ -1,5 +1,7 @@
 """What comes out of a coefficient of restitution against what is wanted."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from textwrap import wrap

@@ -1,5 +1,7 @@
 """What was found of restitution, in words and as a table."""
 
+from __future__ import annotations
+
 import math
 
 import pandas as pd

@@ -1,5 +1,7 @@
 """Blocks that strike their base with a corner, one thing varied at a time, and what comes out."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

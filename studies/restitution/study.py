@@ -1,5 +1,7 @@
 """A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated
 

@@ -1,5 +1,7 @@
 """The place of an engine on the diagram of error against run time."""
 
+from __future__ import annotations
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

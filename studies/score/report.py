@@ -1,5 +1,7 @@
 """An engine's page, from its three tables and the published ones."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -149,7 +151,7 @@ def places_text(along: pd.DataFrame) -> str:
     ).to_string(index=False)
 
 
-def _setting(line: "pd.Series[Any] | None") -> str:
+def _setting(line: pd.Series[Any] | None) -> str:
     if line is None:
         return "none"
     cost = cost_text(line["wall_s"], line["runs"])

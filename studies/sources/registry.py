@@ -12,6 +12,7 @@ from analytic.response import Response
 from engines import ENGINES
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
+from engines.parts.compiled import interpreted_first
 from engines.scene import Scene, one_of
 from studies.sources.scipy_peers import solve_ivp_response
 
@@ -104,7 +105,8 @@ def run_engine(
     """Build the scene and let the engine run it; `options` are those of the `Scene`."""
     from engines.run.drive import run
 
-    return run(engine, scene_of(block, motion, preset, duration=duration, times=times, **options))
+    scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
+    return interpreted_first(partial(run, engine, scene))
 
 
 def scene_of(

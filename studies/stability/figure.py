@@ -1,5 +1,7 @@
 """The matrix of extreme cases and methods: one mark for each verdict."""
 
+from __future__ import annotations
+
 import itertools
 import math
 from dataclasses import dataclass

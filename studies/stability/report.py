@@ -1,5 +1,7 @@
 """What the study of extreme cases found: tables and figure, from its CSVs alone."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 from textwrap import fill
@@ -92,7 +94,7 @@ def method_name(source: str, contact_s: float) -> str:
     return source if math.isnan(contact_s) else f"{source}, own contact time"
 
 
-def step_cell(row: "pd.Series[Any]") -> str:
+def step_cell(row: pd.Series[Any]) -> str:
     """Return both largest steps of a row, and over the contact's time where there is one."""
     if row["invalid"]:
         return "not valid"

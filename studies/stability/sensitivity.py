@@ -1,5 +1,7 @@
 """The same case, a little different: by how much does an answer move, and by how much should it?"""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import replace

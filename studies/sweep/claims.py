@@ -1,5 +1,7 @@
 """What the paper's cases say about each source: the engines by preset, and the linearizations."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pandas as pd
@@ -46,7 +48,7 @@ def first_claim(lines: pd.DataFrame) -> str:
     return capital("; ".join(parts)) + "."
 
 
-def _wrong_by_up_to(preset: str, errors: "pd.Series[float]", lines: pd.DataFrame) -> str:
+def _wrong_by_up_to(preset: str, errors: pd.Series[float], lines: pd.DataFrame) -> str:
     """Say of a preset what is wrong, source by source or between which counts, and how far."""
     cases = alike([f"{count:.0f}" for count in lines["cases"]])
     said = between(lines, lines["source"].map(engine_of))

@@ -1,5 +1,7 @@
 """One of the paper's figures 6 to 9: peaks, who overturns, and errors; a column for each H/B."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import pandas as pd

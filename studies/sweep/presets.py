@@ -1,5 +1,7 @@
 """The presets of the engines beside each other: all cases at once, and along the frequency."""
 
+from __future__ import annotations
+
 import math
 import re
 from textwrap import fill

@@ -1,5 +1,7 @@
 """The paper's sensitivity analysis, figures 6 to 9: every case through every named source."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path

@@ -1,5 +1,7 @@
 """What is seen by default, with the one setting that helps most, and with all that is tuned."""
 
+from __future__ import annotations
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

@@ -1,5 +1,7 @@
 """Lines of the page: what is measured by default, with one setting, and with all of them."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -196,7 +198,7 @@ def _hull(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
         )
 
 
-def _value(line: "pd.Series[Any]", column: str = "max_error") -> float:
+def _value(line: pd.Series[Any], column: str = "max_error") -> float:
     """Return a measure of a variant, inf where cases fail."""
     return math.inf if line["failed"] else float(line[column])
 

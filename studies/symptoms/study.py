@@ -1,5 +1,7 @@
 """The page from what users see to the setting that mends it, from the published tables."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Annotated
 

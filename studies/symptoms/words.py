@@ -1,5 +1,7 @@
 """The page as text, and what a reader of all studies is told of it."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from textwrap import fill, indent
 from typing import Any

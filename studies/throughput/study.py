@@ -1,5 +1,7 @@
 """Cases per second of a map: every model, and general-purpose integrators on the same cases."""
 
+from __future__ import annotations
+
 import math
 import resource
 import sys

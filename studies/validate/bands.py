@@ -1,5 +1,7 @@
 """Errors as they are, in bands of the exact peak and of κ: divided by nothing."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
 from math import inf

@@ -1,5 +1,7 @@
 """What engines say of their own errors: the same random cases at half the step."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """What random cases say, and what was left out of them."""
 
+from __future__ import annotations
+
 import pandas as pd
 
 from analytic.response import Outcome

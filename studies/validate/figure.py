@@ -1,5 +1,7 @@
 """The error of every case against how far small errors move its peak."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What landing steps lean on: the same random cases with hints that are false."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
@@ -54,7 +56,7 @@ class Leaning:
     over_kappa: float
 
 
-def hint_jobs(cases: Iterable["RandomCase"], sources: Sequence[str], effort: Effort) -> list[Job]:
+def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
     """Return a job for each case, false hint, and engine whose steps land on impacts."""
     landing = [source for source in sources if resolve(source).lands]
     asked = [
@@ -76,7 +78,7 @@ def hint_jobs(cases: Iterable["RandomCase"], sources: Sequence[str], effort: Eff
     ]
 
 
-def calm(case: "RandomCase") -> "RandomCase":
+def calm(case: RandomCase) -> RandomCase:
     """Return a case with a pulse too weak to lift its block."""
     return replace(case, amplitude_g=CALM / case.aspect)
 

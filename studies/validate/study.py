@@ -1,5 +1,7 @@
 """Random cases that no setting was tuned on: sources beside the exact solution, κ among it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import asdict

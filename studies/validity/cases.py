@@ -1,5 +1,7 @@
 """Blocks from squat to slender under full-sine pulses, and what the reference needs for each."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product

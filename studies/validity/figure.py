@@ -1,5 +1,7 @@
 """The map of validity drawn, with the engines' verdicts on it and their slips under it."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

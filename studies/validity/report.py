@@ -1,5 +1,7 @@
 """What the map of validity and the engines beyond it say."""
 
+from __future__ import annotations
+
 import math
 
 import pandas as pd
@@ -79,13 +81,13 @@ def _reference_text(table: pd.DataFrame) -> str:
     return pd.DataFrame(lines).to_string(index=False)
 
 
-def _normal_class(rows: pd.DataFrame) -> "pd.Series[str]":
+def _normal_class(rows: pd.DataFrame) -> pd.Series[str]:
     edges = [-math.inf, -0.5, 0.0, 0.2, math.inf]
     names = ["N < -0.5 mg", "-0.5 to 0", "0 to 0.2", "N > 0.2 mg"]
     return pd.cut(rows["min_normal"], edges, labels=names).astype(str)
 
 
-def _verdict_text(rows: pd.DataFrame, classes: "pd.Series[str]") -> str:
+def _verdict_text(rows: pd.DataFrame, classes: pd.Series[str]) -> str:
     lines = []
     for (source, name), group in rows.groupby([rows["source"], classes], sort=False):
         survived = group["error"].abs().dropna()

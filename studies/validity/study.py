@@ -1,5 +1,7 @@
 """Where the reference is valid: no lift-off, no slip; and what the engines do beyond."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """What changed from one release to the next, beside what the release notes say."""
 
+from __future__ import annotations
+
 from itertools import pairwise
 
 import pandas as pd

@@ -1,5 +1,7 @@
 """Errors by release, a panel for each engine."""
 
+from __future__ import annotations
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -54,7 +56,7 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _presets(lines: pd.DataFrame) -> "pd.Series[str]":
+def _presets(lines: pd.DataFrame) -> pd.Series[str]:
     """Return the preset of each line, whose engine need not be here."""
     return lines["source"].str.partition(":")[2]
 

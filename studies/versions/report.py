@@ -1,5 +1,7 @@
 """What the releases of the engines say: text, pictures, and the table of what changed."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pandas as pd

@@ -1,5 +1,7 @@
 """The releases of each engine, one after the other: how far off, and what changed."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Mapping, Sequence
 from functools import partial

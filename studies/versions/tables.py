@@ -1,5 +1,7 @@
 """What came of the releases: how far each is off, and how far from the one before."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 

@@ -1,5 +1,7 @@
 """What was found of the releases, in words and as tables."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any
 
@@ -35,7 +37,7 @@ def releases_text(lines: pd.DataFrame) -> str:
     return f"{head}\n{left_aligned(shown.astype(str))}"
 
 
-def _right(line: "pd.Series[float]") -> str:
+def _right(line: pd.Series[float]) -> str:
     return f"{line['right']:.0f}/{line['cases']:.0f}"
 
 

@@ -6,22 +6,24 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
-from analytic.kernels import compiled
+from analytic.kernels import compiled, kept
 
 KERNELS = {
     "__init__.py": "",
     "inner/__init__.py": "",
+    "kernels/__init__.py": "",
     "inner/law.py": """
-from analytic.compiled import kernel
+from analytic.kernels.compiled import kernel
 
 @kernel
 def law(x):
     return x + 1.0
 """,
     "steps.py": """
-from analytic.compiled import kernel
+from analytic.kernels.compiled import kernel
 from analytic.inner.law import law
 
 @kernel
@@ -31,10 +33,12 @@ def steps(x):
 }
 PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
 PROGRAM = """
-from analytic import compiled
 from analytic import steps
+from analytic.kernels import compiled, kept
+compiled.compile_all()
 value = steps.steps(1.0)
-print(value, sum(steps.steps.stats.cache_hits.values()), compiled.kept_in())
+hits = sum(steps.steps.compiled.stats.cache_hits.values())
+print(value, hits, kept.kept_in(compiled.SOURCES))
 """
 
 
@@ -45,7 +49,8 @@ def package(tmp_path):
         path = tmp_path / "package" / "analytic" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    shutil.copy(compiled.__file__, tmp_path / "package" / "analytic" / "compiled.py")
+    for module in (compiled, kept):
+        shutil.copy(module.__file__, tmp_path / "package" / "analytic" / "kernels")
     return tmp_path / "package"
 
 
@@ -102,7 +107,7 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path):
     sources = package / "analytic"
 
     def name():
-        return compiled.folder_for(sources, [tmp_path / "kept"]).name
+        return kept.folder_for(sources, [tmp_path / "kept"]).name
 
     names = [name()]
     for path in ("steps.py", "inner/law.py", "inner/more.py"):
@@ -110,16 +115,17 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path):
             file.write("\n# edited")
         names.append(name())
     assert len(set(names)) == 4
-    assert compiled.folder_for(sources, [Path("/dev/null"), Path("/proc/none")]) is None
+    assert kept.folder_for(sources, [Path("/dev/null"), Path("/proc/none")]) is None
 
 
 def test_other_kernels_of_the_user_are_kept_where_they_were():
-    config = compiled.numba.config
-    before = config.CACHE_DIR
+    before = numba.config.CACHE_DIR
 
     @compiled.kernel
     def twice(x):
         return 2.0 * x
 
-    assert before == config.CACHE_DIR
-    assert twice.stats.cache_path.startswith(str(compiled.kept_in()))
+    assert twice.run(2.0) == 4.0
+    assert before == numba.config.CACHE_DIR
+    folder = str(kept.kept_in(compiled.SOURCES))
+    assert twice.compiled.stats.cache_path.startswith(folder)

@@ -49,7 +49,7 @@ def driven(asked: Scene) -> bool:
         ("CLIENTS", "sPhysicsClientsGUI"),  # none is there
         ("CLIENTS", "sNobody"),
         ("DIRECT", "_ZTV25PhysicsClientSharedMemory"),  # clients of another kind
-        ("FUNCTIONS", (bullet_loop.c_function("b3Nothing", bullet_loop.HANDLE),)),
+        ("FUNCTIONS", (bullet_loop.CFunction("b3Nothing", bullet_loop.HANDLE),)),
     ],
 )
 def test_another_build_is_stepped_from_python(

@@ -108,15 +108,19 @@ KERNELS = """
 import sys
 import numpy as np
 from analytic import Record, RigidBlock, SinePulse
+from analytic.kernels.compiled import Kernel, compile_all
 from studies.kit.jobs import Job, ask, short
 from studies.sources.registry import resolve
 
 def loaded():
     modules = [m for name, m in sys.modules.items() if name.startswith("analytic")]
     return {
-        f"{f.__module__}.{f.__name__}": len(f.signatures)
-        for m in modules for f in vars(m).values() if getattr(f, "signatures", ())
+        f"{f.__module__}.{f.__name__}": len(f.compiled.signatures)
+        for m in modules for f in vars(m).values()
+        if isinstance(f, Kernel) and f.compiled.signatures
     }
+
+compile_all()
 
 block = RigidBlock(width=0.5, height=1.5)
 pulse = SinePulse(amplitude=0.36 * 9.81, omega=4.0, half_cycles=3)

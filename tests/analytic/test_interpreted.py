@@ -1,0 +1,226 @@
+"""Interpreted or compiled, every kernel answers the same, to the bit."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from analytic import (
+    MODELS,
+    Record,
+    RigidBlock,
+    SinePulse,
+    Still,
+    condition_numbers,
+    conditioning,
+    integrate,
+    overturning_modes,
+    peak_ratios,
+    sensitivity,
+    simulate,
+)
+from analytic.kernels import compiled
+from studies.cases.paper import sweep_cases
+
+
+@pytest.fixture
+def purse(monkeypatch):
+    """Let every kernel be interpreted, or none, whatever was before."""
+
+    def use(interpret):
+        monkeypatch.setattr(compiled.Purse, "shut", not interpret)
+        monkeypatch.setattr(compiled.Purse, "open", property(lambda _: interpret))
+        monkeypatch.setattr(compiled.Purse, "spend", lambda _: None)
+
+    return use
+
+
+@pytest.fixture
+def both(monkeypatch, purse):
+    """Return what an action returns, interpreted and compiled."""
+    run = compiled.Kernel.run
+
+    def in_both(action):
+        purse(True)
+        with monkeypatch.context() as alone:
+            # what was compiled once is compiled from then on, but not here
+            alone.setattr(compiled.Kernel, "__call__", interpret)
+            first = action()
+        purse(False)
+        with monkeypatch.context() as alone:
+            alone.setattr(compiled.Kernel, "__call__", run)
+            return first, action()
+
+    def interpret(kernel, *arguments):
+        with compiled.interpreting(compiled.Purse(compiled.SOURCES, 10**9, 0)):
+            return kernel.py_func(*arguments)
+
+    return in_both
+
+
+def bits(numbers):
+    """Return numbers as bytes: nan equals itself, and 0 differs from -0."""
+    return np.asarray(numbers, dtype=np.float64).tobytes()
+
+
+def told(response):
+    """Return everything that a response says but how long it took."""
+    numbers = [response.peak_ratio, response.min_normal, response.friction_needed]
+    events = [*response.impacts, response.uplifts, response.rests]
+    history = response.history
+    sampled = [] if history is None else [bits(history.theta), bits(history.velocity)]
+    words = (response.outcome, response.steps, response.message)
+    return words, bits(numbers), [bits(event) for event in events], sampled
+
+
+def some_case(generator):
+    """Return a block, a motion and a start, of every kind that there is."""
+    alpha, height = generator.uniform(0.05, 0.9), 10.0 ** generator.uniform(-1.0, 1.0)
+    kept = {"restitution": float(generator.choice([0.0, 0.5, 0.9, 1.0]))}
+    block = RigidBlock(
+        width=height * math.tan(alpha), height=height, **(kept if generator.random() < 0.3 else {})
+    )
+    onset = block.gravity * math.tan(alpha)
+    motion = generator.choice(["pulse", "pulse", "pulse", "record", "still"])
+    start = (0.0, 0.0)
+    if motion == "still" or generator.random() < 0.3:
+        rate = float(generator.choice([0.0, generator.normal() * block.p * alpha]))
+        start = (float(generator.uniform(-1.2, 1.2) * alpha), rate)
+    if motion == "still":
+        return block, Still(), start
+    if motion == "record":
+        samples = generator.normal(size=int(generator.integers(10, 200))) * onset
+        return block, Record(dt=float(generator.uniform(0.005, 0.05)), samples=samples), start
+    pulse = SinePulse(
+        amplitude=onset * 10.0 ** generator.uniform(-0.1, 1.0),
+        omega=block.p * 10.0 ** generator.uniform(-1.0, 1.5),
+        half_cycles=int(generator.integers(1, 9)),
+        phase=float(generator.choice([0.0, generator.uniform(0.0, 6.0)])),
+    )
+    return block, pulse, start
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_response_is_the_same(model, both):
+    """In the paper's grid, one case in 8, and in random cases of every kind."""
+    generator = np.random.default_rng(35)
+    cases = [(case.block, case.motion, (0.0, 0.0)) for case in [*sweep_cases([6, 7, 8, 9])][::8]]
+    cases += [some_case(generator) for _ in range(60)]
+
+    def action():
+        return [
+            told(
+                simulate(
+                    block,
+                    motion,
+                    model,
+                    start,
+                    duration=motion.duration + 3.0 / block.p if number % 2 else None,
+                    times=np.linspace(0.0, motion.duration, 9)
+                    if motion.duration and number % 5 == 0
+                    else None,
+                    tolerance=1e-9 if number % 7 == 0 else 1e-16,
+                )
+            )
+            for number, (block, motion, start) in enumerate(cases)
+        ]
+
+    interpreted, once_compiled = both(action)
+    assert interpreted == once_compiled
+
+
+@pytest.mark.parametrize("method", ["rk4", "average-acceleration"])
+@pytest.mark.parametrize("model", ["exact", "modified"])
+def test_a_solver_is_the_same(method, model, both):
+    generator = np.random.default_rng(36)
+    cases = [some_case(generator) for _ in range(12)]
+
+    def action():
+        asked = {"method": method, "step": 0.02, "times": np.linspace(0.0, 1.0, 9)}
+        return [told(integrate(b, m, model, start, **asked)) for b, m, start in cases]
+
+    interpreted, once_compiled = both(action)
+    assert interpreted == once_compiled
+
+
+def test_how_far_errors_move_a_peak_is_the_same(both):
+    generator = np.random.default_rng(37)
+    cases = [some_case(generator) for _ in range(25)]
+
+    def action():
+        found = []
+        for model in ("exact", "modified"):
+            for block, motion, start in cases:
+                found.append(bits(conditioning(block, motion, model, start)))
+                found.append(bits(sensitivity(block, motion, model, start)))
+        return found
+
+    interpreted, once_compiled = both(action)
+    assert interpreted == once_compiled
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_arrays_of_cases_are_the_same(model, both):
+    generator = np.random.default_rng(38)
+    alpha = generator.uniform(0.05, 0.9, 40)
+    amplitude = np.tan(alpha) * 10.0 ** generator.uniform(-0.1, 1.0, 40)
+    omega = 10.0 ** generator.uniform(-1.0, 1.3, 40)
+    cases = (alpha, amplitude, omega, generator.integers(1, 6, 40), model)
+
+    def action():
+        peaks, outcomes = peak_ratios(*cases)
+        modes = overturning_modes(*cases)
+        counted = modes.mode.tolist(), modes.steps.tolist(), outcomes.tolist()
+        numbers = bits(peaks), bits(modes.margin), bits(condition_numbers(*cases))
+        return counted, numbers
+
+    interpreted, once_compiled = both(action)
+    assert interpreted == once_compiled
+
+
+SPENDING = """
+import sys
+import numpy as np
+from analytic import Record, RigidBlock, simulate
+from analytic.kernels import compiled
+
+block = RigidBlock(width=0.5, height=1.5)
+record = Record(dt=0.01, samples=4.0 * np.sin(0.3 * np.arange(300)))
+few = simulate(block, record)
+assert "numba" not in sys.modules
+for _ in range(200):
+    many = simulate(block, record)
+    if "numba" in sys.modules:
+        break
+else:
+    raise SystemExit("nothing was compiled")
+again = simulate(block, record)
+assert few.peak_ratio == many.peak_ratio == again.peak_ratio and few.impacts == again.impacts
+print(few.steps)
+"""
+
+
+def test_what_is_asked_again_and_again_is_compiled():
+    """A case of some 300 steps uses up the steps that are interpreted in some dozens of calls."""
+    done = subprocess.run([sys.executable, "-c", SPENDING], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert int(done.stdout) >= 300
+
+
+def test_what_python_refuses_is_left_to_compiled_code(purse):
+    purse(True)
+
+    @compiled.kernel
+    def quotient(x, y):
+        return x / y
+
+    assert quotient(1.0, 0.0) == math.inf
+    assert quotient(np.float64(1.0), np.float64(0.0)) == math.inf
+
+
+def test_few_cases_are_interpreted_and_many_are_not():
+    kernel = compiled.Kernel(abs, compiled.SOURCES, True, None)
+    assert compiled.form_for(1, kernel) is kernel
+    assert compiled.form_for(10_000, kernel) == kernel.run
