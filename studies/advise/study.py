@@ -25,6 +25,7 @@ from studies.kit.arguments import (
     check_engines,
     refuse_given,
     refuse_repeats,
+    several,
     several_or_none,
 )
 from studies.kit.digests import check
@@ -47,7 +48,7 @@ NOTE = (
 
 def command(
     *,
-    error: Annotated[tuple[Positive, ...] | None, several_or_none] = None,
+    error: Annotated[tuple[Positive, ...], several] = TARGETS,
     engines: Annotated[
         tuple[str, ...] | None, several_or_none, Parameter(name=("--engines", "--engine"))
     ] = None,
@@ -69,8 +70,7 @@ def command(
     Parameters
     ----------
     error
-        Largest relative errors [-] of the peak rotation that are to be kept; 0.1, 0.01, 0.001 and
-        0.0001 by default.
+        Largest relative errors [-] of the peak rotation that are to be kept.
     engines
         Names of engines, without a preset; by default all in the published tables.
     dt
@@ -88,10 +88,10 @@ def command(
     out
         Folder for the advice as a table and a figure; none by default.
     """
-    targets = TARGETS if error is None else error
-    refuse_repeats("--error", targets)
+    refuse_repeats("--error", error)
     if dt is not None:
-        refuse_given({"error": error and error[0], "out": out}, "only without --dt")
+        given = None if error is TARGETS else error[0]
+        refuse_given({"error": given, "out": out}, "only without --dt")
         check_written(dt)
     tables = published or PUBLISHED
     block = posed_block(width, height)
@@ -104,12 +104,12 @@ def command(
         if dt is not None:
             print(_reverse(tables, asked, block, dt, friction))
             return 0
-        lines = advice(tables, asked, targets, block)
+        lines = advice(tables, asked, error, block)
         text = _text(lines, block, tables, friction)
     if out is None:
         print(text)
         return 0
-    settings = {"error": targets, "engines": asked, "width": width, "height": height}
+    settings = {"error": error, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
 
     def report(folder: Path) -> str:

@@ -1,5 +1,6 @@
 """What a list of blocks shows: in words, as a short table, and as a page to hand on."""
 
+import math
 from base64 import b64encode
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -7,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 from jinja2 import Environment, PackageLoader
 
+from studies.blocks import strength
 from studies.blocks.ranking import command_of, counted, doubts, first_words, ranked
 from studies.kit import provenance
 from studies.kit.tables import left_aligned
@@ -36,6 +38,7 @@ def report(folder: Path) -> str:
     text = f"{table_text(rows)}\n\n{paragraph(folder)}"
     provenance.write_text(folder / "findings.txt", text + "\n")
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
+    environment.filters["shown"] = shown
     page = environment.get_template("page.html.jinja").render(
         headline=headline(folder),
         said=[f"{capital(words)}." for words in (*counted(rows), *doubts(rows))],
@@ -44,6 +47,7 @@ def report(folder: Path) -> str:
         sources=list(dict.fromkeys(rows["source"])),
         lines=lines_of_page(rows, provenance.record_of(folder)["settings"]),
         messages=messages(rows),
+        rules=strength,
         made=provenance.record_of(folder),
     )
     provenance.write_text(folder / "blocks.html", page)
@@ -79,7 +83,7 @@ def table_text(rows: pd.DataFrame) -> str:
                 "B × H [m]": f"{line['width_m']:g} × {line['height_m']:g}",
                 "record": line["record"],
                 "lifts": f"{line['lifts']:.4g}",
-                "overturns": f"{line['margin']:.4g}",
+                "overturns": shown(line["margin"], 4),
                 **answers[line["name"], line["record"]],
             }
             for _, line in lines.head(SHOWN).iterrows()
@@ -100,6 +104,11 @@ def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
         mine = found.setdefault((row["name"], row["record"]), {})
         mine[f"{row['source']} × {row['scale']:g}"] = f"{row['outcome']}{peak}"
     return found
+
+
+def shown(value: float, digits: int) -> str:
+    """Return a number as the page shows it."""
+    return "–" if math.isnan(value) else "∞" if math.isinf(value) else f"{value:.{digits}g}"
 
 
 def lines_of_page(rows: pd.DataFrame, settings: dict[str, str]) -> list[dict[str, Any]]:

@@ -169,7 +169,8 @@ def reduce(job: Job, response: Response, *, baseline: str) -> Row:
     row = summary(job, response)
     if job.labels["table"] == MARGINS:
         found = strength(job.block, job.motion, start)
-        words = " ".join(f"{low:.4g}-{high:.4g}" for low, high in found.islands)
+        ends = (dict.fromkeys((f"{low:.4g}", f"{high:.4g}")) for low, high in found.islands)
+        words = " ".join(map("-".join, ends))
         return {**row, "lifts": found.lifts, "margin": found.margin, "islands": words}
     exact = job.source == "exact"
     said = [row["message"], slides(response, job.labels["friction"]) if exact else ""]
