@@ -11,6 +11,7 @@ from analytic.conditioning import condition_numbers, conditioning, sensitivities
 from analytic.cylinder import RollingCylinder
 from analytic.first_mode import FirstMode, first_mode, rocking_friction
 from analytic.frame import RockingFrame, frame_restitution
+from analytic.frame_forces import frame_demands, frame_faults
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Motion, SinePulse, Still
@@ -43,6 +44,8 @@ __all__ = [
     "condition_numbers",
     "conditioning",
     "first_mode",
+    "frame_demands",
+    "frame_faults",
     "frame_restitution",
     "housner_restitution",
     "integrate",

@@ -13,7 +13,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from analytic.checks import finite
 from analytic.kernels.rest import EQUAL
@@ -23,7 +22,7 @@ from analytic.slide import SlidingBlock
 
 MOST_SLIPS = 5_000
 """Slips, beside one a segment, after which a response counts as endless."""
-LAST_DIGIT = 4.0 * np.finfo(np.float64).eps
+LAST_DIGIT = float(np.finfo(np.float64).eps)
 
 
 class Leg(NamedTuple):
@@ -210,8 +209,17 @@ def _stop(leg: Leg, length: float) -> tuple[float, float]:
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return a bracketed root to the last digit of its bracket."""
-    return float(brentq(function, low, high, xtol=LAST_DIGIT * (high - low), rtol=LAST_DIGIT))
+    """Return a bracketed root to the last digit of its bracket, from the side of its end."""
+    width, above = LAST_DIGIT * (high - low), function(high) > 0.0
+    while high - low > width:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        if (function(middle) > 0.0) == above:
+            high = middle
+        else:
+            low = middle
+    return high
 
 
 def _slips(
