@@ -74,7 +74,12 @@ def edit(root, file, old, new):
 
 EDITS = {
     "an engine's build": ("engines/mujoco/build.py", "import_module(", "id(", MUJOCO),
-    "an engine's loop": ("engines/pybullet/fast.py", "return before", "return 2 + before", {"pybullet"}),
+    "an engine's loop": (
+        "engines/pybullet/fast.py",
+        "return before",
+        "return 2 + before",
+        {"pybullet"},
+    ),
     "an engine's settings": (
         *("engines/box2d/settings.py", "def __post_init__(self) -> None:"),
         *("def __post_init__(self) -> None:\n        print()", {"box2d"}),
