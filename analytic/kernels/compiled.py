@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import update_wrapper
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, ClassVar, TypeVar, cast
 
-from analytic.kernels.kept import FULL, are_compiled, cache_folder, kept_in
+from analytic.kernels.kept import FULL, are_compiled, cache_folder, holds, kept_in
 
 Answer = TypeVar("Answer")
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -132,6 +132,9 @@ class Kernel:
         At whose expense it is interpreted; None where others decide that.
     """
 
+    tell: ClassVar[Callable[[str], None] | None] = None
+    """Who is told, the first time, that compiling begins."""
+
     def __init__(
         self, function: Callable[..., Any], sources: Path, nogil: bool, purse: Purse | None
     ) -> None:
@@ -166,7 +169,12 @@ class Kernel:
     def compiled(self) -> Any:
         """The compiled form, a dispatcher of numba's."""
         if self._dispatcher is None:
-            self._dispatcher = _compiled(self.py_func, kept_in(self._sources), self._nogil)
+            folder = kept_in(self._sources)
+            tell = Kernel.tell
+            if tell is not None and not holds(folder, self.py_func):
+                Kernel.tell = None
+                tell("compiling, once: some 10 to 40 s")
+            self._dispatcher = _compiled(self.py_func, folder, self._nogil)
         return self._dispatcher
 
     @property

@@ -5,7 +5,7 @@ import hashlib
 import os
 import stat
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
@@ -26,6 +26,13 @@ def are_compiled(sources: Path) -> bool:
     """Return whether any kernel in a folder was compiled before, by this process or another one."""
     folder = kept_in(sources)
     return folder is not None and any(folder.rglob("*.nbi"))
+
+
+def holds(folder: Path | None, function: Callable[..., Any]) -> bool:
+    """Return whether a folder holds a compiled function."""
+    name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
+    pattern = f"{name.replace('<', '').replace('>', '')}-*.nbi"
+    return folder is not None and any(folder.rglob(pattern))
 
 
 def folder_for(sources: Path, where: Iterable[Path]) -> Path | None:

@@ -1,18 +1,22 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named."""
 
+import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass
 from typing import Protocol
 
-from analytic.kernels.compiled import compile_all
+from analytic.kernels.compiled import Kernel, compile_all
+from analytic.kernels.kept import are_compiled
 from analytic.response import Response
+from engines.parts.compiled import PACKAGE
 from studies.kit import provenance
 from studies.kit.arguments import refuse_given
 from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool, StartError
 from studies.kit.processes import ask_loaded, ask_one, compile_ahead, outcome_of
+from studies.kit.streams import say
 from studies.sources.registry import Source
 
 FEW = 32
@@ -57,6 +61,8 @@ class Local:
         many = not self.at_once or len(jobs) > FEW
         if many:
             compile_all()
+        if sys.stderr.isatty():
+            Kernel.tell = say
         loaded: set[str] = set()
         for number, job in enumerate(jobs):
             source = job.asked
@@ -79,6 +85,8 @@ class Local:
             firsts.setdefault(job.source, job)
         with Pool(min(self.workers, len(jobs))) as pool:
             if many:
+                if Kernel.tell is not None and not are_compiled(PACKAGE):
+                    Kernel.tell("compiling what engines need, once: some 10 to 40 s")
                 compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
             put = ask_loaded if many else ask_one
             # the source travels with the job, so that a worker needs no registry of its own

@@ -1,5 +1,6 @@
 """Where compiled kernels are kept: never beside other sources than their own, never required."""
 
+import errno
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import numba
 import pytest
+from numba.core import caching
 
 from analytic.kernels import compiled, kept
 
@@ -129,3 +131,41 @@ def test_other_kernels_of_the_user_are_kept_where_they_were():
     assert before == numba.config.CACHE_DIR
     folder = str(kept.kept_in(compiled.SOURCES))
     assert twice.compiled.stats.cache_path.startswith(folder)
+
+
+def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
+    def save(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(caching.IndexDataCacheFile, "save", save)
+
+    @compiled.kernel
+    def thrice(x):
+        return 3.0 * x
+
+    assert thrice.run(2.0) == 6.0
+    assert thrice.run(3.0) == 9.0
+
+
+def test_who_waits_is_told_once_and_only_where_something_is_compiled(monkeypatch, tmp_path):
+    told = []
+    monkeypatch.setattr(compiled.Kernel, "tell", told.append)
+    monkeypatch.setattr(compiled, "kept_in", lambda _: tmp_path)
+
+    def again():
+        @compiled.kernel
+        def half(x):
+            return 0.5 * x
+
+        @compiled.kernel
+        def quarter(x):
+            return 0.5 * half(x)
+
+        return quarter
+
+    assert again().run(2.0) == 0.5
+    assert len(told) == 1
+    told.clear()
+    monkeypatch.setattr(compiled.Kernel, "tell", told.append)
+    assert again().run(2.0) == 0.5
+    assert not told
