@@ -1,9 +1,10 @@
-"""Physics engines on the rocking block: one scene, any engine, one way of looking at it.
+"""Physics engines on scenes with exact answers: any scene, any engine, one way of looking at it.
 
-An adapter builds the scene, chooses the engine's settings, decides when it steps and how its
-contact holds. It never decides what the state becomes: the pose and the velocities are set once,
-before the first step, and the impact is the engine's. What a preset does besides setting the
-engine is declared (`engines.declaration.Help`).
+A scene is data: bodies, where they begin, which faces touch (`engines.layouts`), and how the base
+moves (`engines.scene`). An adapter builds it, chooses the engine's settings, decides when it steps
+and how its contact holds. It never decides what the state becomes: places and velocities are set
+once, before the first step, and the impact is the engine's. What a preset does besides setting the
+engine is declared (`engines.declaration.Help`), and so is which scenes it can hold.
 
 To add an engine, write one folder beside these and one line in ``engines.registry.OWN``,
 or declare it in a package of your own under the entry point group ``rocking.engines``::
@@ -17,8 +18,8 @@ It holds
   setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),
   ``planar`` (False frees a body in space) and ``base_velocity`` (False moves the base by position
   alone) are called so, because studies put them back;
-- a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``pose``, ``fault``, ``close``. It
-  starts from `Scene.beginning`. A `Step` carries all that it needs: the gravity that gives the
+- a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``state``, ``fault``, ``close``. It
+  starts from `Scene.bodies`. A `Step` carries all that it needs: the gravity that gives the
   velocity its kick, along the base too where the frame is "base", and the base's velocity and
   place where it is "world";
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
@@ -28,7 +29,7 @@ It holds
   function of the library and of numbers, whose source the script has with the numbers filled in
   (`engines.parts.script.filled`), so that both are one;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
-  the bit what ``step`` and ``pose`` give (`Scene.compiled`);
+  the bit what ``step`` and ``state`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own tutorial uses it) to the best there is, what the studies try of its contact, and what
   its users should know first (`rules`), each with the variant that shows what it is worth.
