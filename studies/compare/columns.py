@@ -138,7 +138,7 @@ def _difference(row: Row) -> str:
 
 def valid(exact: Response) -> bool | None:
     """Say whether the pivot stays on the base in the exact solution; None if there is none."""
-    if exact.outcome is Outcome.FAILED:
+    if math.isnan(exact.min_normal):
         return None
     return exact.min_normal >= 0.0
 

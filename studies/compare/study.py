@@ -21,7 +21,14 @@ from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.columns import slip_error
 from studies.compare.rendering import draw, json_lines, records, table_text
-from studies.kit.arguments import BadInputError, Place, Positive, check_plot, check_sources
+from studies.kit.arguments import (
+    BadInputError,
+    Place,
+    Positive,
+    check_plot,
+    check_sources,
+    refuse_given,
+)
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
@@ -52,6 +59,8 @@ TIMED_IMPACTS = 5
 """First impacts whose times are compared."""
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
+OF_A_SLIDE = ("exact", *core_sources())
+"""By default asked of a block that slides, which has no linearization."""
 
 
 def command(
@@ -91,6 +100,10 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
+    if standing.scene == "slide":
+        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
+        given = {"tilt": excitation.tilt, "rate": excitation.rate, "plot": plot}
+        refuse_given({**given, "estimate": estimate or None}, "only where something rocks")
     check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
@@ -126,7 +139,7 @@ def command(
 def conditioned(rows: Sequence[Row], block: Any, posed: Posed) -> list[Row]:
     """Add kappa and sensitivity of the exact peak to every row, where there is one."""
     if isinstance(block, SlidingBlock):
-        return list(rows)
+        return [{**row, "kappa": math.nan, "sensitivity": math.nan} for row in rows]
     known = conditioning_of_one(block, posed.motion, posed.start, rows[0]["exact"])
     return [{**row, **known} for row in rows]
 

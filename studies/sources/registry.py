@@ -9,6 +9,7 @@ from typing import Any, Literal
 from analytic import MODELS, integrate, simulate
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
+from analytic.slide import SlidingBlock
 from engines import ENGINES
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
@@ -63,6 +64,8 @@ class Source:
         TypeError, ValueError
             If an option is not one of its own, or a value is not allowed.
         """
+        if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
+            raise ValueError(f"{self.name} solves what rocks, and this block slides")
         taken = inspect.signature(self.call).parameters
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}

@@ -85,6 +85,12 @@ def test_from_python():
         (("--scene", "slide"), "--friction missing; a block that slides requires one below B/H"),
         (("--scene", "slide", "--friction", "0.34"), "--friction is 0.34; it must be below"),
         (("--scene", "slide", "--friction", "0"), "--friction is 0"),
+        (("--scene", "slide", "--friction", "0.2", "--tilt", "0.3"), "--tilt is 0.3; it may be"),
+        (("--scene", "slide", "--friction", "0.2", "--plot", "x.png"), "--plot is x.png; it may"),
+        (
+            ("--scene", "slide", "--friction", "0.2", "--sources", "dop853"),
+            "source 'dop853' cannot be asked so: dop853 solves what rocks, and this block slides",
+        ),
         (("--scene", "bridge"), "--scene is 'bridge'; it must be among block, frame, slide"),
     ],
 )
