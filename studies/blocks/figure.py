@@ -59,8 +59,10 @@ def _one_record(axes: Axes, lines: pd.DataFrame, names: list[str], place: int, o
     for _, line in lines[lines["name"].isin(names)].iterrows():
         level, end = names.index(line["name"]) + offset, line["margin"]
         if math.isinf(end):
-            axes.annotate("none found ", (1.0, level), xycoords=("axes fraction", "data"),
-                          ha="right", va="center", color=colour, fontsize=7, backgroundcolor="white")  # fmt: skip
+            look: dict[str, Any] = {"color": colour, "fontsize": 7, "backgroundcolor": "white"}
+            where = ("axes fraction", "data")
+            axes.annotate("none found ", (1.0, level), xycoords=where, ha="right", va="center",
+                          **look)  # fmt: skip
         if not (math.isfinite(end) and end > 0.0):
             continue
         if line["lifts"] > 0.0:
