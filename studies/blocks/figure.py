@@ -58,6 +58,11 @@ def _one_record(axes: Axes, lines: pd.DataFrame, names: list[str], place: int, o
     colour = ENGINE_COLOURS[place % len(ENGINE_COLOURS)]
     for _, line in lines[lines["name"].isin(names)].iterrows():
         level, end = names.index(line["name"]) + offset, line["margin"]
+        if math.isinf(end):
+            look: dict[str, Any] = {"color": colour, "fontsize": 7, "backgroundcolor": "white"}
+            where = ("axes fraction", "data")
+            axes.annotate("none found ", (1.0, level), xycoords=where, ha="right", va="center",
+                          **look)  # fmt: skip
         if not (math.isfinite(end) and end > 0.0):
             continue
         if line["lifts"] > 0.0:
