@@ -146,7 +146,7 @@ def _follow(
     block: SlidingBlock, segments: FloatArray, x: float, v: float, until: float, legs: list[Leg]
 ) -> float | None:
     """Write the legs of a response; return the time [s] at which it ends, None if too many."""
-    still = [segments[-1, 1], math.inf, 0.0, 1.0, 0.0, 0.0, 0.0]
+    still = [float(segments[-1, 1]), math.inf, 0.0, 1.0, 0.0, 0.0, 0.0]
     side = math.copysign(1.0, v) if v != 0.0 else 0.0
     most = len(segments) + 3 * MOST_SLIPS
     for first, last, amplitude, omega, phase, offset, slope in [*segments.tolist(), still]:
