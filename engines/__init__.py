@@ -18,8 +18,8 @@ It holds
   setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),
   ``planar`` (False frees a body in space) and ``base_velocity`` (False moves the base by position
   alone) are called so, because studies put them back;
-- a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``state``, ``fault``, ``close``. It
-  starts from `Scene.bodies`. A `Step` carries all that it needs: the gravity that gives the
+- a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``state``, ``fault``, ``close``.
+  It starts from `Scene.bodies`. A `Step` carries all that it needs: the gravity that gives the
   velocity its kick, along the base too where the frame is "base", and the base's velocity and
   place where it is "world";
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
