@@ -125,6 +125,8 @@ def conditioned(rows: Sequence[Row], block: RigidBlock, posed: Posed) -> list[Ro
 
 def hanging(block: RigidBlock, posed: Posed, window: float, exact: Response) -> str:
     """Say where less than a hundredth of the amplitude decides whether the block overturns."""
+    if exact.outcome is Outcome.FAILED:
+        return ""
     for factor in (1.0 + EDGE, 1.0 - EDGE):
         motion = _scaled(posed.motion, factor)
         other = simulate(block, motion, start=posed.start, duration=window).outcome
