@@ -146,7 +146,9 @@ def conditioned(rows: Sequence[Row], block: Any, posed: Posed) -> list[Row]:
 
 def hanging(block: System, posed: Posed, window: float, exact: Response) -> str:
     """Say where less than a hundredth of the amplitude decides whether the block overturns."""
-    for factor in () if isinstance(block, SlidingBlock) else (1.0 + EDGE, 1.0 - EDGE):
+    if exact.outcome is Outcome.FAILED or isinstance(block, SlidingBlock):
+        return ""
+    for factor in (1.0 + EDGE, 1.0 - EDGE):
         motion = _scaled(posed.motion, factor)
         other = simulate(block, motion, start=posed.start, duration=window).outcome
         outcomes = {exact.outcome, other} - {Outcome.OVERTURNED}
