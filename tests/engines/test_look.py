@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from dataclasses import asdict
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,10 +12,13 @@ import numpy as np
 import pytest
 from uses import BLOCK, HERE, pulse, scene
 
+from analytic.kernels.compiled import Purse, interpreting
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene
 from engines.mujoco import fast as mujoco_loop
 from engines.mujoco import models as mujoco_models
+from engines.parts import compiled as parts
+from engines.parts.compiled import INTERPRETED, PACKAGE
 from engines.pybullet import clients as bullet_clients
 from engines.run.drive import LOOK_AROUND, build, run
 from engines.run.look import roomy
@@ -207,3 +211,24 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(
     for _ in range(2):  # with a model that is new, and with one that was used
         assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
     assert mujoco_models.idle
+
+
+@pytest.mark.parametrize(("engine", "options"), EACH)
+def test_a_few_steps_are_interpreted_to_the_same_bit(
+    engine: str, options: dict[str, object]
+) -> None:
+    asked = shaken(**options)
+    with interpreting(Purse(PACKAGE, 10**9, 0)):
+        interpreted = run(engine, asked)
+    assert all_but_times(interpreted) == all_but_times(run(engine, asked))
+    assert interpreted.driver == f"python: {INTERPRETED}"
+
+
+def test_a_run_of_many_steps_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It begins again when the steps that may be interpreted are spent."""
+    monkeypatch.setattr(Purse, "shut", False)
+    asked, drivers = shaken(accuracy="loose"), []
+    for steps in (10**9, 10):
+        monkeypatch.setattr(parts, "PURSE", Purse(PACKAGE, steps, 0))
+        drivers.append(parts.interpreted_first(partial(run, "mujoco", asked)).driver)
+    assert drivers == [f"python: {INTERPRETED}", "compiled"]
