@@ -96,7 +96,7 @@ class Ride:
         if abs(moving[0]) > onset * (1.0 + EQUAL):
             self._lift(moving[0], 2)
             return
-        quickest = max(math.sqrt(w2), self.segments[self.segment, 3])
+        quickest = max(math.sqrt(w2), self.segments[self.segment][3])
         h = min(REST_STEP / quickest if quickest > 0.0 else math.inf, self._limit() - self.tau)
         stretch(moving, ORDER - 2, h, self.along)
         lifts = 2.0
@@ -154,7 +154,7 @@ class Ride:
         return float(push - self.cart.stiffness * (self.x + wait * self.u))
 
     def _limit(self) -> float:
-        end = float(self.segments[self.segment, 1])
+        end = float(self.segments[self.segment][1])
         return min(end, self.until) if self.tau < self.until else min(end, self.tau + PATIENCE)
 
     def _move(self, h: float, part: float) -> None:

@@ -1,5 +1,7 @@
 """The reverse question: which error a step keeps, and with which settings of an engine."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -107,13 +109,13 @@ def _said(error: float) -> str:
     return "an outcome is wrong" if math.isinf(error) else part(error)
 
 
-def _at(line: "pd.Series[Any]") -> str:
+def _at(line: pd.Series[Any]) -> str:
     if math.isnan(line["coarser"]):
         return "no step as coarse"
     return f"p dt = {line['coarser']:.3g} and every finer step"
 
 
-def _written(line: "pd.Series[Any]", block: RigidBlock, dt_s: float, friction: float | None) -> str:
+def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: float | None) -> str:
     """Return the settings of a preset as formulas of the step, and at the step."""
     engine = ENGINES[str(line["engine"])]
     preset = engine.preset(str(line["preset"]))

@@ -1,5 +1,7 @@
 """Advice from the published tables: which setting keeps an error, in the library's words."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill

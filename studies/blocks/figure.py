@@ -1,5 +1,7 @@
 """The blocks of a list, ranked by the factor on a record that overturns them first."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

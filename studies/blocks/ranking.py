@@ -1,5 +1,7 @@
 """Which block overturns first: the lines of a list in the order of their margins, and in words."""
 
+from __future__ import annotations
+
 import math
 import shlex
 from collections.abc import Mapping, Sequence
@@ -67,7 +69,7 @@ def doubts(rows: pd.DataFrame) -> list[str]:
     return [f"{int(where.sum())} of {len(cases)} {what}" for what, where in words.items()]
 
 
-def command_of(line: "pd.Series[Any]", sources: Sequence[str], settings: Mapping[str, str]) -> str:
+def command_of(line: pd.Series[Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:
     """Return the command that compares the sources on a case of the list."""
     values = {
         "width": float(line["width_m"]),

@@ -1,5 +1,7 @@
 """What a list of blocks shows: in words, as a short table, and as a page to hand on."""
 
+from __future__ import annotations
+
 import math
 from base64 import b64encode
 from pathlib import Path
@@ -65,7 +67,7 @@ def paragraph(folder: Path) -> str:
     return f"{headline(folder)} {capital('; '.join(counted(rows)))}. {listed(doubts(rows))}."
 
 
-def pictures(folder: Path) -> dict[str, "Figure"]:
+def pictures(folder: Path) -> dict[str, Figure]:
     """Draw the ranking of a folder's blocks from its blocks.csv alone."""
     from studies.blocks.figure import draw_blocks
 

@@ -1,5 +1,7 @@
 """A list of blocks, recorded ground motions and their scales, through any sources."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial

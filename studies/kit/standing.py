@@ -5,11 +5,11 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from analytic.block import RigidBlock
 from analytic.frame import RockingFrame
 from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.kit.arguments import BadInputError, Count, Positive, as_bad_input, one_of, refuse_given
+from studies.kit.posing import posed_block
 
 SceneName = Literal["block", "frame", "slide"]
 
@@ -46,12 +46,13 @@ class Standing:
         """
         if self.scene != "frame":
             refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        block = posed_block(width, height)
         with as_bad_input():
             if self.scene == "frame":
                 return self._frame(width, height)
             if self.scene == "slide":
                 return _slide(width, height, friction)
-            return RigidBlock(width=width, height=height)
+            return block
 
     def _frame(self, width: float, height: float) -> RockingFrame:
         if self.load is None:

@@ -1,5 +1,7 @@
 """Errors of frames and slides: engines as rows, presets as bars and dots."""
 
+from __future__ import annotations
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

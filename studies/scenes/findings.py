@@ -1,5 +1,7 @@
 """What the summaries of frames and slides show, in a sentence each."""
 
+from __future__ import annotations
+
 import pandas as pd
 
 from studies.measures.differences import scientific

@@ -1,5 +1,7 @@
 """A rocking frame and a sliding block in each engine, against their exact solutions."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """What the study of extreme cases found, in a paragraph made from its tables."""
 
+from __future__ import annotations
+
 import pandas as pd
 
 from analytic.response import Reason

@@ -1,5 +1,7 @@
 """A release is asked: by this command once more, where its own packages are found first."""
 
+from __future__ import annotations
+
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence

@@ -70,7 +70,8 @@ def all_but_times(response: Response) -> str:
     """Return all fields to the last bit, apart from run times and what took the steps."""
     found = asdict(response)
     history = found.pop("history")
-    parts = [] if history is None else [array.tolist() for array in history.values()]
+    kept = [] if history is None else [part for part in history.values() if part is not None]
+    parts = [part.tolist() for part in kept]
     return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
 
 

@@ -16,6 +16,7 @@ ARGUMENTS = {
     "sweep": ("--figure", "6", "--accuracy", "loose", "--sources", "exact", "moreau"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
     "free": ("--quick", "--sources", "exact", "moreau"),
+    "scenes": ("--quick", "--sources", "exact", "moreau"),
     "harmonic": ("--quick", "--sources", "moreau"),
     "literature": ("--sources", "moreau"),
     "validate": ("--cases", "8", "--sources", "moreau"),
@@ -31,7 +32,7 @@ ARGUMENTS = {
     "ensemble": ("--quick", "--sources", "moreau"),
     "score": ("moreau", "--quick"),
 }
-OF_NO_ENGINE = {"linearizations"}
+OF_NO_ENGINE = {"linearizations", "blocks"}
 OF_ENGINES_THAT_WERE_ASKED = {"symptoms", "restitution", "steps"}
 
 

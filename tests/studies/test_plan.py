@@ -156,10 +156,11 @@ def test_the_time_of_a_run_is_that_of_the_command(tmp_path):
 def test_the_first_run_after_an_installation_is_told_from_later_ones(tmp_path):
     code = """
 from pathlib import Path
-from analytic.kernels.closed_form import sine_minus_sinh
+import numpy as np
+from analytic.cases import fill_restitution
 from studies.kit.provenance import begin
 print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
-sine_minus_sinh(0.1, 0.1)
+fill_restitution.run(np.ones(1), np.ones(1))
 print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
 """
     paths = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])

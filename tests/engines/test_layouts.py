@@ -18,6 +18,9 @@ from engines.run.drive import run
 SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
 
 STACKING = [name for name, engine in HERE.items() if Ability.STACKED in engine.abilities]
+APART_BY = {"dart": 5e-4}
+"""Engine -> by how much two equal blocks differ, where that is more than its rounding."""
+
 APART = [
     (name, preset.name)
     for name, engine in HERE.items()
@@ -29,14 +32,16 @@ APART = [
 
 @pytest.mark.parametrize(("engine", "preset"), APART)
 def test_blocks_apart_rock_as_one_alone(engine: str, preset: str) -> None:
-    """To the rounding of the engine; as they come, pymunk's ten sweeps do not converge, and what
-    comes out depends on the order of its contacts."""
+    """To the rounding of the engine, but for DART, whose contacts depend on where a block stands;
+    as they come, pymunk's ten sweeps do not converge, and hang on the order of its contacts."""
     alone = run(engine, Scene(system=BLOCK, motion=pulse(1.2, 2.0, 2), preset=preset))
     both = run(
         engine, Scene(system=SideBySide(block=BLOCK), motion=pulse(1.2, 2.0, 2), preset=preset)
     )
     peaks = [both.observables["peak_1"], both.observables["peak_2"]]
-    assert peaks == pytest.approx([alone.peak_ratio] * 2, rel=equal_to(engine))
+    assert peaks == pytest.approx(
+        [alone.peak_ratio] * 2, rel=APART_BY.get(engine, equal_to(engine))
+    )
 
 
 def frame(load: float, columns: int = 2) -> RockingFrame:
@@ -96,10 +101,10 @@ def test_a_launched_box_stops() -> None:
 
 
 def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:
-    response = run("dart", Scene(system=frame(1.0), motion=SINE))
+    response = run("newton", Scene(system=frame(1.0), motion=SINE))
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
     assert (
-        response.message == "not available: DART is not built here for several bodies on one base"
+        response.message == "not available: Newton is not built here for several bodies on one base"
     )
     box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
     landing = run("mujoco", Scene(system=box, motion=SINE, preset="landing"))
