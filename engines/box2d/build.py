@@ -167,10 +167,10 @@ class Box2DWorld:
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        for row, body in zip(self._state, self._bodies, strict=True):
+        for number, body in enumerate(self._bodies):
             x, z = body.position
             place, level = x / self._unit - self._place, (z + self._sunk) / self._unit
-            row[:] = place, level, -body.angle, -body.angularVelocity
+            self._state[number] = place, level, -body.angle, -body.angularVelocity
         return self._state
 
     def fault(self) -> str:

@@ -197,9 +197,9 @@ class DartWorld:
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         (x, z, theta), unit = self._at, self._unit
-        for row, joint in zip(self._state, self._joints, strict=True):
+        for number, joint in enumerate(self._joints):
             q, rate = joint.getPositions().tolist(), joint.getVelocity(theta)
-            row[:] = (q[x] - self._place) / unit, q[z] / unit, q[theta], rate
+            self._state[number] = (q[x] - self._place) / unit, q[z] / unit, q[theta], rate
         return self._state
 
     def fault(self) -> str:

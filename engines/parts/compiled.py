@@ -108,6 +108,12 @@ class State:
 
     @classmethod
     @cache
+    def record(cls) -> np.dtype[np.void]:
+        """Return the same for arrays: one object, or numba would compare two at every call."""
+        return np.dtype((np.record, cls.kind()))
+
+    @classmethod
+    @cache
     def fields(cls) -> dict[str, Any]:
         """Return what the fields are declared as."""
         return get_type_hints(cls, include_extras=True)
@@ -117,7 +123,7 @@ class State:
         """Return an array of such states, all zeros; a state alone is slow to hand over."""
         if interpreted():
             return [cls.plain() for _ in range(count)]
-        return cast(Sequence[Self], np.zeros(count, np.dtype((np.record, cls.kind()))))
+        return cast(Sequence[Self], np.zeros(count, cls.record()))
 
     @classmethod
     def plain(cls) -> Self:

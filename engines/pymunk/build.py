@@ -189,9 +189,9 @@ class PymunkWorld:
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         base_x, _ = self._base.position
-        for row, body in zip(self._state, self._bodies, strict=True):
+        for number, body in enumerate(self._bodies):
             x, z = body.position
-            row[:] = x - base_x, z, -body.angle, -body.angular_velocity
+            self._state[number] = x - base_x, z, -body.angle, -body.angular_velocity
         return self._state
 
     def fault(self) -> str:

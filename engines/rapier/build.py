@@ -171,11 +171,11 @@ class RapierWorld:
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        for row, body in zip(self._state, self._bodies, strict=True):
+        for number, body in enumerate(self._bodies):
             at, turn = body.translation, body.rotation
             theta = 2.0 * math.atan2(turn.j, turn.w)
             x, z = (at.x - self._place) / self._unit, (at.z + self._sunk) / self._unit
-            row[:] = x, z, theta, body.angvel.y
+            self._state[number] = x, z, theta, body.angvel.y
         return self._state
 
     def fault(self) -> str:

@@ -169,6 +169,8 @@ class Look:
         self._times, self._alpha = scene.times, scene.system.alpha
         self._numbers = np.zeros(len(Step._fields))
         self._shape = len(scene.bodies), len(Pose._fields)
+        self._plain, self._last = interpreted(), np.empty(0)
+        self._look: Any = look
 
     @property
     def watches(self) -> Sequence[Watch]:
@@ -196,17 +198,25 @@ class Look:
 
     def next(self, state: ArrayLike) -> Step | None:
         """See the state after a step; return the next step, or None where the run is over."""
+        # most engines fill the same array again
+        where = self._last if state is self._last else self._checked(state)
+        # plain numbers are the faster ones for Python
+        seen: Any = where.tolist() if self._plain else where
+        if not self._look(self.runs, self.lists, self._numbers, seen):
+            return None
+        if self._look is look and not self._plain:
+            self._look = look.compiled  # it is, by now
+        numbers: list[Any] = self._numbers.tolist()
+        numbers[GRIP] = GRIPS[int(numbers[GRIP])]
+        return Step(*numbers)
+
+    def _checked(self, state: ArrayLike) -> FloatArray:
         where = np.asarray(state, dtype=np.float64)
         if where.shape != self._shape:
             words = f"it must be {self._shape}, a row for each body"
             raise ValueError(f"the engine's state has the shape {where.shape}; {words}")
-        # plain numbers are the faster ones for Python
-        seen: Any = where.tolist() if interpreted() else where
-        if not look(self.runs, self.lists, self._numbers, seen):
-            return None
-        numbers: list[Any] = self._numbers.tolist()
-        numbers[GRIP] = GRIPS[int(numbers[GRIP])]
-        return Step(*numbers)
+        self._last = where
+        return where
 
     @property
     def problem(self) -> Problem | None:
