@@ -9,9 +9,8 @@ class World:
     moment = Moment.NEXT  # pymunk moves a body first, and then changes its velocity
 
     def __init__(self, scene, settings, dt_s):
-        (block,) = scene.bodies
-        at, self.space = block.at, pymunk.Space()
-        self.body = pymunk.Body(block.mass, block.inertia[1])
+        (block,), self.space = scene.bodies, pymunk.Space()
+        at, self.body = block.at, pymunk.Body(block.mass, block.inertia[1])
         self.body.position, self.body.angle = (at.x, at.z), -at.theta
         self.body.velocity, self.body.angular_velocity = (at.velocity_x, at.velocity_z), -at.rate
         box = pymunk.Poly.create_box(self.body, (block.width, block.height))
