@@ -30,7 +30,7 @@ def draw_frames(lines: pd.DataFrame) -> Figure:
         axes.plot(median, y, "o", color=colour, markersize=7)
         if row["wrong"]:
             words = f"   {row['wrong']} of {row['frames']} fall wrongly"
-            axes.text(most, y, words, va="center", fontsize=8, color=colour)
+            axes.text(most, y, words, va="center", fontsize=8, color=colour, clip_on=False)
     axes.set_xlabel("error of the largest rotation of a column, relative  [–]")
     return figure
 

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import pandas as pd
 
-from studies.measures.differences import scientific
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.words import part as share
 
 
 def frame_sentence(lines: pd.DataFrame) -> str:
     """Say for each preset how far off the engines' frames are."""
+    if lines.empty:
+        return "No engine that was asked is built for frames."
     said = [
-        f"{in_words(preset)} by up to {scientific(part['largest_error'].max())} "
-        f"(median {scientific(part['median_error'].median())}{_wrong(part)})"
-        for preset, part in _by_preset(lines)
+        f"{in_words(preset)} by up to {share(found['largest_error'].max())} "
+        f"(median {share(found['median_error'].median())}{_wrong(found)})"
+        for preset, found in _by_preset(lines)
     ]
     return f"The peak of a rocking frame is off {', '.join(said)}."
 
 
 def slide_sentence(lines: pd.DataFrame) -> str:
     """Say for each preset how far off the slips are, and who creeps or lifts."""
+    if lines.empty:
+        return "No engine was asked about slides."
     said = [
         f"{in_words(preset)} by up to {_mm(part['largest_slip_error_m'].max())}"
         for preset, part in _by_preset(lines)

@@ -102,9 +102,10 @@ def needed(rows: Sequence[Row]) -> Sequence[Row]:
 
 def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
-    whole = pd.DataFrame(rows)
-    parts = {name: whole[whole["scene"] == name].dropna(axis="columns", how="all")
-             for name in ("frame", "slide")}  # fmt: skip
+    parts = {
+        name: pd.DataFrame([row for row in rows if row["scene"] == name])
+        for name in ("frame", "slide")
+    }
     return {
         **parts,
         "frame-summary": frame_summary(parts["frame"]),
@@ -179,8 +180,9 @@ def headline(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw the errors of frames and slides from their summaries alone."""
+    """Draw the errors of frames and slides, where there are any, from their summaries alone."""
     from studies.scenes.figure import draw_frames, draw_slides
 
     frames, slides = engines_in(folder)
-    return {"frame": draw_frames(frames), "slide": draw_slides(slides)}
+    drawn = {"frame": (draw_frames, frames), "slide": (draw_slides, slides)}
+    return {name: draw(lines) for name, (draw, lines) in drawn.items() if not lines.empty}
