@@ -83,7 +83,7 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
     _, _, _, rows, events = lists
     first = runs[0]
     if first.slide.on:
-        see_slide(first.slide, events[0], first.pace.time, pose_in(state, 0))
+        see_slide(first.slide, rows[0], events[0], first.pace.time, pose_in(state, 0))
         return not (first.slide.done or first.slide.problem)
     see_spread(first.spread, state)
     goes_on = False
@@ -161,10 +161,10 @@ class Look:
         ground = np.array(rows_of(scene.motion.segments().tolist()))
         table = timetable(scene, dt_s, resolution.time_s)
         rows = np.zeros((len(self.runs), 0, len(Row._fields)))
-        if scene.times is not None and rocking:
-            rows = np.array([[Row(0.0, 0.0, *scene.start)]] * rocking)
+        if scene.times is not None:
+            rows = np.array([[Row(0.0, 0.0, *scene.start)]] * len(self.runs))
             for run in self.runs:
-                run.watch.rows = 1
+                run.watch.rows = run.slide.rows = 1
         self.lists: Lists = (ground, *table, rows, np.zeros((len(self.runs), 0, 4)))
         self._times, self._alpha = scene.times, scene.system.alpha
         self._numbers = np.zeros(len(Step._fields))
@@ -190,7 +190,8 @@ class Look:
         """Make room for what so many looks may write down."""
         *_, rows, events = self.lists
         if self._times is not None:
-            rows = roomy(rows, max(watch.rows for watch in self.watches), looks)
+            kept = max(*(watch.rows for watch in self.watches), self.runs[0].slide.rows)
+            rows = roomy(rows, kept, looks)
         # the response completes one more
         used = max(*(watch.events for watch in self.watches), self.runs[0].slide.slips)
         events = roomy(events, used, EVENTS_A_LOOK * looks + 1)
@@ -229,17 +230,18 @@ class Look:
         *_, rows, events = self.lists
         first = self.runs[0]
         if first.slide.on:
-            found = slide_response(first.slide, events[0])
+            history = self._history(rows[0, : first.slide.rows])
+            found = slide_response(first.slide, events[0], history)
         else:
             each = [
-                response_of(run.watch, events[number], self._history(run.watch, rows[number]))
-                for number, run in enumerate(self.runs)
+                response_of(run.watch, its_events, self._history(its_rows[: run.watch.rows]))
+                for run, its_rows, its_events in zip(self.runs, rows, events, strict=True)
             ]
             found = together(each, observables_of(first.spread, self._alpha))
         return replace(found, steps=steps, wall_s=wall_s)
 
-    def _history(self, watch: Watch, rows: FloatArray) -> History | None:
-        return None if self._times is None else sample(rows[: watch.rows], self._times)
+    def _history(self, rows: FloatArray) -> History | None:
+        return None if self._times is None else sample(rows, self._times)
 
 
 def compile_look() -> None:

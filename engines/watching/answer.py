@@ -19,7 +19,7 @@ from engines.watching.observe import (
     Watch,
     complete,
 )
-from engines.watching.sliding import DISTANCE, SINCE, Slide
+from engines.watching.sliding import DISTANCE, SINCE, Slide, end_slip
 from engines.watching.sliding import WHEN as STOP
 from engines.watching.sliding import observables_of as observables_of_slide
 
@@ -91,8 +91,10 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
     )
 
 
-def slide_response(slide: Slide, slips: FloatArray) -> Response:
-    """Return what was seen of a box that slides."""
+def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> Response:
+    """Return what was seen of a box that slides; the last slip counts as far as it got."""
+    end_slip(slide, slips, slide.time, slide.place)
+    slide.way = 0.0
     seen = slips[: slide.slips]
     slid = Outcome.SLID if slide.slips else Outcome.AT_REST
     return Response(
@@ -102,5 +104,6 @@ def slide_response(slide: Slide, slips: FloatArray) -> Response:
         slip_times=tuple(map(tuple, seen[:, [SINCE, STOP]].tolist())),
         slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
         sink_m=float(slide.depth),
+        history=history,
         observables=observables_of_slide(slide),
     )

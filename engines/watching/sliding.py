@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from engines.parts.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
 from engines.watching.observe import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
+from engines.watching.swing import Row, put
 from engines.world import Pose
 
 SLIP_RATE = 3e-4
@@ -35,8 +36,10 @@ class Slide(State):
         Velocity up to which it does not slide [m/s], and how long not to be at rest [s].
     motion_end, end : float
         End of the motion and of the observation [s].
-    slips : int
-        How many have ended.
+    keeps_rows : bool
+        Whether a history is wanted.
+    rows, slips : int
+        How many rows there are, and how many slips have ended.
     place, time : float
         Last place relative to the base [m], and when [s].
     way : float
@@ -59,6 +62,8 @@ class Slide(State):
     still: float
     motion_end: float
     end: float
+    keeps_rows: bool
+    rows: int
     slips: int
     place: float
     time: float
@@ -87,25 +92,26 @@ def begin_slide(slide: Slide, scene: Scene) -> None:
         still=STILL_TIME * math.sqrt(body.width / gravity),
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
+        keeps_rows=scene.times is not None,
         place=body.at.x - body.home[0],
         origin=body.at.x - body.home[0],
     )
 
 
 @shared
-def see_slide(slide: Slide, slips: FloatArray, time: float, pose: Pose) -> None:
-    """Take in the pose at `time` [s]."""
+def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, pose: Pose) -> None:
+    """Take in the pose at `time` [s]; a row has place and velocity for rotation and rate."""
     if not math.isfinite(pose.x + pose.z + pose.theta + pose.rate):
         slide.problem = DIVERGED
         return
     place = pose.x - slide.home
     velocity = (place - slide.place) / (time - slide.time)
+    if slide.keeps_rows:
+        put(rows, slide.rows, Row(time, 0.5 * (slide.time + time), place, velocity))
+        slide.rows += 1
     way = math.copysign(1.0, velocity) if abs(velocity) > slide.slow else 0.0
     if way != slide.way:
-        if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
-            slips[slide.slips, WHEN], slips[slide.slips, SINCE] = time, slide.since
-            slips[slide.slips, DISTANCE] = place - slide.origin
-            slide.slips += 1
+        end_slip(slide, slips, time, place)
         slide.since, slide.origin, slide.way = slide.time, slide.place, way
         if way == 0.0:
             slide.since, slide.origin = time, place
@@ -121,6 +127,16 @@ def see_slide(slide: Slide, slips: FloatArray, time: float, pose: Pose) -> None:
     rests = slide.way == 0.0 and time - slide.since >= slide.still
     over = time >= slide.motion_end and slide.end == math.inf and rests
     slide.done = slide.overturned or over or time >= slide.end
+
+
+@shared
+def end_slip(slide: Slide, slips: FloatArray, time: float, place: float) -> None:
+    """Write down the slip that is under way, if there is one, as ended at a time [s] and place."""
+    if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
+        number = slide.slips
+        slips[number, WHEN], slips[number, SINCE] = time, slide.since
+        slips[number, DISTANCE] = place - slide.origin
+        slide.slips += 1
 
 
 def observables_of(slide: Slide) -> Mapping[str, float]:

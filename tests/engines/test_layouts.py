@@ -100,6 +100,20 @@ def test_a_launched_box_stops() -> None:
         assert found.slip_times[0][1] == pytest.approx(12.0 / 9.81, rel=1e-3)
 
 
+def test_a_slide_that_is_cut_short_counts_as_far_as_it_got() -> None:
+    """As the closed form counts it, with the places on the way."""
+    box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
+    asked = {"start": (0.0, 6.0), "duration": 0.5, "times": [0.1, 0.3, 0.5]}
+    exact = simulate(box, Still(), **asked)  # type: ignore[arg-type]
+    found = run("pymunk", Scene(system=box, motion=Still(), preset="fixed", **asked))  # type: ignore[arg-type]
+    assert found.outcome is exact.outcome is Outcome.SLID
+    # of first order in a step of 1e-4 s at 6 m/s
+    assert found.slips == pytest.approx(exact.slips, abs=1e-3)
+    assert found.history is not None and exact.history is not None
+    assert found.history.theta == pytest.approx(exact.history.theta, abs=1e-3)
+    assert found.history.velocity == pytest.approx(exact.history.velocity, abs=1e-2)
+
+
 def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:
     response = run("newton", Scene(system=frame(1.0), motion=SINE))
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
