@@ -120,6 +120,14 @@ class Layout(NamedTuple):
     contacts: tuple[Contact, ...]
     rocking: int
 
+    def faces(self, body: int) -> list[int]:
+        """Return by which of its faces' corners a body touches others."""
+        return [contact.face for contact in self.contacts if contact.body == body]
+
+    def rests(self, body: int) -> bool:
+        """Say whether a body rests on the corners of others."""
+        return any(contact.on == body for contact in self.contacts)
+
     def carried(self, contact: Contact) -> float:
         """Return the mass [kg] that a contact carries: what its lower body's share is of all above.
 

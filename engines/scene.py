@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 from analytic.checks import finite, positive
 from analytic.motion import SEGMENT_COLUMNS, Motion
-from analytic.slide import SlidingBlock
 from engines.hints import TRUE, Hints
 from engines.layouts import Body, Layout, System, layout_of
 
@@ -100,12 +99,12 @@ class Scene:
     compiled: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "start", self._checked_start(self.start))
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
         one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "step", "time_limit_s", "max_steps"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, positive(name, getattr(self, name)))
+        object.__setattr__(self, "start", self._checked_start(self.start))
         if self.friction is None:
             object.__setattr__(self, "friction", getattr(self.system, "friction", None))
         else:
@@ -124,8 +123,8 @@ class Scene:
             words = "it must be theta [rad] and theta' [rad/s]"
             raise ValueError(f"start is {start!r}; {words}") from None
         theta, rate = finite("theta of the start", theta), finite("rate of the start", rate)
-        if isinstance(self.system, SlidingBlock):
-            return theta, rate  # place [m] and velocity [m/s]
+        if not layout_of(self.system, self.density, self.depth, (theta, rate)).rocking:
+            return theta, rate  # of what slides: place [m] and velocity [m/s]
         if abs(theta) >= 0.5 * math.pi:
             words = "it must be between -pi/2 and pi/2 rad"
             raise ValueError(f"theta of the start is {theta!r}; {words}")

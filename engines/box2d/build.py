@@ -41,11 +41,11 @@ def numbers(scene: Scene, s: Box2DSettings, dt_s: float) -> SimpleNamespace:
 
 def of_body(scene: Scene, number: int, unit: float, sunk: float) -> SimpleNamespace:
     """Return the numbers of a body, and of the corners by which it touches others."""
-    body, contacts = scene.bodies[number], scene.layout.contacts
+    body = scene.bodies[number]
     at, x, z = body.at, 0.5 * body.width * unit, 0.5 * body.height * unit
     corners = [
         SimpleNamespace(at=(side * x, contact.face * z), **filtered(contact.on, k))
-        for contact in contacts
+        for contact in scene.layout.contacts
         if contact.body == number
         for k, side in enumerate((-1.0, 1.0))
     ]
@@ -53,7 +53,7 @@ def of_body(scene: Scene, number: int, unit: float, sunk: float) -> SimpleNamesp
         **{"x": x, "z": z, "mass": body.mass, "inertia": body.inertia[1] * unit**2},
         **{"place": (at.x * unit, at.z * unit - sunk), "angle": -at.theta, "at_rest": at.at_rest},
         **{"velocity": (at.velocity_x * unit, at.velocity_z * unit), "rate": -at.rate},
-        **{"corners": corners, "carried": any(contact.on == number for contact in contacts)},
+        **{"corners": corners, "carried": scene.layout.rests(number)},
     )
 
 

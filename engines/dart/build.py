@@ -23,7 +23,7 @@ from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
 from engines.parts.script import Script, defined, filled, settings_of
-from engines.parts.shapes import corner_spheres, fall, floor_half_size, half_size
+from engines.parts.shapes import fall, floor_half_size, half_size, touching_spheres
 from engines.parts.units import counted
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
@@ -43,20 +43,16 @@ def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
 def of_body(scene: Scene, number: int, s: DartSettings) -> SimpleNamespace:
     """Return the numbers of a body, and of the corners by which it touches others."""
     body, unit, radius = scene.bodies[number], s.unit, s.corner_radius * scene.system.width
-    at, contacts, half = body.at, scene.layout.contacts, counted(half_size(body), unit)
-    faces = [contact.face for contact in contacts if contact.body == number]
-    corners = [
-        counted(corner, unit)
-        for face in faces
-        for corner in corner_spheres(body, radius, planar=s.planar, face=face)
-    ]
+    at, half = body.at, counted(half_size(body), unit)
+    spheres = touching_spheres(scene, number, radius, planar=s.planar)
+    corners = [counted(corner, unit) for corner in spheres]
     return SimpleNamespace(
         **{"half": half, "size": [2.0 * x for x in half], "corners": corners},
         **{"mass": body.mass, "inertia": tuple(unit * unit * moment for moment in body.inertia)},
         places=(at.x * unit, at.z * unit, at.theta),
         speeds=(at.velocity_x * unit, at.velocity_z * unit, at.rate),
         **{"named": f"block{number or ''}", "box": s.geometry == "box"},
-        carried=any(contact.on == number for contact in contacts),
+        carried=scene.layout.rests(number),
     )
 
 

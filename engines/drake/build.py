@@ -25,7 +25,7 @@ from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.script import Script, filled, settings_of
 from engines.parts.settings import given
-from engines.parts.shapes import corner_spheres, half_size
+from engines.parts.shapes import half_size, touching_spheres
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
@@ -64,23 +64,15 @@ def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
 
 def of_body(scene: Scene, number: int, s: DrakeSettings) -> SimpleNamespace:
     """Return the numbers of a body, and of the corners by which it touches others."""
-    body, radius, contacts = (
-        scene.bodies[number],
-        s.corner_radius * scene.system.width,
-        scene.layout.contacts,
-    )
+    body, radius = scene.bodies[number], s.corner_radius * scene.system.width
     at, name = body.at, f"block{number or ''}"
-    corners = [
-        list(corner)
-        for contact in contacts
-        if contact.body == number
-        for corner in corner_spheres(body, radius, planar=s.planar, face=contact.face)
-    ]
+    spheres = touching_spheres(scene, number, radius, planar=s.planar)
+    corners = [list(corner) for corner in spheres]
     return SimpleNamespace(
         **{"name": name, "on_base": f"{name} on the base", "in_plane": f"{name} in the plane"},
         **{"mass": body.mass, "size": [2.0 * half for half in half_size(body)]},
         **{"corners": corners, "box": s.geometry == "box", "ball": f"{name} corner"},
-        carried=any(contact.on == number for contact in contacts),
+        carried=scene.layout.rests(number),
         **{"state": [at.z, at.x, at.theta], "speeds": [at.velocity_z, at.velocity_x, at.rate]},
         **{"theta": at.theta, "place": [at.x, 0.0, at.z]},
         **{"spin": [0.0, at.rate, 0.0], "velocity": [at.velocity_x, 0.0, at.velocity_z]},

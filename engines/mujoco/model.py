@@ -100,8 +100,7 @@ def _geoms(scene: Scene, number: int, s: MujocoSettings) -> dict[str, str]:
             geoms |= {
                 name: f'{shape} pos="{_row(at)}"' for name, at in zip(names, corners, strict=True)
             }
-    touched = any(contact.on == number for contact in scene.layout.contacts)
-    return geoms | box if touched else geoms
+    return geoms | box if scene.layout.rests(number) else geoms
 
 
 def corner_names(order: int, s: MujocoSettings) -> list[str]:

@@ -52,6 +52,15 @@ def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER
     return [(side, depth, face * (z - radius)) for side in (-x, x) for depth in depths]
 
 
+def touching_spheres(scene: Scene, body: int, radius: float, *, planar: bool) -> list[Point]:
+    """Return the centres [m] of spheres at all corners by which a body touches others."""
+    return [
+        corner
+        for face in scene.layout.faces(body)
+        for corner in corner_spheres(scene.bodies[body], radius, planar=planar, face=face)
+    ]
+
+
 def hull_points(body: Body) -> list[Point]:
     """Return the eight corners of a body [m], relative to its centre."""
     x, y, z = half_size(body)

@@ -7,7 +7,13 @@ from typing import Any
 
 from engines.layouts import Body
 from engines.parts.settings import given
-from engines.parts.shapes import Point, corner_spheres, floor_half_size, half_size, hull_points
+from engines.parts.shapes import (
+    Point,
+    floor_half_size,
+    half_size,
+    hull_points,
+    touching_spheres,
+)
 from engines.pybullet.settings import SOLVERS, BulletSettings
 from engines.scene import Scene
 
@@ -79,17 +85,13 @@ def base_shape(scene: Scene, s: BulletSettings) -> Call:
 
 def body_shape(scene: Scene, number: int, s: BulletSettings, dt_s: float) -> Call:
     """Return the call that makes what a body touches others with, or is touched on."""
-    body, contacts = scene.bodies[number], scene.layout.contacts
-    if s.geometry == "box" or any(contact.on == number for contact in contacts):
+    body = scene.bodies[number]
+    if s.geometry == "box" or scene.layout.rests(number):
         return _shape("GEOM_BOX", halfExtents=half_size(body))
     if s.geometry == "hull":
         return _shape("GEOM_MESH", vertices=hull_points(body))
-    radius, faces = corner_radius(scene, s, dt_s), (c.face for c in contacts if c.body == number)
-    corners = [
-        corner
-        for face in faces
-        for corner in corner_spheres(body, radius, planar=s.planar, face=face)
-    ]
+    radius = corner_radius(scene, s, dt_s)
+    corners = touching_spheres(scene, number, radius, planar=s.planar)
     spheres = {
         "shapeTypes": [Constant("GEOM_SPHERE")] * len(corners),
         "radii": [radius] * len(corners),

@@ -18,7 +18,7 @@ from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
 from engines.parts.script import Script, filled, settings_of
-from engines.parts.shapes import corner_spheres, half_size
+from engines.parts.shapes import half_size, touching_spheres
 from engines.parts.units import counted
 from engines.rapier.settings import RapierSettings
 from engines.scene import Scene
@@ -43,13 +43,9 @@ def numbers(scene: Scene, s: RapierSettings) -> SimpleNamespace:
 def of_body(scene: Scene, number: int, s: RapierSettings, radius: float) -> SimpleNamespace:
     """Return the numbers of a body, with balls of a radius [m] at the corners that touch others."""
     body, unit, sunk = scene.bodies[number], s.unit_of(scene), s.sunk_of(scene)
-    at, contacts = body.at, scene.layout.contacts
-    corners = [
-        counted(corner, unit)
-        for contact in contacts
-        if contact.body == number
-        for corner in corner_spheres(body, radius, planar=s.planar, face=contact.face)
-    ]
+    at = body.at
+    spheres = touching_spheres(scene, number, radius, planar=s.planar)
+    corners = [counted(corner, unit) for corner in spheres]
     return SimpleNamespace(
         **{"half": counted(half_size(body), unit), "corners": corners},
         **{"mass": body.mass, "density": body.density / unit**3},
@@ -57,7 +53,7 @@ def of_body(scene: Scene, number: int, s: RapierSettings, radius: float) -> Simp
         **{"place": (at.x * unit, 0.0, at.z * unit - sunk), "at_rest": at.at_rest},
         **{"turn": (0.0, at.theta, 0.0), "spin": (0.0, at.rate, 0.0)},
         velocity=(at.velocity_x * unit, 0.0, at.velocity_z * unit),
-        carried=any(contact.on == number for contact in contacts),
+        carried=scene.layout.rests(number),
     )
 
 

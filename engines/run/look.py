@@ -23,14 +23,10 @@ from engines.scene import Scene
 from engines.watching.answer import problem_of, response_of, slide_response, together
 from engines.watching.frame import Spread, begin_spread, observables_of, see_spread
 from engines.watching.history import sample
-from engines.watching.observe import (
-    EVENTS_A_LOOK,
-    Watch,
-    begin_watch,
-    see,
-)
+from engines.watching.observe import see
 from engines.watching.sliding import Slide, begin_slide, see_slide
 from engines.watching.swing import Row
+from engines.watching.watch import EVENTS_A_LOOK, Watch, begin_watch
 from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution, Step
 
 Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]

@@ -6,7 +6,11 @@ from dataclasses import replace
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.parts.compiled import FloatArray
-from engines.watching.observe import (
+from engines.watching.observe import complete
+from engines.watching.sliding import DISTANCE, SINCE, Slide, end_slip
+from engines.watching.sliding import WHEN as STOP
+from engines.watching.sliding import observables_of as observables_of_slide
+from engines.watching.watch import (
     DIVERGED,
     IMPACT,
     KIND,
@@ -17,11 +21,7 @@ from engines.watching.observe import (
     UPLIFT,
     WHEN,
     Watch,
-    complete,
 )
-from engines.watching.sliding import DISTANCE, SINCE, Slide, end_slip
-from engines.watching.sliding import WHEN as STOP
-from engines.watching.sliding import observables_of as observables_of_slide
 
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 from engines.parts.compiled import FloatArray, State, fill, shared
 from engines.scene import Scene
-from engines.watching.observe import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
 from engines.watching.swing import Row, put
+from engines.watching.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
 from engines.world import Pose
 
 SLIP_RATE = 3e-4
