@@ -43,7 +43,54 @@ class Rocker(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RigidBlock:
+class Upright:
+    """A homogeneous rectangular block that stands on its base, and what its sizes alone say.
+
+    Parameters
+    ----------
+    width, height : float
+        Full dimensions B and H [m].
+    gravity : float, optional
+        g [m/s2].
+
+    Raises
+    ------
+    ValueError
+        If one is not positive and finite, or it or alpha not of a size whose square floating point
+        holds.
+    """
+
+    width: float
+    height: float
+    gravity: float = GRAVITY
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height", "gravity"):
+            object.__setattr__(self, name, measurable(name, getattr(self, name)))
+        if not LEAST <= self.alpha < 0.5 * math.pi:
+            raise ValueError(
+                f"width is {self.width!r} and height {self.height!r}; alpha, which follows as"
+                f" {self.alpha!r}, must be from {LEAST:g} to below pi/2"
+            )
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle atan(B/H) [rad]; also the critical rotation."""
+        return math.atan2(self.width, self.height)
+
+    @property
+    def R(self) -> float:  # noqa: N802
+        """Half of the diagonal [m]."""
+        return 0.5 * math.hypot(self.width, self.height)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter sqrt(3g / 4R) [rad/s] of the block alone."""
+        return math.sqrt(0.75 * self.gravity / self.R)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidBlock(Upright):
     """A homogeneous rectangular rigid block, free-standing on a rigid base.
 
     Parameters
@@ -64,38 +111,27 @@ class RigidBlock:
         also if a dimension, gravity or alpha is not of a size whose square floating point holds.
     """
 
-    width: float
-    height: float
-    gravity: float = GRAVITY
     restitution: float = math.nan
 
     def __post_init__(self) -> None:
-        for name in ("width", "height", "gravity"):
-            object.__setattr__(self, name, measurable(name, getattr(self, name)))
-        if not LEAST <= self.alpha < 0.5 * math.pi:
-            raise ValueError(
-                f"width is {self.width!r} and height {self.height!r}; alpha, which follows as"
-                f" {self.alpha!r}, must be from {LEAST:g} to below pi/2"
-            )
-        if math.isnan(self.restitution):
-            object.__setattr__(self, "restitution", max(housner_restitution(self.alpha), 0.0))
-        elif not 0.0 <= self.restitution <= 1.0:
-            raise ValueError(f"restitution is {self.restitution!r}; it must be between 0 and 1")
+        Upright.__post_init__(self)
+        usual = housner_restitution(self.alpha)
+        object.__setattr__(self, "restitution", restitution_or(self.restitution, usual))
 
-    @property
-    def alpha(self) -> float:
-        """Slenderness angle atan(B/H) [rad]; also the critical rotation of the block."""
-        return math.atan2(self.width, self.height)
 
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of the diagonal [m]."""
-        return 0.5 * math.hypot(self.width, self.height)
+def restitution_or(given: float, usual: float) -> float:
+    """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for nan.
 
-    @property
-    def p(self) -> float:
-        """Frequency parameter sqrt(3g / 4R) [rad/s]."""
-        return math.sqrt(0.75 * self.gravity / self.R)
+    Raises
+    ------
+    ValueError
+        If it is outside [0, 1].
+    """
+    if math.isnan(given):
+        return max(usual, 0.0)
+    if not 0.0 <= given <= 1.0:
+        raise ValueError(f"restitution is {given!r}; it must be between 0 and 1")
+    return given
 
 
 def housner_restitution(alpha: float) -> float:

@@ -3,12 +3,12 @@
 import math
 from dataclasses import dataclass
 
-from analytic.block import GRAVITY, RigidBlock
+from analytic.block import Upright
 from analytic.checks import finite
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CartBlock:
+class CartBlock(Upright):
     """A free-standing block on a cart that rolls freely, or is held by a spring.
 
     The cart is pushed by the force (m + M) u'', u'' being the acceleration of the motion: a heavy
@@ -32,42 +32,17 @@ class CartBlock:
         what `RigidBlock` takes.
     """
 
-    width: float
-    height: float
     mass_ratio: float
     stiffness: float = 0.0
-    gravity: float = GRAVITY
 
     def __post_init__(self) -> None:
-        block = RigidBlock(width=self.width, height=self.height, gravity=self.gravity)
-        for name in ("width", "height", "gravity"):
-            object.__setattr__(self, name, getattr(block, name))
+        Upright.__post_init__(self)
         object.__setattr__(self, "mass_ratio", finite("mass_ratio", self.mass_ratio))
         object.__setattr__(self, "stiffness", finite("stiffness", self.stiffness))
         if not 0.0 < self.mass_ratio < 1.0:
             raise ValueError(f"mass_ratio is {self.mass_ratio!r}; it must be between 0 and 1")
         if self.stiffness < 0.0:
             raise ValueError(f"stiffness is {self.stiffness!r}; it must not be negative")
-
-    @property
-    def block(self) -> RigidBlock:
-        """The block on a base that feels nothing."""
-        return RigidBlock(width=self.width, height=self.height, gravity=self.gravity)
-
-    @property
-    def alpha(self) -> float:
-        """Slenderness angle atan(B/H) [rad]."""
-        return self.block.alpha
-
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of the diagonal [m]."""
-        return self.block.R
-
-    @property
-    def p(self) -> float:
-        """Frequency parameter of the block [rad/s], sqrt(3g/4R): that of no motion here."""
-        return self.block.p
 
     @property
     def restitution(self) -> float:

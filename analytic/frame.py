@@ -3,12 +3,12 @@
 import math
 from dataclasses import dataclass
 
-from analytic.block import GRAVITY, RigidBlock
+from analytic.block import RigidBlock, Upright, restitution_or
 from analytic.checks import finite, measurable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RockingFrame:
+class RockingFrame(Upright):
     """Equal free-standing columns that carry a free beam; every contact can only press.
 
     The columns turn together and the beam moves without turning, whatever their distance; theta is
@@ -39,11 +39,8 @@ class RockingFrame:
     Makris and Vassiliou (2013), Earthquake Engineering and Structural Dynamics 42; EQUATIONS.md.
     """
 
-    width: float
-    height: float
     columns: int = 2
     load: float
-    gravity: float = GRAVITY
     restitution: float = math.nan
 
     def __post_init__(self) -> None:
@@ -53,27 +50,9 @@ class RockingFrame:
             raise ValueError(f"columns is {self.columns!r}; it must be {allowed}")
         object.__setattr__(self, "columns", int(count))
         object.__setattr__(self, "load", measurable("load", self.load))
-        column = RigidBlock(
-            width=self.width,
-            height=self.height,
-            gravity=self.gravity,
-            restitution=self.restitution,
-        )
-        for name in ("width", "height", "gravity"):
-            object.__setattr__(self, name, getattr(column, name))
-        if math.isnan(self.restitution):
-            eta = max(frame_restitution(column.alpha, self.load), 0.0)
-            object.__setattr__(self, "restitution", eta)
-
-    @property
-    def alpha(self) -> float:
-        """Slenderness angle atan(B/H) of a column [rad]; also the critical rotation."""
-        return math.atan2(self.width, self.height)
-
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of the diagonal of a column [m]."""
-        return 0.5 * math.hypot(self.width, self.height)
+        Upright.__post_init__(self)
+        usual = frame_restitution(self.alpha, self.load)
+        object.__setattr__(self, "restitution", restitution_or(self.restitution, usual))
 
     @property
     def p(self) -> float:

@@ -1,14 +1,13 @@
 """The sliding block: so squat, or on a base so smooth, that it slides and never tips."""
 
-import math
 from dataclasses import dataclass
 
-from analytic.block import GRAVITY
+from analytic.block import Upright
 from analytic.checks import measurable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SlidingBlock:
+class SlidingBlock(Upright):
     """A rectangular rigid block that slides flat on its base, by Coulomb's friction.
 
     Parameters
@@ -26,33 +25,15 @@ class SlidingBlock:
         If a number is not positive and finite, or the friction is B/H or more: the block would tip.
     """
 
-    width: float
-    height: float
     friction: float
-    gravity: float = GRAVITY
 
     def __post_init__(self) -> None:
-        for name in ("width", "height", "friction", "gravity"):
-            object.__setattr__(self, name, measurable(name, getattr(self, name)))
+        Upright.__post_init__(self)
+        object.__setattr__(self, "friction", measurable("friction", self.friction))
         slender = self.width / self.height
         if not self.friction < slender:
             allowed = f"below width/height, {slender!r}, from which on the block tips"
             raise ValueError(f"friction is {self.friction!r}; it must be {allowed}")
-
-    @property
-    def alpha(self) -> float:
-        """Slenderness angle atan(B/H) [rad]."""
-        return math.atan2(self.width, self.height)
-
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of the diagonal [m]."""
-        return 0.5 * math.hypot(self.width, self.height)
-
-    @property
-    def p(self) -> float:
-        """Frequency parameter sqrt(3g / 4R) [rad/s] of the block, were it to rock."""
-        return math.sqrt(0.75 * self.gravity / self.R)
 
     @property
     def limit(self) -> float:
