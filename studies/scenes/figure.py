@@ -13,6 +13,10 @@ LOWEST = 1e-7
 """Smaller errors are drawn here."""
 
 
+ROOM = 30.0
+"""By how much the axis is longer where words stand beside a bar."""
+
+
 def draw_frames(lines: pd.DataFrame) -> Figure:
     """Draw for each engine and preset a bar from the median to the largest error of the peak.
 
@@ -31,6 +35,8 @@ def draw_frames(lines: pd.DataFrame) -> Figure:
         if row["wrong"]:
             words = f"   {row['wrong']} of {row['frames']} fall wrongly"
             axes.text(most, y, words, va="center", fontsize=8, color=colour, clip_on=False)
+    if lines["wrong"].any():
+        axes.set_xlim(right=ROOM * axes.get_xlim()[1])
     axes.set_xlabel("error of the largest rotation of a column, relative  [–]")
     return figure
 
