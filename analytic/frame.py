@@ -19,7 +19,8 @@ class RockingFrame(Upright):
     width, height : float
         Full dimensions B and H of a column [m].
     columns : int, optional
-        N, 2 or more. The motion does not depend on it.
+        N, 2 or more. The motion does not depend on it; of 3 or more columns other motions are
+        possible too, in which one runs ahead of the beam (EQUATIONS.md).
     load : float
         gamma, the mass of the beam over that of all columns.
     gravity : float, optional
