@@ -16,12 +16,12 @@ It holds
 
 - a frozen settings class, whose defaults are the library's own (`engines.parts.settings`); one
   setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),
-  ``planar`` (False frees a body in space) and ``base_velocity`` (False moves the base by position
-  alone) are called so, because studies put them back;
+  ``planar`` (False frees a body in space) and ``floor`` (how a base that moves is moved, among
+  which "position" is by position alone) are called so, because studies put them back;
 - a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``state``, ``fault``, ``close``.
   It starts from `Scene.bodies`. A `Step` carries all that it needs: the gravity that gives the
   velocity its kick, along the base too where the frame is "base", and the base's velocity and
-  place where it is "world";
+  place where it is "world", in which an adapter may say how far the base lags (``lag_m``);
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
 - where it can be, ``script``: the scene in the library's own words, by which `rocking export`
@@ -31,8 +31,9 @@ It holds
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
-  as its own tutorial uses it) to the best there is, what the studies try of its contact, and what
-  its users should know first (`rules`), each with the variant that shows what it is worth.
+  as its own documentation shows it, each setting with its source) to the best there is, what the
+  studies try of its contact, and what its users should know first (`rules`), each with the variant
+  that shows what it is worth.
 
 The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
 declaration; every study reads it, and none names an engine.

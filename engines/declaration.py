@@ -5,7 +5,7 @@ import importlib.util
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
@@ -49,8 +49,20 @@ class Precision(enum.Enum):
     SINGLE = 2.0**-24
 
 
+class Source(NamedTuple):
+    """Where documentation says what a preset sets: a page, a file or a header, and the version."""
+
+    setting: str
+    value: str
+    where: str
+
+
+AT_REST = "naive-base-at-rest"
+"""The library as it is documented, but for its floor: that is at rest, and gravity aimed anew."""
+
 TITLES = {
-    "naive": "the library's defaults",
+    "naive": "as its documentation shows it",
+    AT_REST: "the same on a base at rest",
     "fixed": "best at a fixed step",
     "landing": "steps that land on impacts",
 }
@@ -64,7 +76,7 @@ class Preset:
     Attributes
     ----------
     name : str
-        "naive", "fixed", ...; "naive" is the library as a first-time user meets it.
+        "naive", "fixed", ...; "naive" is the library as its own documentation shows it.
     title : str
         What a reader is told it is, where `TITLES` does not say it.
     settings : dataclass
@@ -72,8 +84,12 @@ class Preset:
     stepping : Stepping
     step : float
         p dt of equal steps, unless they are the library's own.
-    step_s, step_source : float, str
-        The library's own step [s], and where it stands.
+    step_s : float
+        The library's own step [s].
+    documented : tuple of Source
+        Of "naive": what its documentation sets, and where it says so, the step among it.
+    frame : str
+        One of `FRAMES`, where a scene does not say.
     contact_s : float
         Time [s] of a contact that does not follow the step; nan where it does, or has none.
     dial : pair or None
@@ -96,7 +112,8 @@ class Preset:
     stepping: Stepping = Stepping.FIXED
     step: float = math.nan
     step_s: float = math.nan
-    step_source: str = ""
+    documented: tuple[Source, ...] = ()
+    frame: str = "base"
     contact_s: float = math.nan
     dial: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
@@ -112,6 +129,14 @@ class Preset:
                 f"step, step_s of preset {self.name!r} are {self.step!r}, {self.step_s!r}; "
                 "equal steps need one of them, other steps none"
             )
+
+    def posed(self, scene: Scene) -> Scene:
+        """Return a scene that says where the base moves."""
+        return scene if scene.frame else replace(scene, frame=self.frame)
+
+    def at_rest(self) -> "Preset":
+        """Return the same on a base at rest, of which no documentation speaks."""
+        return replace(self, name=AT_REST, title=TITLES[AT_REST], frame="base", documented=())
 
     def chosen(self, scene: Scene) -> Any:
         """Return its settings for a scene, with the scene's own in their place.
@@ -186,8 +211,8 @@ class Engine:
         Up to how many ordinary steps long one of a block at rest may be; 1 where how the block
         lies depends on the step.
     script : callable or None
-        ``(scene, settings, dt_s) -> Script``: a scene on a base at rest in the library's own words,
-        in the ordinary steps dt_s [s]. Without it an engine can be neither exported nor quoted.
+        ``(scene, settings, dt_s) -> Script``: a scene in the library's own words, in the ordinary
+        steps dt_s [s]. Without it an engine can be neither exported nor quoted.
     spring : callable or None
         ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
         m/time^2 with critical damping, both arguments in units of 1/p.
@@ -284,8 +309,9 @@ class Engine:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
         if preset.stacked is None and Ability.STACKED in asks:
             return f"{self.name}:{preset.name} is not built here for {Ability.STACKED.value}"
-        if scene.frame not in self.frames:
-            return f"{self.title} has no frame {scene.frame!r}"
+        frame = preset.posed(scene).frame
+        if frame not in self.frames:
+            return f"{self.title} has no frame {frame!r}"
         if wanted in GEOMETRIES and wanted not in self.geometries:
             return f"{self.title} has no geometry {wanted!r}"
         if scene.settings.get("planar") is False and not self.spatial:

@@ -46,7 +46,7 @@ class Scene:
         One of `ACCURACIES`, for presets whose steps land on impacts or are the engine's own.
     frame : str, optional
         "base": the base is at rest and the block carries the body force -m u_g''; "world": the
-        base moves.
+        base moves. By default as the preset does it.
     density : float, optional
         [kg/m3].
     depth : float, optional
@@ -85,7 +85,7 @@ class Scene:
     start: tuple[float, float] = (0.0, 0.0)
     preset: str | None = None
     accuracy: str = "standard"
-    frame: str = "base"
+    frame: str | None = None
     density: float = 1000.0
     depth: float | None = None
     friction: float | None = None
@@ -100,7 +100,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
-        one_of("frame", self.frame, FRAMES)
+        if self.frame is not None:
+            one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "step", "time_limit_s", "max_steps"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, positive(name, getattr(self, name)))

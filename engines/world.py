@@ -118,7 +118,11 @@ class Pose(NamedTuple):
 
 
 class World(Protocol):
-    """A built scene, its bodies where and as fast as `Scene.bodies` says."""
+    """A built scene, its bodies where and as fast as `Scene.bodies` says.
+
+    One whose base moves may have an attribute ``lag_m``: how far [m] the base was at most, at the
+    end of a step, from where it should have been. The state is relative to where it really is.
+    """
 
     @property
     def moment(self) -> Moment:

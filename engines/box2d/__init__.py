@@ -2,7 +2,7 @@
 
 from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld, script
 from engines.box2d.settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Source, Stepping
 from engines.layouts import Ability
 
 ENGINE = Engine(
@@ -18,7 +18,7 @@ ENGINE = Engine(
             name="naive",
             settings=Box2DSettings(sleeping=False),
             step_s=LIBRARY_STEP_S,
-            step_source=MANUAL,
+            documented=(Source("step", "?", MANUAL),),
             misses=(Miss.MIRROR, Miss.PEAK),
             own={"friction": 0.2, "sleeping": True},
         ),

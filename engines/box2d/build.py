@@ -150,7 +150,7 @@ class Box2DWorld:
         if self.settings.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
             back = min(step.dt_s / before, MOST_REFLECTION)
         at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._moving else 0.0
-        felt = base if self.settings.base_velocity else 0.0
+        felt = base if self.settings.floor == "velocity" else 0.0
         for side, floor in zip((-1.0, 1.0), self._floors, strict=False):
             pivot = step.grip is Grip.REST or step.side in (side, 0.0)
             floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)

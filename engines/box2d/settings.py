@@ -8,12 +8,12 @@ from engines.parts.factors import (
     BEST,
     BY_DEFAULT,
     DEFAULT,
-    MOVING_BASE,
     SLEEP,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, fall, iterations_for
@@ -57,8 +57,8 @@ class Box2DSettings(Counted):
         Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
     sleeping : bool
         Whether a block that has hardly moved for half a second is no longer simulated.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     restitution : float
         Coefficient of the block; of a pair the library takes the larger one.
     """
@@ -75,7 +75,7 @@ class Box2DSettings(Counted):
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     sleeping: bool = True
-    base_velocity: bool = True
+    floor: str = setting("velocity", names=("velocity", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
@@ -122,7 +122,7 @@ FACTORS = (
     factor("continuous"),
     factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
     ASLEEP,
-    MOVING_BASE,
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 

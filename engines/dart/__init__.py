@@ -2,7 +2,7 @@
 
 from engines.dart.build import DartWorld, script
 from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, Source, Stepping
 from engines.layouts import Ability
 
 ENGINE = Engine(
@@ -18,7 +18,7 @@ ENGINE = Engine(
             name="naive",
             settings=DartSettings(),
             step_s=1e-3,
-            step_source="the world's own time step, 0.001 s",
+            documented=(Source("step", "?", "the world's own time step, 0.001 s"),),
         ),
         Preset(
             name="fixed",

@@ -222,7 +222,8 @@ class DartWorld:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
         self._ground.setPositions((self._place, 0.0, 0.0))
-        speed = step.base_velocity * self._unit if self._moving and self._s.base_velocity else 0.0
+        moved = self._moving and self._s.floor == "velocity"
+        speed = step.base_velocity * self._unit if moved else 0.0
         along, up = speed, 0.0
         if back:
             corner = (step.side * self._half[0], 0.0, -self._half[2])

@@ -6,12 +6,12 @@ from engines.parts.factors import (
     BEST,
     BOTH,
     DEFAULT,
-    MOVING_BASE,
     UNMOVED_BASE,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 
@@ -74,8 +74,8 @@ class DartSettings:
     reflection : bool
         Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
         impact and the first one after it.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     restitution : float or None
         Coefficient of the block.
     base_restitution : float
@@ -95,7 +95,7 @@ class DartSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     margin: float | None = setting(above=0.0)
     reflection: bool = False
-    base_velocity: bool = True
+    floor: str = setting("velocity", names=("velocity", "position"))
     restitution: float | None = setting(least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -152,7 +152,7 @@ FACTORS = (
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
     factor("friction"),
-    MOVING_BASE,
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 

@@ -1,6 +1,6 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Miss, Preset, Stepping
+from engines.declaration import Engine, Miss, Preset, Source, Stepping
 from engines.drake.build import DrakeWorld, script
 from engines.drake.settings import CONTROLLED, FACTORS, RULES, TUNED, DrakeSettings
 from engines.layouts import Ability
@@ -18,7 +18,7 @@ ENGINE = Engine(
             name="naive",
             settings=DrakeSettings(),
             step_s=1e-3,
-            step_source="MultibodyPlantConfig's own time_step, 0.001 s",
+            documented=(Source("step", "?", "MultibodyPlantConfig's own time_step, 0.001 s"),),
             misses=(Miss.PEAK,),
             own={"friction": 0.5},
         ),

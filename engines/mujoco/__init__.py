@@ -1,6 +1,6 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, Source, Stepping
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.script import script
@@ -29,7 +29,7 @@ ENGINE = Engine(
             name="naive",
             settings=MujocoSettings(),
             step_s=LIBRARY_STEP_S,
-            step_source="the library's own timestep, 0.002 s",
+            documented=(Source("step", "?", "the library's own timestep, 0.002 s"),),
             contact_s=DEFAULT_CONTACT_S,
         ),
         Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),

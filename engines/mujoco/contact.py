@@ -142,7 +142,7 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
         held,
         planar=s.planar,
         moving=scene.frame == "world",
-        base_velocity=s.base_velocity,
+        base_velocity=s.floor == "surfacevel",
         width=scene.system.width,
         height=0.5 * scene.system.height,
         damping=s.damping or 0.0,

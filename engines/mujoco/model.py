@@ -71,12 +71,12 @@ def named(shape: str, number: int) -> str:
 
 
 def _base(scene: Scene, s: MujocoSettings) -> str:
-    if scene.frame == "base":
+    if scene.frame != "world":
         return f'<geom name="base" type="plane" size="1 1 1" {_friction(s)}/>'
     # a plane may not move, so a box does; any surface velocity will do to switch it on
     return (
         f'<body mocap="true" pos="0 0 {-scene.bodies[0].height}"><geom name="base" type="box" '
-        f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.base_velocity)} 0 0" '
+        f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.floor == "surfacevel")} 0 0" '
         f"{_friction(s)}/></body>"
     )
 

@@ -6,12 +6,12 @@ from typing import Any
 from engines.parts.factors import (
     BOTH,
     DEFAULT,
-    MOVING_BASE,
     UNMOVED_BASE,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
@@ -66,8 +66,8 @@ class MujocoSettings:
         with one zero for its own default, and goes on.
     margin : float or None
         Gap, over the width, from which on a contact acts.
-    base_velocity : bool
-        Give a moving base the velocity that friction feels; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "surfacevel", or by "position" alone.
     by_phase : bool
         Use `stiffness` at rest alone.
     reflection : bool
@@ -104,7 +104,7 @@ class MujocoSettings:
     noslip_iterations: int | None = setting(least=0)
     solref: tuple[float, float] | None = None
     margin: float | None = setting(least=0.0)
-    base_velocity: bool = True
+    floor: str = setting("surfacevel", names=("surfacevel", "position"))
 
     def __post_init__(self) -> None:
         check(self)
@@ -214,7 +214,7 @@ FACTORS = (
             level("planar box", (DEFAULT,), planar=True),
         ),
     ),
-    MOVING_BASE,
+    moving_base("surfacevel", "position"),
 )
 """What its contact can be set to."""
 

@@ -1,6 +1,6 @@
 """Newton: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Precision, Preset
+from engines.declaration import Engine, Precision, Preset, Source
 from engines.newton.build import NewtonWorld, script
 from engines.newton.settings import FACTORS, RULES, TUNED, NewtonSettings
 
@@ -17,7 +17,11 @@ ENGINE = Engine(
             title="the library's example",
             settings=NewtonSettings(),
             step_s=2e-3,
-            step_source="the library's own example basic_shapes, 5 substeps of 1/100 s",
+            documented=(
+                Source(
+                    "step", "?", "the library's own example basic_shapes, 5 substeps of 1/100 s"
+                ),
+            ),
         ),
         Preset(name="fixed", settings=TUNED, step=1e-3),
     ),

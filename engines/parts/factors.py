@@ -104,20 +104,27 @@ class Rule:
 
 UNMOVED = "a base without a velocity: friction does not feel it"
 
-MOVING_BASE = Factor(
-    "moving base",
-    ("base_velocity",),
-    (
-        Level(name="with its velocity", settings={"base_velocity": True}, scene={"frame": "world"}),
+BY_POSITION = "by position alone"
+MOVING_BASE = "moving base"
+"""Name of the factor of how a base that moves is moved, and of the way that no friction feels."""
+
+
+def moving_base(*floors: str) -> Factor:
+    """Return the factor of a base that moves in the world, in ways of the setting `floor`.
+
+    The first one is that of the tuned presets; "position" is the base moved by position alone.
+    """
+    levels = [
         Level(
-            name="by position alone",
-            settings={"base_velocity": False},
-            trap=UNMOVED,
+            name=BY_POSITION if floor == "position" else f"by {floor}",
+            settings={"floor": floor},
+            trap=UNMOVED if floor == "position" else "",
             scene={"frame": "world"},
-        ),
-    ),
-)
-"""The base that moves in the world, or is moved by position alone (setting `base_velocity`)."""
+        )
+        for floor in floors
+    ]
+    return Factor(MOVING_BASE, ("floor",), tuple(levels), by_default=False)
+
 
 ASLEEP = Factor(
     "sleeping",
@@ -137,5 +144,5 @@ ASLEEP = Factor(
 SLEEP = (DEFAULT, ASLEEP.name, ASLEEP.levels[0].name)
 """What a rule about it is shown by."""
 
-UNMOVED_BASE = (BEST, MOVING_BASE.name, MOVING_BASE.levels[1].name)
+UNMOVED_BASE = (BEST, MOVING_BASE, BY_POSITION)
 """What a rule about such a base is shown by."""

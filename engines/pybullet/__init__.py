@@ -1,6 +1,6 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, Source, Stepping
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.script import script
@@ -29,7 +29,7 @@ ENGINE = Engine(
             name="naive",
             settings=BulletSettings(),
             step_s=LIBRARY_STEP_S,
-            step_source="the library's own time step, 1/240 s",
+            documented=(Source("step", "?", "the library's own time step, 1/240 s"),),
             own={"friction": 0.5},
         ),
         Preset(name="fixed", settings=TUNED, step=5e-4, stacked=STACKED),

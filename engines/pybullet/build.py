@@ -168,7 +168,7 @@ class BulletWorld:
 
     def _move_base(self, step: Step) -> None:
         p, client = self._p, self._client
-        if self._s.base_velocity:
+        if self._s.floor == "velocity":
             velocity = (step.base_velocity, 0.0, 0.0)
             p.resetBaseVelocity(self._base, velocity, physicsClientId=client)
             return

@@ -99,7 +99,7 @@ def begin_hold(held: Hold, scene: Scene, s: BulletSettings, dt_s: float) -> None
         held,
         by_phase=s.by_phase,
         moving=scene.frame == "world",
-        base_velocity=s.base_velocity,
+        base_velocity=s.floor == "velocity",
         contact_erp=s.contact_erp or 0.0,
         friction_erp=s.friction_erp or 0.0,
         level=base_place(scene, s)[2],

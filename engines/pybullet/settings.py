@@ -9,11 +9,11 @@ from engines.parts.factors import (
     BOTH,
     BY_DEFAULT,
     DEFAULT,
-    MOVING_BASE,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 from engines.parts.shapes import iterations_for
@@ -83,8 +83,8 @@ class BulletSettings:
         Correct no positions in the short steps around an impact, and no slip at rest.
     base_geometry : str
         "plane" or "box".
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     solver : str or None
         Of the contacts: "sequential impulse", "PGS" or "Dantzig".
     warm_starting : float or None
@@ -120,7 +120,7 @@ class BulletSettings:
     gap_by_step: bool = False
     by_phase: bool = False
     base_geometry: str = setting("plane", names=("plane", "box"))
-    base_velocity: bool = True
+    floor: str = setting("velocity", names=("velocity", "position"))
     solver: str | None = setting(names=tuple(SOLVERS))
     warm_starting: float | None = setting(least=0.0, most=1.0)
     split_impulse: bool | None = None
@@ -231,7 +231,7 @@ FACTORS = (
     ),
     factor("warm_starting", level("off", warm_starting=0.0), level("0.95", warm_starting=0.95)),
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
-    MOVING_BASE,
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 

@@ -1,6 +1,6 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Preset, Source, Stepping
 from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld, script
 from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
@@ -18,7 +18,7 @@ ENGINE = Engine(
             name="naive",
             settings=PymunkSettings(),
             step_s=LIBRARY_STEP_S,
-            step_source=README,
+            documented=(Source("step", "?", README),),
             misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
             own={"friction": 0.0},
         ),

@@ -178,7 +178,7 @@ class PymunkWorld:
         self._space.gravity = (step.pull_x * step.dt_s / dt, step.pull_z * step.dt_s / dt)
         if self.settings.geometry == "corners":
             self._hold(step)
-        if self._moving and self.settings.base_velocity:
+        if self._moving and self.settings.floor == "velocity":
             self._base.velocity = (step.base_velocity, 0.0)
         self._space.step(dt)
         if self._moving:

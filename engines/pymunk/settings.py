@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from engines.parts.factors import (
     DEFAULT,
     LEFT_OUT,
-    MOVING_BASE,
     OWN_STEP,
     OWN_STEPS,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, fall, iterations_for
@@ -45,8 +45,8 @@ class PymunkSettings:
     reflection : bool
         Give the pivot's velocity back while the block turns about it, by elasticity and surface
         velocity.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     restitution : float
         Coefficient of the corners, which have it as their `elasticity`; a box has none.
     base_restitution : float
@@ -62,7 +62,7 @@ class PymunkSettings:
     positions: bool = False
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
-    base_velocity: bool = True
+    floor: str = setting("velocity", names=("velocity", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -103,7 +103,7 @@ FACTORS = (
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
     factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
     factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
-    MOVING_BASE,
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 

@@ -1,6 +1,6 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Source, Stepping
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
@@ -18,7 +18,7 @@ ENGINE = Engine(
             name="naive",
             settings=RapierSettings(sleeping=False),
             step_s=1.0 / 60.0,
-            step_source="the library's own time step, 1/60 s",
+            documented=(Source("step", "?", "the library's own time step, 1/60 s"),),
             misses=(Miss.MIRROR,),
             own={"friction": 0.5, "sleeping": True},
         ),

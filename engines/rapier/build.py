@@ -190,7 +190,7 @@ class RapierWorld:
     def _drive(self, step: Step) -> None:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
-        moved = self._moving and self._s.base_velocity
+        moved = self._moving and self._s.floor == "velocity"
         speed = step.base_velocity * self._unit if moved else 0.0
         slip = 0.0
         if back:

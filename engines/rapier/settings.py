@@ -9,12 +9,12 @@ from engines.parts.factors import (
     BOTH,
     BY_DEFAULT,
     DEFAULT,
-    MOVING_BASE,
     SLEEP,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM, Point, floor_half_size, iterations_for
@@ -76,8 +76,8 @@ class RapierSettings(Counted):
     reflection : bool
         Give the sliding velocity of the corner about which the block turns back to it, by the
         velocity of the base; not in the steps of an impact.
-    base_velocity : bool
-        Give a moving base its velocity; else it is moved by position alone.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     restitution : float
         Coefficient of the block.
     base_restitution : float or None
@@ -104,7 +104,7 @@ class RapierSettings(Counted):
     base_depth: float = setting(1.0, above=0.0)
     corner_radius: float = setting(1e-5, above=0.0)
     reflection: bool = False
-    base_velocity: bool = True
+    floor: str = setting("velocity", names=("velocity", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float | None = setting(least=0.0, most=1.0)
 
@@ -206,7 +206,7 @@ FACTORS = (
         level("H/1000", corner_radius=1e-3),
         level("1e-7 H", corner_radius=1e-7),
     ),
-    MOVING_BASE,
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 

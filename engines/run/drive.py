@@ -21,6 +21,9 @@ from engines.world import (
     World,
 )
 
+LAG = "floor_lag_m"
+"""Observable: how far [m] a base that moves was from where it should have been, at most."""
+
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""
 
@@ -53,6 +56,7 @@ def run(engine: str, scene: Scene) -> Response:
     began = perf_counter()
     asked = find(engine)
     preset = asked.used_for(scene)
+    scene = preset.posed(scene)
     try:
         world = build(asked, scene)
     except NotAvailableError as error:
@@ -88,7 +92,7 @@ def build(engine: Engine, scene: Scene) -> World:
     lacking = engine.lacks(scene, preset)
     if lacking:
         raise NotAvailableError(f"not available: {lacking}")
-    settings = preset.chosen(scene)
+    settings, scene = preset.chosen(scene), preset.posed(scene)
     try:
         return engine.build(scene, settings, preset.ordinary_step_s(scene))
     except ImportError as error:
@@ -123,7 +127,15 @@ def simulate_world(
     if problem:
         reason, message = problem
         return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
-    return look.response(steps=steps, wall_s=wall_s)
+    return _with_lag(look.response(steps=steps, wall_s=wall_s), world)
+
+
+def _with_lag(response: Response, world: World) -> Response:
+    """Return a response that says how far a base that moves was from where it should have been."""
+    lag = getattr(world, "lag_m", None)
+    if lag is None:
+        return response
+    return replace(response, observables={**response.observables, LAG: float(lag)})
 
 
 def driven(look: Look, world: World) -> Callable[[int], int] | None:

@@ -93,7 +93,7 @@ def begin_pace(
         dt=dt_s,
         part=moment.value,
         gravity=scene.system.gravity,
-        felt=scene.frame == "base",
+        felt=scene.frame != "world",
     )
     begin_times(pace.times, scene, dt_s, resolution.time_s)
     begin_landing(pace.landing, scene, dt_s, moment, resolution)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
+from engines.declaration import AT_REST
 from engines.parts.factors import (
     AS_BEST,
     BEST,
@@ -17,7 +18,7 @@ from engines.parts.factors import (
     Factor,
 )
 
-MOVED = f"{OWN_STEP}, the base moving in the world"
+STILL = f"{OWN_STEP}, on a base at rest"
 """The defaults at their own step once more, in the other frame."""
 
 
@@ -43,7 +44,7 @@ def variants(engine: str) -> Iterator[Variant]:
     """Yield every way to set an engine, each preset as it is before what differs from it."""
     declared = ENGINES[engine]
     presets = {preset.name: preset.title for preset in declared.presets}
-    for name in [name for name in presets if name not in BOTH]:
+    for name in [name for name in presets if name not in (*BOTH, AT_REST)]:
         yield Variant(engine=engine, preset=name, factor="", level=presets[name])
         yield from _left_out(engine, name)
     for name in [name for name in BOTH if name in presets]:
@@ -51,8 +52,8 @@ def variants(engine: str) -> Iterator[Variant]:
         if name == DEFAULT:
             own = Variant(engine=engine, preset=name, factor=OWN_STEPS, level=OWN_STEP)
             yield own
-            if "world" in declared.frames:
-                yield replace(own, level=MOVED, scene={"frame": "world"})
+            if declared.preset(name).frame == "world":
+                yield replace(own, level=STILL, scene={"frame": "base"})
         for factor_ in declared.factors:
             if set(BOTH) <= presets.keys():
                 yield from _exchanged(engine, name, factor_)

@@ -13,7 +13,7 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.parts.factors import BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS, Rule
-from studies.cases.variants import MOVED
+from studies.cases.variants import STILL
 from studies.measures.differences import scientific
 from studies.measures.presets import in_order, in_words
 from studies.measures.words import listed, part
@@ -179,7 +179,7 @@ def frames(lines: pd.DataFrame) -> list[tuple[str, str, str]]:
     found = []
     for engine in lines["engine"].unique():
         still, moved = (
-            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (OWN_STEP, MOVED)
+            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (STILL, OWN_STEP)
         )
         if still is not None and moved is not None:
             found.append((str(engine), error_words(still), error_words(moved)))

@@ -82,7 +82,8 @@ def script_of(engine: Engine, preset: Preset, scene: Scene) -> Script:
     """
     if engine.script is None:
         raise ValueError(f"{engine.title} writes no scripts")
-    return engine.script(scene, preset.chosen(scene), preset.ordinary_step_s(scene))
+    settings = preset.chosen(scene)
+    return engine.script(preset.posed(scene), settings, preset.ordinary_step_s(scene))
 
 
 def block_text(what: Exported, script: Script) -> str:
@@ -102,6 +103,7 @@ def block_text(what: Exported, script: Script) -> str:
         packages=packages,
         beside="".join(f", {name}" for name in script.files),
         script=script,
+        moves=what.preset.posed(what.scene).frame == "world",
         block=what.scene.system,
         start=what.scene.start,
         dt_s=what.preset.ordinary_step_s(what.scene),

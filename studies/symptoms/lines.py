@@ -156,18 +156,19 @@ def _preset(mine: pd.DataFrame, name: str, column: str) -> float:
 
 def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
     """Yield what a base that moves by position alone does, and one with its velocity."""
-    asked = mine[mine["factor"] == MOVING_BASE.name]
+    asked = mine[mine["factor"] == MOVING_BASE]
     levels = {str(line["level"]): line for _, line in asked.iterrows()}
-    names = [level.name for level in MOVING_BASE.levels]
-    if set(names) <= set(levels):
+    factors = [factor for factor in ENGINES[engine].factors if factor.name == MOVING_BASE]
+    names = [level.name for factor in factors for level in (factor.levels[0], factor.levels[-1])]
+    if names and set(names) <= set(levels):
         right, wrong = (levels[name] for name in names)
         yield _row(
             UNMOVED,
             engine,
             "max_error",
-            shown_by=f"{MOVING_BASE.name}: {names[1]}",
+            shown_by=f"{MOVING_BASE}: {names[1]}",
             before=_value(wrong),
-            setting=f"{MOVING_BASE.name}: {names[0]}",
+            setting=f"{MOVING_BASE}: {names[0]}",
             after=_value(right),
             tuned=_preset(mine, BEST, "max_error"),
             landing=_preset(mine, "landing", "max_error"),

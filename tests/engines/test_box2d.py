@@ -96,7 +96,7 @@ def test_what_landing_is_helped_by_matters(left_out: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("preset", ["naive", "landing"])
 def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
-    settings = {"base_velocity": False}
+    settings = {"floor": "position"}
     response = run("box2d", scene(MOTION, preset=preset, frame="world", settings=settings))
     assert response.outcome in (Outcome.FAILED, Outcome.AT_REST)
 

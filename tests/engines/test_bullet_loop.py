@@ -89,7 +89,7 @@ def test_where_functions_stand() -> None:
         ("friction_erp", 0.5),
         ("by_phase", False),
         ("moving", False),
-        ("base_velocity", False),
+        ("floor", "position"),
         ("ordinary", 1.0),
     ],
 )

@@ -62,7 +62,7 @@ def test_a_declaration_is_whole(name: str) -> None:
     engine = ENGINES[name]
     assert engine.name == name
     assert engine.presets[0].name == "naive"
-    assert engine.presets[0].step_source
+    assert "step" in [source.setting for source in engine.presets[0].documented]
     assert not engine.presets[0].helped_by
     naive, bare = engine.presets[0], type(engine.presets[0].settings)()
     assert all(getattr(naive.settings, name) != value for name, value in naive.own.items())

@@ -55,7 +55,7 @@ def test_of_a_pair_the_smaller_friction_counts() -> None:
 @pytest.mark.parametrize("preset", ["naive", "landing"])
 def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
     response = run(
-        "dart", scene(MOTION, preset=preset, frame="world", settings={"base_velocity": False})
+        "dart", scene(MOTION, preset=preset, frame="world", settings={"floor": "position"})
     )
     assert response.outcome is Outcome.FAILED
     assert "slid" in response.message

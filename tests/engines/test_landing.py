@@ -327,7 +327,7 @@ def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.Mon
 
     if engine == "pybullet":
         monkeypatch.setattr(bullet.BulletWorld, "_move_base", lambda self, step: None)
-    settings = {"base_velocity": False}
+    settings = {"floor": "position"}
     asked = Scene(system=BLOCK, motion=pulse(1.5, 1.0), frame="world", settings=settings)
     response = run(engine, asked)
     assert response.outcome is not Outcome.ROCKED

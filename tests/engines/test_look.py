@@ -47,7 +47,7 @@ SCENES = {
     },
     "pybullet": {
         **OF_ALL,
-        "base without velocity": {"settings": {"base_velocity": False}, "frame": "world"},
+        "base without velocity": {"settings": {"floor": "position"}, "frame": "world"},
         "same in all phases": {"settings": {"by_phase": False}, "accuracy": "loose"},
         "same gap": {"settings": {"gap_by_step": False}, "accuracy": "loose"},
         "naive on a moving base": {"preset": "naive", "frame": "world"},

@@ -88,6 +88,6 @@ def test_corners_jam_from_four_thirds_on() -> None:
 
 @pytest.mark.parametrize("preset", ["naive", "landing"])
 def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
-    settings = {"base_velocity": False}
+    settings = {"floor": "position"}
     response = run("pymunk", scene(MOTION, preset=preset, frame="world", settings=settings))
     assert response.outcome in (Outcome.FAILED, Outcome.AT_REST)

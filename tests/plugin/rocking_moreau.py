@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, Source, Stepping
 from engines.parts.factors import factor, level
 from engines.parts.settings import check, setting
 from engines.scene import Scene
@@ -158,7 +158,7 @@ ENGINE = Engine(
             title="gaps closed late",
             settings=MoreauSettings(),
             step_s=2e-3,
-            step_source="a choice of its own",
+            documented=(Source("step", "0.002 s", "a choice of its own"),),
         ),
         Preset(name="fixed", settings=TUNED, step=2.5e-4),
         Preset(

@@ -296,6 +296,6 @@ def test_the_defaults_are_asked_at_their_own_step_in_both_frames():
             for v in VARIANTS
             if (v.engine, v.preset, v.factor) == (name, DEFAULT, OWN_STEPS)
         ]
-        frames = [None, "world"] if "world" in ENGINES[name].frames else [None]
+        frames = [None, "base"] if ENGINES[name].preset(DEFAULT).frame == "world" else [None]
         assert [job.options.get("frame") for job in jobs] == frames
         assert not any("step" in job.options for job in jobs)
