@@ -31,6 +31,7 @@ class Miss(enum.Enum):
 
     MIRROR = "shaken the other way, the block does not answer the other way"
     PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
+    SLEEP = "a block that stood still for two seconds sleeps on while it is shaken"
     RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 
@@ -59,6 +60,9 @@ class Source(NamedTuple):
 
 AT_REST = "naive-base-at-rest"
 """The library as it is documented, but for its floor: that is at rest, and gravity aimed anew."""
+
+AS_IT_COMES = ("naive", AT_REST)
+"""Names of the presets that nobody has tuned."""
 
 TITLES = {
     "naive": "as its documentation shows it",
@@ -134,9 +138,10 @@ class Preset:
         """Return a scene that says where the base moves."""
         return scene if scene.frame else replace(scene, frame=self.frame)
 
-    def at_rest(self) -> "Preset":
-        """Return the same on a base at rest, of which no documentation speaks."""
-        return replace(self, name=AT_REST, title=TITLES[AT_REST], frame="base", documented=())
+    def at_rest(self, *misses: Miss) -> "Preset":
+        """Return the same on a base at rest, of which no documentation speaks; see `misses`."""
+        title = TITLES[AT_REST]
+        return replace(self, name=AT_REST, title=title, misses=misses, frame="base", documented=())
 
     def chosen(self, scene: Scene) -> Any:
         """Return its settings for a scene, with the scene's own in their place.

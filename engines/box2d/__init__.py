@@ -1,9 +1,19 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
-from engines.box2d.build import LIBRARY_STEP_S, MANUAL, Box2DWorld, script
-from engines.box2d.settings import FACTORS, LANDING, RULES, TUNED, Box2DSettings
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Source, Stepping
+from engines.box2d.build import LIBRARY_STEP_S, Box2DWorld, script
+from engines.box2d.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, Box2DSettings
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
+
+NAIVE = Preset(
+    name="naive",
+    settings=Box2DSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    misses=(Miss.MIRROR, Miss.PEAK),
+    own={"friction": 0.2},
+)
 
 ENGINE = Engine(
     name="box2d",
@@ -14,14 +24,8 @@ ENGINE = Engine(
     build=Box2DWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=Box2DSettings(sleeping=False),
-            step_s=LIBRARY_STEP_S,
-            documented=(Source("step", "?", MANUAL),),
-            misses=(Miss.MIRROR, Miss.PEAK),
-            own={"friction": 0.2, "sleeping": True},
-        ),
+        NAIVE,
+        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.SLEEP),
         Preset(
             name="fixed",
             settings=TUNED,

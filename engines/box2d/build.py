@@ -26,7 +26,6 @@ MOST_REFLECTION = 2.0
 """A step that is much longer than the one before gives back no more than this part."""
 
 LIBRARY_STEP_S = 1.0 / 60.0
-MANUAL = "the library's own hello world, 1/60 s with 6 and 2 iterations"
 
 
 def numbers(scene: Scene, s: Box2DSettings, dt_s: float) -> SimpleNamespace:
@@ -113,15 +112,19 @@ def build(Box2D: Any, n: Any, s: Any) -> Any:
 
 
 def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Box2D; see `engines.parts.script`."""
+    """Return a scene as calls of Box2D; see `engines.parts.script`."""
     n, s = numbers(scene, settings, dt_s), values(scene, settings)
-    lines = filled(build, n=n, s=s)
+    lines, moves = filled(build, n=n, s=s), scene.frame == "world"
     step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"
     return Script(
         imports=("import Box2D",),
         settings=(step.format(repr(dt_s)), *settings_of(lines)),
         build=tuple(line.text for line in lines),
-        step=(f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}", step.format("DT")),
+        step=(
+            f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}",
+            *("floors[0].linearVelocity = (base_x - floors[0].position.x) / DT, 0.0",) * moves,
+            step.format("DT"),
+        ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),
     )
 
@@ -133,8 +136,8 @@ class Box2DWorld:
 
     def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
         self.settings = settings
-        self._moving = scene.frame == "world"
-        self._dt = self._speed = self._place = 0.0
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._dt = self._speed = self._place = self.lag_m = 0.0
         n, self._values = numbers(scene, settings, dt_s), values(scene, settings)
         self._unit, self._sunk, self._reach = n.unit, n.sunk, n.reach
         self._half = n.bodies[0].x, n.bodies[0].z
@@ -145,15 +148,18 @@ class Box2DWorld:
     def step(self, step: Step) -> None:
         """Advance by a step."""
         self._world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
-        base = step.base_velocity * self._unit if self._moving else 0.0
         back, before, self._dt = 0.0, self._dt, step.dt_s
         if self.settings.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
             back = min(step.dt_s / before, MOST_REFLECTION)
-        at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._moving else 0.0
-        felt = base if self.settings.floor == "velocity" else 0.0
+        led = self._way == "velocity"
+        at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
+        felt = step.base_velocity * self._unit if self._way == "both" else 0.0
         for side, floor in zip((-1.0, 1.0), self._floors, strict=False):
             pivot = step.grip is Grip.REST or step.side in (side, 0.0)
-            floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
+            if led:
+                felt = (step.base_x * self._unit - floor.position.x) / step.dt_s
+            else:
+                floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
             velocity = (felt, 0.0)
             if back and pivot and step.side:
                 x, z = self._body.GetLinearVelocityFromLocalPoint(
@@ -163,7 +169,10 @@ class Box2DWorld:
             floor.linearVelocity = velocity
         s = self._values
         self._world.Step(step.dt_s, s.iterations, s.position_iterations)
-        self._speed, self._place = felt, step.base_x if self._moving else 0.0
+        self._speed, self._place = felt, step.base_x if self._way else 0.0
+        if led:
+            self._place = self._floors[0].position.x / self._unit
+            self.lag_m = max(self.lag_m, abs(self._place - step.base_x))
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""

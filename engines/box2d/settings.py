@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from engines.declaration import Source
 from engines.parts.factors import (
     AS_BEST,
     ASLEEP,
@@ -58,7 +59,8 @@ class Box2DSettings(Counted):
     sleeping : bool
         Whether a block that has hardly moved for half a second is no longer simulated.
     floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
+        by "position" alone.
     restitution : float
         Coefficient of the block; of a pair the library takes the larger one.
     """
@@ -75,7 +77,7 @@ class Box2DSettings(Counted):
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     sleeping: bool = True
-    floor: str = setting("velocity", names=("velocity", "position"))
+    floor: str = setting("velocity", names=("velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
@@ -101,8 +103,11 @@ TUNED = Box2DSettings(
     continuous=False,
     margin=10.0,
     sleeping=False,
+    floor="both",
 )
 LANDING = replace(TUNED, reflection=True)
+
+DOCUMENTED: tuple[Source, ...] = ()
 
 FACTORS = (
     factor("geometry"),
@@ -122,7 +127,7 @@ FACTORS = (
     factor("continuous"),
     factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
     ASLEEP,
-    moving_base("velocity", "position"),
+    moving_base("both", "velocity", "position"),
 )
 """What its contact can be set to."""
 

@@ -1,9 +1,18 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
 from engines.dart.build import DartWorld, script
-from engines.dart.settings import FACTORS, LANDING, RULES, TUNED, DartSettings
-from engines.declaration import Engine, Help, Preset, Source, Stepping
+from engines.dart.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, DartSettings
+from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
+
+NAIVE = Preset(
+    name="naive",
+    settings=DartSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+    misses=(Miss.SLEEP,),
+)
 
 ENGINE = Engine(
     name="dart",
@@ -14,12 +23,8 @@ ENGINE = Engine(
     build=DartWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=DartSettings(),
-            step_s=1e-3,
-            documented=(Source("step", "?", "the world's own time step, 0.001 s"),),
-        ),
+        NAIVE,
+        NAIVE.at_rest(),
         Preset(
             name="fixed",
             settings=TUNED,

@@ -136,16 +136,18 @@ def build(dart: Any, n: Any, s: Any) -> Any:
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of DART; see `engines.parts.script`."""
+    """Return a scene as calls of DART; see `engines.parts.script`."""
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
-    unit, theta = settings.unit, n.coordinates[2]
+    unit, theta, moves = settings.unit, n.coordinates[2], scene.frame == "world"
     return Script(
         imports=("import dartpy as dart",),
         settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
         build=(*(line.text for line in (*defined(touching), *lines)), "world.setTimeStep(DT)"),
         step=(
             f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
+            *(f"ahead = base_x * {unit!r} - drive.getPosition(0)",) * moves,
+            *("drive.setCommands((ahead / DT, 0.0, 0.0))",) * moves,
             "world.step(False)",
         ),
         pose=(f"theta, rate = joints[0].getPosition({theta}), joints[0].getVelocity({theta})",),
@@ -159,8 +161,9 @@ class DartWorld:
 
     def __init__(self, scene: Scene, settings: DartSettings, dt_s: float) -> None:
         self._s, self._unit = settings, settings.unit
-        self._moving = scene.frame == "world"
-        self._driven = self._moving or settings.reflection
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._driven = bool(self._way) or settings.reflection
+        self.lag_m = 0.0
         self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         self._dt = self._speed = self._place = 0.0
         self._pivot: float | None = None
@@ -183,11 +186,17 @@ class DartWorld:
         world.setGravity((step.pull_x * unit, 0.0, step.pull_z * unit))
         if self._margin:
             self._lower(0.0 if step.grip is Grip.REST else step.side)
-        if self._driven:
+        if self._way == "velocity":
+            speed = (step.base_x * unit - self._place) / step.dt_s
+            self._ground.setCommands((speed, 0.0, 0.0))
+        elif self._driven:
             self._drive(step)
         world.step(False)
         self._dt = step.dt_s
-        if self._moving:
+        if self._way == "velocity":
+            self._place = self._ground.getPosition(0)
+            self.lag_m = max(self.lag_m, abs(self._place / unit - step.base_x))
+        elif self._way:
             self._place = step.base_x * unit
 
     def state(self) -> FloatArray:
@@ -222,8 +231,7 @@ class DartWorld:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
         self._ground.setPositions((self._place, 0.0, 0.0))
-        moved = self._moving and self._s.floor == "velocity"
-        speed = step.base_velocity * self._unit if moved else 0.0
+        speed = step.base_velocity * self._unit if self._way == "both" else 0.0
         along, up = speed, 0.0
         if back:
             corner = (step.side * self._half[0], 0.0, -self._half[2])

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from engines.declaration import Source
 from engines.parts.factors import (
     BEST,
     BOTH,
@@ -75,7 +76,8 @@ class DartSettings:
         Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
         impact and the first one after it.
     floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+        How a base that moves is moved: by its "velocity", which the library leads it by; by "both"
+        its place and its velocity; by "position" alone.
     restitution : float or None
         Coefficient of the block.
     base_restitution : float
@@ -95,7 +97,7 @@ class DartSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     margin: float | None = setting(above=0.0)
     reflection: bool = False
-    floor: str = setting("velocity", names=("velocity", "position"))
+    floor: str = setting("velocity", names=("velocity", "both", "position"))
     restitution: float | None = setting(least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -111,12 +113,15 @@ TUNED = DartSettings(
     collision="DART",
     sleeping=False,
     unit=1e5,
+    floor="both",
 )
 
 LANDING = replace(TUNED, margin=0.5, reflection=True)
 
 MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
+
+DOCUMENTED: tuple[Source, ...] = ()
 
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
@@ -152,7 +157,7 @@ FACTORS = (
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
     factor("friction"),
-    moving_base("velocity", "position"),
+    moving_base("both", "velocity", "position"),
 )
 """What its contact can be set to."""
 

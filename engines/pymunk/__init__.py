@@ -1,9 +1,19 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Miss, Preset, Source, Stepping
+from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
-from engines.pymunk.build import LIBRARY_STEP_S, README, PymunkWorld, script
-from engines.pymunk.settings import FACTORS, LANDING, RULES, TUNED, PymunkSettings
+from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
+from engines.pymunk.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, PymunkSettings
+
+NAIVE = Preset(
+    name="naive",
+    settings=PymunkSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+    own={"friction": 0.0},
+)
 
 ENGINE = Engine(
     name="pymunk",
@@ -14,14 +24,8 @@ ENGINE = Engine(
     build=PymunkWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=PymunkSettings(),
-            step_s=LIBRARY_STEP_S,
-            documented=(Source("step", "?", README),),
-            misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
-            own={"friction": 0.0},
-        ),
+        NAIVE,
+        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
         Preset(
             name="fixed",
             settings=TUNED,

@@ -29,7 +29,6 @@ MOST_REFLECTION = 2.0
 """A step that is much longer than the one before gives back no more than this part."""
 
 LIBRARY_STEP_S = 0.02
-README = "the library's own first example, space.step(0.02)"
 
 
 def numbers(scene: Scene, deeper: float = 0.0) -> SimpleNamespace:
@@ -131,8 +130,8 @@ def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
 
 
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of pymunk; see `engines.parts.script`."""
-    s = values(scene, settings, dt_s)
+    """Return a scene as calls of pymunk; see `engines.parts.script`."""
+    s, moves = values(scene, settings, dt_s), scene.frame == "world"
     lines = filled(build, n=numbers(scene), s=s)
     held = defined(hold, s=s) if s.margin else ()
     return Script(
@@ -141,6 +140,7 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
         build=tuple(line.text for line in (*lines, *held)),
         step=(
             *("hold(floors, -bodies[0].angle)",) * bool(held),
+            *("base.velocity = (base_x - base.position.x) / DT, 0.0",) * moves,
             *("space.gravity = pull_x, pull_z", "space.step(DT)"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
@@ -154,14 +154,16 @@ class PymunkWorld:
     def __init__(self, scene: Scene, settings: PymunkSettings, dt_s: float) -> None:
         self.settings = settings
         self._pm: Any = imported("pymunk")
-        self._moving, self._dt = scene.frame == "world", 0.0
+        self._floor = settings.floor if scene.frame == "world" else ""
+        self._dt = self._under = self.lag_m = 0.0
         self._values = values(scene, settings, dt_s)
         n = numbers(scene, self._values.margin if self._values.together else 0.0)
         built = build(self._pm, n, self._values)
         self._space, self._base, self._bodies, self._corners, self._floors = built
         self._at = [(x, c.z) for c in n.contacts for x in (-c.x, c.x)]
         self._state = np.zeros((len(self._bodies), len(Pose._fields)))
-        self._base.position_func = _stay
+        if self._floor != "velocity":
+            self._base.position_func = _stay
         for body in self._bodies if settings.positions else ():
             body.position_func = _stay
         self._fault = self._read_back(scene)
@@ -178,20 +180,27 @@ class PymunkWorld:
         self._space.gravity = (step.pull_x * step.dt_s / dt, step.pull_z * step.dt_s / dt)
         if self.settings.geometry == "corners":
             self._hold(step)
-        if self._moving and self.settings.floor == "velocity":
+        if self._floor == "velocity":
+            self._under = self._base.position.x
+            self._base.velocity = ((step.base_x - self._under) / step.dt_s, 0.0)
+        elif self._floor == "both":
             self._base.velocity = (step.base_velocity, 0.0)
         self._space.step(dt)
-        if self._moving:
-            self._base.position = (step.base_x, 0.0)
+        if self._floor == "velocity":
+            self.lag_m = max(self.lag_m, abs(self._base.position.x - step.base_x))
+        elif self._floor:
+            self._base.position, self._under = (step.base_x, 0.0), step.base_x
         for body in self._bodies if own else ():
             self._pm.Body.update_position(body, step.dt_s)
 
     def state(self) -> FloatArray:
-        """Read the bodies' poses back."""
-        base_x, _ = self._base.position
+        """Read the bodies' poses back.
+
+        A base that the library moves is a step ahead: it carries the bodies in the next one.
+        """
         for number, body in enumerate(self._bodies):
             x, z = body.position
-            self._state[number] = x - base_x, z, -body.angle, -body.angular_velocity
+            self._state[number] = x - self._under, z, -body.angle, -body.angular_velocity
         return self._state
 
     def fault(self) -> str:

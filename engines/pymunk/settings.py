@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from engines.declaration import Source
 from engines.parts.factors import (
     DEFAULT,
     LEFT_OUT,
@@ -46,7 +47,8 @@ class PymunkSettings:
         Give the pivot's velocity back while the block turns about it, by elasticity and surface
         velocity.
     floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
+        by "position" alone.
     restitution : float
         Coefficient of the corners, which have it as their `elasticity`; a box has none.
     base_restitution : float
@@ -62,7 +64,7 @@ class PymunkSettings:
     positions: bool = False
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
-    floor: str = setting("velocity", names=("velocity", "position"))
+    floor: str = setting("velocity", names=("velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -88,8 +90,11 @@ TUNED = PymunkSettings(
     sweeps=20.0,
     bias=0.0,
     margin=10.0,
+    floor="both",
 )
 LANDING = replace(TUNED, positions=True, reflection=True)
+
+DOCUMENTED: tuple[Source, ...] = ()
 
 FACTORS = (
     factor("geometry"),
@@ -103,7 +108,7 @@ FACTORS = (
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
     factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
     factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
-    moving_base("velocity", "position"),
+    moving_base("both", "velocity", "position"),
 )
 """What its contact can be set to."""
 

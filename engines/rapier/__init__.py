@@ -1,9 +1,19 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Source, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
-from engines.rapier.settings import FACTORS, LANDING, RULES, TUNED, RapierSettings
+from engines.rapier.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, RapierSettings
+
+NAIVE = Preset(
+    name="naive",
+    settings=RapierSettings(),
+    step_s=1.0 / 60.0,
+    documented=DOCUMENTED,
+    frame="world",
+    misses=(Miss.MIRROR,),
+    own={"friction": 0.5},
+)
 
 ENGINE = Engine(
     name="rapier",
@@ -14,14 +24,8 @@ ENGINE = Engine(
     build=RapierWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=RapierSettings(sleeping=False),
-            step_s=1.0 / 60.0,
-            documented=(Source("step", "?", "the library's own time step, 1/60 s"),),
-            misses=(Miss.MIRROR,),
-            own={"friction": 0.5, "sleeping": True},
-        ),
+        NAIVE,
+        NAIVE.at_rest(Miss.MIRROR, Miss.SLEEP),
         Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",

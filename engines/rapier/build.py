@@ -60,12 +60,13 @@ def of_body(scene: Scene, number: int, s: RapierSettings, radius: float) -> Simp
 def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
     """Return settings as the library is given them, for ordinary steps dt_s [s]."""
     base = s.restitution if s.base_restitution is None else s.base_restitution
+    target = scene.frame == "world" and s.floor == "target"
     return SimpleNamespace(
         **{"geometry": s.geometry, "planar": s.planar, "aside": not s.locked_aside},
         **{"friction": float(s.friction), "restitution": s.restitution, "base_restitution": base},
         **{"substeps": s.substeps, "iterations": s.iterations_of(scene)},
         **{"stabilization": s.stabilization, "recycling": s.recycling, "coulomb": s.coulomb},
-        **{"warm_starting": s.warm_starting, "sleeping": s.sleeping},
+        **{"warm_starting": s.warm_starting, "sleeping": s.sleeping, "target": target},
         spring=s.spring_of(dt_s),
     )
 
@@ -91,7 +92,10 @@ def build(rapier: Any, n: Any, s: Any) -> Any:
         parameters.contact_softness = parameters.static_contact_softness = spring
     floor = rapier.Collider.cuboid(*n.base_half).translation(n.below)
     floor = floor.friction(s.friction).restitution(s.base_restitution)
-    base = rapier.RigidBody.kinematic_velocity_based().translation(n.lowered)
+    if s.target:
+        base = rapier.RigidBody.kinematic_position_based().translation(n.lowered)
+    else:
+        base = rapier.RigidBody.kinematic_velocity_based().translation(n.lowered)
     base = world.rigid_bodies[world.add_body(base, [floor])]
     bodies = []
     for b in n.bodies:
@@ -121,14 +125,20 @@ def build(rapier: Any, n: Any, s: Any) -> Any:
 
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Rapier; see `engines.parts.script`."""
+    """Return a scene as calls of Rapier; see `engines.parts.script`."""
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
+    moves = scene.frame == "world"
     return Script(
         imports=("import rapier3d as rapier",),
         settings=(f"parameters.dt = {dt_s!r}", *settings_of(lines)),
         build=(*(line.text for line in lines), "parameters.dt = DT"),
-        step=(f"world.gravity = pull_x{times}, 0.0, pull_z{times}", "world.step()"),
+        step=(
+            f"world.gravity = pull_x{times}, 0.0, pull_z{times}",
+            *(f"base.set_next_kinematic_translation((base_x{times}, 0.0, {n.lowered[2]!r}))",)
+            * moves,
+            "world.step()",
+        ),
         pose=(
             "turn = bodies[0].rotation",
             "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[0].angvel.y",
@@ -143,9 +153,10 @@ class RapierWorld:
 
     def __init__(self, scene: Scene, settings: RapierSettings, dt_s: float) -> None:
         self._s, self._alpha = settings, scene.system.alpha
-        self._moving = scene.frame == "world"
-        self._driven = self._moving or settings.reflection
-        self._dt = self._speed = self._place = 0.0
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._led = self._way in ("target", "velocity")
+        self._driven = bool(self._way) or settings.reflection
+        self._dt = self._speed = self._place = self.lag_m = 0.0
         n, s = numbers(scene, settings), values(scene, settings, dt_s)
         self._unit, self._sunk, self._half = n.unit, settings.sunk_of(scene), n.bodies[0].half
         built = build(imported("rapier3d"), n, s)
@@ -158,12 +169,17 @@ class RapierWorld:
         if step.dt_s != self._dt:
             self._parameters.dt = step.dt_s
         self._world.gravity = (step.pull_x * self._unit, 0.0, step.pull_z * self._unit)
-        if self._driven:
+        if self._led:
+            self._lead(step)
+        elif self._driven:
             self._drive(step)
         self._world.step()
         self._dt = step.dt_s
-        if self._moving:
+        if self._way:
             self._place = step.base_x * self._unit
+        if self._led:
+            self._place = self._base.translation.x
+            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
@@ -187,11 +203,18 @@ class RapierWorld:
         """Release the engine's memory."""
         self._world.clear()
 
+    def _lead(self, step: Step) -> None:
+        """Let the library lead the base to its place."""
+        x = step.base_x * self._unit
+        if self._way == "target":
+            self._base.set_next_kinematic_translation((x, 0.0, -self._sunk))
+        else:
+            self._base.linvel = ((x - self._place) / step.dt_s, 0.0, 0.0)
+
     def _drive(self, step: Step) -> None:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
-        moved = self._moving and self._s.floor == "velocity"
-        speed = step.base_velocity * self._unit if moved else 0.0
+        speed = step.base_velocity * self._unit if self._way == "both" else 0.0
         slip = 0.0
         if back:
             corner = (step.side * self._half[0], 0.0, -self._half[2])

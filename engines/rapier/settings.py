@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
+from engines.declaration import Source
 from engines.parts.factors import (
     ASLEEP,
     BEST,
@@ -77,7 +78,8 @@ class RapierSettings(Counted):
         Give the sliding velocity of the corner about which the block turns back to it, by the
         velocity of the base; not in the steps of an impact.
     floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+        How a base that moves is moved: by a "target" for the end of the step or its "velocity",
+        which the library leads it by; by "both" its place and its velocity; by "position" alone.
     restitution : float
         Coefficient of the block.
     base_restitution : float or None
@@ -104,7 +106,7 @@ class RapierSettings(Counted):
     base_depth: float = setting(1.0, above=0.0)
     corner_radius: float = setting(1e-5, above=0.0)
     reflection: bool = False
-    floor: str = setting("velocity", names=("velocity", "position"))
+    floor: str = setting("target", names=("target", "velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float | None = setting(least=0.0, most=1.0)
 
@@ -147,6 +149,7 @@ TUNED = RapierSettings(
     units=1.0,
     centred=True,
     base_depth=0.1,
+    floor="both",
 )
 
 LANDING = replace(TUNED, reflection=True)
@@ -155,6 +158,8 @@ RECYCLED = "a contact of an earlier step: the block slides off its pivot"
 FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
 WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
+
+DOCUMENTED: tuple[Source, ...] = ()
 
 FACTORS = (
     Factor(
@@ -206,7 +211,7 @@ FACTORS = (
         level("H/1000", corner_radius=1e-3),
         level("1e-7 H", corner_radius=1e-7),
     ),
-    moving_base("velocity", "position"),
+    moving_base("both", "target", "velocity", "position"),
 )
 """What its contact can be set to."""
 

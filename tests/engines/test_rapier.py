@@ -93,11 +93,11 @@ def test_a_block_locked_into_the_plane_has_no_friction() -> None:
 def test_gravity_that_changes_wakes_nothing() -> None:
     """A block that was put to sleep at the turn of its motion is no result, and no endless run."""
     motion = pulse(1.3, 0.3)
-    asleep = run("rapier", scene(motion, preset="naive", settings={"sleeping": True}))
+    asleep = run("rapier", scene(motion, preset="naive", frame="base"))
     assert asleep.outcome is Outcome.FAILED
     assert "asleep" in asleep.message or "to sleep" in asleep.message
     assert asleep.steps < 2000
-    awake = run("rapier", scene(motion, preset="naive"))
+    awake = run("rapier", scene(motion, preset="naive", frame="base", settings={"sleeping": False}))
     assert awake.outcome is simulate(BLOCK, motion).outcome
 
 
