@@ -25,7 +25,7 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.SLEEP),
+        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
         Preset(
             name="fixed",
             settings=TUNED,

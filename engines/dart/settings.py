@@ -76,8 +76,9 @@ class DartSettings:
         Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
         impact and the first one after it.
     floor : str
-        How a base that moves is moved: by its "velocity", which the library leads it by; by "both"
-        its place and its velocity; by "position" alone.
+        How a base that moves is moved: by the "velocity" of its joint, or by a "servo" that gives
+        it one, both of which lead it by the library; by "both" its place and its velocity; by
+        "position" alone.
     restitution : float or None
         Coefficient of the block.
     base_restitution : float
@@ -97,7 +98,7 @@ class DartSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     margin: float | None = setting(above=0.0)
     reflection: bool = False
-    floor: str = setting("velocity", names=("velocity", "both", "position"))
+    floor: str = setting("velocity", names=("velocity", "servo", "both", "position"))
     restitution: float | None = setting(least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -157,7 +158,7 @@ FACTORS = (
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
     factor("friction"),
-    moving_base("both", "velocity", "position"),
+    moving_base("both", "velocity", "servo", "position"),
 )
 """What its contact can be set to."""
 

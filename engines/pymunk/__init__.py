@@ -11,7 +11,7 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+    misses=(Miss.MIRROR, Miss.PEAK),
     own={"friction": 0.0},
 )
 

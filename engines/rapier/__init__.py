@@ -25,7 +25,7 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.SLEEP),
+        NAIVE.at_rest(Miss.MIRROR, Miss.RECORD, Miss.SLEEP),
         Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
