@@ -122,7 +122,14 @@ LANDING = replace(TUNED, margin=0.5, reflection=True)
 MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 
-DOCUMENTED: tuple[Source, ...] = ()
+DOCUMENTED = (
+    Source("step", "0.001 s, the default", "World.getTimeStep"),
+    Source("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
+    Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
+    Source("friction", "1, the default", "DynamicsAspect.getFrictionCoeff"),
+    Source("moving floor", "a joint of ActuatorType VELOCITY, setCommands", "JointAspect.hpp"),
+)
+"""What its documentation sets, in dartpy 6.20.0."""
 
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
