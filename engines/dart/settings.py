@@ -127,7 +127,11 @@ DOCUMENTED = (
     Source("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
     Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
     Source("friction", "1, the default", "DynamicsAspect.getFrictionCoeff"),
-    Source("moving floor", "a joint of ActuatorType VELOCITY, setCommands", "JointAspect.hpp"),
+    Source(
+        "moving floor",
+        "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
+        "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
+    ),
 )
 """What its documentation sets, in dartpy 6.20.0."""
 
