@@ -1,7 +1,15 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
 from engines.box2d.build import LIBRARY_STEP_S, Box2DWorld, script
-from engines.box2d.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, Box2DSettings
+from engines.box2d.settings import (
+    DOCUMENTED,
+    FACTORS,
+    LANDING,
+    RECOMMENDED,
+    RULES,
+    TUNED,
+    Box2DSettings,
+)
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 
@@ -26,6 +34,9 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
+        NAIVE.recommended(
+            *RECOMMENDED, misses=(Miss.MIRROR, Miss.PEAK), iterations=8, position_iterations=3
+        ),
         Preset(
             name="fixed",
             settings=TUNED,

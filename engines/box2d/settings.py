@@ -115,6 +115,12 @@ DOCUMENTED = (
 )
 """What its documentation sets, in pybox2d 2.3.10."""
 
+RECOMMENDED = (
+    Source("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
+    Source("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
+)
+"""What it recommends for accurate contact."""
+
 FACTORS = (
     factor("geometry"),
     Factor(

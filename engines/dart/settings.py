@@ -135,6 +135,12 @@ DOCUMENTED = (
 )
 """What its documentation sets, in dartpy 6.20.0."""
 
+RECOMMENDED = (
+    Source("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
+    Source("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
+)
+"""What it recommends: no page of it is on stiff contact."""
+
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
     factor("unit", level("1e3 a metre", unit=1e3), name="unit of length"),

@@ -107,6 +107,16 @@ DOCUMENTED = (
 )
 """What its documentation sets, in pymunk 7.3.1."""
 
+RECOMMENDED = (
+    Source("step", "ten of a tenth", "Space.step: multiple calls with a smaller dt"),
+    Source(
+        "collision_slop",
+        "as high as you can without noticeable overlapping: here 1 mm",
+        "Space.collision_slop",
+    ),
+)
+"""What it recommends for stable and accurate contact."""
+
 FACTORS = (
     factor("geometry"),
     factor("positions", level("moved by the adapter", positions=True), by_default=False),

@@ -173,6 +173,13 @@ DOCUMENTED = (
 )
 """What its documentation sets, in rapier3d 0.36.1."""
 
+RECOMMENDED = (
+    Source("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
+    Source("substeps", "8, for a more accurate simulation", "the same page"),
+    Source("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
+)
+"""What it recommends for accurate contact."""
+
 FACTORS = (
     Factor(
         "contact spring",

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from engines.declaration import AT_REST
+from engines.declaration import AT_REST, RECOMMENDED
 from studies.sources.registry import resolve
 
 Fill = Literal["none", "left", "bottom", "full"]
@@ -51,6 +51,14 @@ PRESETS = {
         varied="one change from the documented settings on a base at rest",
         colour="#E69F00",
         line=":",
+    ),
+    RECOMMENDED: Told(
+        words="as their documentation recommends",
+        short="as recommended",
+        varied="one change from the recommended settings",
+        colour="#56B4E9",
+        line="-.",
+        fill="bottom",
     ),
     "fixed": Told(
         words="with a tuned contact and a fixed step",
