@@ -43,6 +43,7 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     spatial=True,
+    scatter=2e-4,
     script=script,
     factors=FACTORS,
     rules=RULES,
