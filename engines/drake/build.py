@@ -194,8 +194,9 @@ def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     count = len(scene.bodies)
-    velocity = "-base_velocity" if settings.solver == CENIC else "base_velocity"
-    moved = f"desired.FixValue(context, [base_x, {velocity}])"
+    moved = "desired.FixValue(context, [base_x, base_velocity])"
+    if settings.solver == CENIC:
+        moved = "desired.FixValue(context, [base_x, -base_velocity])  # CENIC turns it round"
     return Script(
         imports=("import pydrake.all as drake",),
         settings=settings_of(lines),

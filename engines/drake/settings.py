@@ -8,6 +8,7 @@ from engines.parts.factors import (
     BOTH,
     BY_DEFAULT,
     DEFAULT,
+    UNMOVED_BASE,
     Factor,
     Rule,
     factor,
@@ -191,6 +192,10 @@ RULES = (
     Rule(
         "Keep `dissipation` below 1e3/(p R): friction goes by the last step's normal force",
         *(BEST, "dissipation", "1e4"),
+    ),
+    Rule(
+        "Drive a base that moves, `set_controller_gains`: friction does not feel one that is placed",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""

@@ -10,6 +10,7 @@ from engines.parts.factors import (
     BOTH,
     BY_DEFAULT,
     DEFAULT,
+    UNMOVED_BASE,
     Factor,
     Rule,
     factor,
@@ -138,6 +139,10 @@ RULES = (
         "Set Kamino's `config.constraints.gamma` to 0: it makes speed of a depth, the more of it "
         "the shorter the step",
         *(BEST, "baumgarte", BY_DEFAULT),
+    ),
+    Rule(
+        "Give a kinematic base its `joint_qd` beside `joint_q`: friction does not feel a place",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""

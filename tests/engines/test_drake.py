@@ -208,4 +208,3 @@ def test_what_naive_leaves_is_what_the_library_does_itself() -> None:
     world: Any = build(HERE["drake"], scene(MOTION, preset="naive"))
     assert world._plant.time_step() == bare.time_step
     assert world._plant.get_contact_model().name == "kHydroelasticWithFallback"
-    assert world._plant.stiction_tolerance() == bare.stiction_tolerance
