@@ -194,7 +194,7 @@ RULES = (
         *(BEST, "dissipation", "1e4"),
     ),
     Rule(
-        "Drive a base that moves, `set_controller_gains`: friction does not feel one that is placed",
+        "Drive a base that moves, `set_controller_gains`: friction does not feel one just placed",
         *UNMOVED_BASE,
     ),
 )
