@@ -1,11 +1,12 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Preset, Source, Stepping
+from engines.declaration import Engine, Help, Preset, Stepping
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
     DEFAULT_CONTACT_S,
+    DOCUMENTED,
     FACTORS,
     LANDING,
     RULES,
@@ -16,6 +17,15 @@ from engines.mujoco.settings import (
 )
 from engines.scene import GEOMETRIES
 
+NAIVE = Preset(
+    name="naive",
+    settings=MujocoSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    contact_s=DEFAULT_CONTACT_S,
+)
+
 ENGINE = Engine(
     name="mujoco",
     title="MuJoCo",
@@ -25,13 +35,8 @@ ENGINE = Engine(
     build=world_of,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=MujocoSettings(),
-            step_s=LIBRARY_STEP_S,
-            documented=(Source("step", "?", "the library's own timestep, 0.002 s"),),
-            contact_s=DEFAULT_CONTACT_S,
-        ),
+        NAIVE,
+        NAIVE.at_rest(),
         Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
         Preset(
             name="landing",

@@ -32,10 +32,10 @@ KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrato
 
 
 class MujocoWorld:
-    """A block on a plane, or on a driven box where the base moves.
+    """A block on a plane, or on a box where the base moves.
 
     A driven body has no velocity that friction could feel, so the box is given the surface
-    velocity that its motion has.
+    velocity that its motion has, or is another body, welded to the driven one.
     """
 
     def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
@@ -77,6 +77,11 @@ class MujocoWorld:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
         return INTERPRETED if interpreted() else obstacle()
 
+    @property
+    def lag_m(self) -> float | None:
+        """How far a welded base was from where it should have been; see `engines.world.World`."""
+        return float(self._held.lag) if self._held.welded else None
+
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         read_now(self._holds, self._arrays)
@@ -104,7 +109,7 @@ class MujocoWorld:
             "timestep": (LIBRARY_STEP_S, self._option.timestep),
             "friction": (s.friction, model.geom_friction[-1, 0]),
         }
-        for number, body in enumerate(scene.bodies, len(model.body_mass) - len(scene.bodies)):
+        for number, body in enumerate(scene.bodies, 1 + (scene.frame == "world")):
             pairs[f"mass {number}"] = (body.mass, model.body_mass[number])
             found = model.body_inertia[number]
             pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}

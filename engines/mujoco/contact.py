@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engines.layouts import LOWER, Ability
-from engines.mujoco.model import direct_reference
+from engines.mujoco.model import direct_reference, welded
 from engines.mujoco.settings import MujocoSettings
 from engines.parts.compiled import FloatArray, State, fill, kernel, shared
 from engines.parts.reflection import Reflection, begin_reflection, part_of, take_in
@@ -24,6 +24,9 @@ FEEBLE = 1e-15
 LEAST_HELD = 1e-3
 """Part of what the whole weight would press a corner by, up to which landing holds one at rest."""
 
+FREE, WELDED = 7, 6
+"""Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""
+
 UNSET, SCALED, DIRECT = range(3)
 """Forms of the contact's reference: the library's own, its time constant in steps, b and k."""
 
@@ -33,8 +36,9 @@ class Hold(State):
 
     Attributes
     ----------
-    planar, moving, base_velocity : bool
-        Whether the block has three coordinates, whether the base moves, and with a velocity.
+    planar, moving, base_velocity, welded : bool
+        Whether the block has three coordinates, whether the base moves, with a velocity, or as a
+        body of its own.
     width, height : float
         Of a body that rocks, the half of the latter [m].
     form : int
@@ -57,14 +61,17 @@ class Hold(State):
         Length and end of the last step [s].
     sliding : float
         Damping along the base in this step.
-    moved, velocity : float
-        Place [m] and velocity [m/s] of the base.
+    moved, raised, velocity : float
+        Place [m] and velocity [m/s] of the base, and its height above where it began.
+    lag : float
+        How far [m] a welded base was at most from where it should have been.
     reflection : Reflection
     """
 
     planar: bool
     moving: bool
     base_velocity: bool
+    welded: bool
     width: float
     height: float
     form: int
@@ -90,7 +97,9 @@ class Hold(State):
     time: float
     sliding: float
     moved: float
+    raised: float
     velocity: float
+    lag: float
     reflection: Reflection
 
 
@@ -143,6 +152,7 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
         planar=s.planar,
         moving=scene.frame == "world",
         base_velocity=s.floor == "surfacevel",
+        welded=welded(scene, s),
         width=scene.system.width,
         height=0.5 * scene.system.height,
         damping=s.damping or 0.0,
@@ -233,9 +243,10 @@ def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
     if held.planar:
         x, z = arrays.homes[body, 0], arrays.homes[body, 1]
         i = 3 * body
-        return Pose(q[i] + x - held.moved, q[i + 1] + z, q[i + 2], v[i + 2])
+        return Pose(q[i] + x - held.moved, q[i + 1] + z - held.raised, q[i + 2], v[i + 2])
     i, j = 7 * body, 6 * body
-    return Pose(q[i] - held.moved, q[i + 2], 2.0 * math.atan2(q[i + 5], q[i + 3]), v[j + 4])
+    theta = 2.0 * math.atan2(q[i + 5], q[i + 3])
+    return Pose(q[i] - held.moved, q[i + 2] - held.raised, theta, v[j + 4])
 
 
 @shared
@@ -353,24 +364,35 @@ def gap_of(held: Hold, arrays: Arrays, pair: int) -> float:
 
 @shared
 def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
-    """Set the place from which the base sets out, and its surface velocity."""
+    """Set the place from which the base sets out, and its surface velocity; or where it goes."""
     before, held.velocity = held.velocity, step.base_velocity
     # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
     # moved with the base before moves with the base after
     if held.base_velocity:
         arrays.surface_velocity[0, 0] = before + step.base_kick / held.sliding
-    arrays.base_place[0, 0] = held.moved
+    arrays.base_place[0, 0] = step.base_x if held.welded else held.moved
 
 
 @shared
 def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one."""
     held.moved = step.base_x if held.moving else 0.0
+    if held.welded:
+        look_at_base(held, arrays, step)
     held.time += step.dt_s
     if held.carry != 0.0:
         look_at_yield(held, arrays, forces, step)
     if held.reflects:
         take_in(held.reflection, step, pose_of(held, arrays).rate)
+
+
+@shared
+def look_at_base(held: Hold, arrays: Arrays, step: Step) -> None:
+    """Note where a welded base is, whose joint is the last, and how far off."""
+    at = len(arrays.position) - FREE
+    held.moved = arrays.position[at]
+    held.raised = arrays.position[at + 2] - arrays.base_place[0, 2]
+    held.lag = max(held.lag, abs(held.moved - step.base_x))
 
 
 @shared
@@ -380,20 +402,21 @@ def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> Non
     Where all touch, or all pivots, the solver's contacts are theirs in the order of the pairs; the
     first of those between two bodies speaks for all.
     """
-    pairs, count = arrays.pairs, forces.contacts
+    pairs, count, weld = arrays.pairs, forces.contacts, WELDED if held.welded else 0
     if count == 0:
         return
-    stride, each = forces.rows // count, held.pairs // held.touching
+    stride, each = (forces.rows - weld) // count, held.pairs // held.touching
     whole, pivots = count == held.pairs, count == held.touching * held.corners
     if step.grip == Grip.REST and (whole or not held.stacked):
         for i in range(held.pairs):
-            first = i // each * each * stride if whole else 0
+            first = weld + (i // each * each * stride if whole else 0)
             pairs[i, YIELDS] = forces.resistance[first] * pairs[i, WEIGHT]
             if whole and held.pairs > 1:
-                yielded = forces.resistance[i * stride] * forces.force[i * stride]
+                row = weld + i * stride
+                yielded = forces.resistance[row] * forces.force[row]
                 pairs[i, RESISTED] = yielded * (step.dt_s / step.kick_s)
     elif step.grip == Grip.SWING and pivots:
         for i in range(held.pairs):
-            first = i // each * held.corners * stride
+            first = weld + i // each * held.corners * stride
             yielded = forces.resistance[first] * forces.force[first]
             pairs[i, YIELDS] = yielded * step.dt_s / step.kick_s

@@ -28,6 +28,11 @@ PLANAR_JOINTS = (
 )
 
 
+FLOOR_MASSES = 1000.0
+"""Mass of a welded base over that of the bodies on it. From ten on it hardly matters; but the
+library's own for so large a box, 240000 at equal densities, is where its solver ends too early."""
+
+
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s]."""
     margin = (s.margin or 0.0) * scene.system.width
@@ -35,11 +40,12 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
     common = f'{_friction(s)} margin="{margin}"'
     bodies = "".join(_body(scene, number, s, common) for number in range(len(scene.bodies)))
+    floor, weld = _floor(scene, s) if welded(scene, s) else ("", "")
     contact = f' margin="{margin}" solimp="{_row(impedance_of(scene, s, dt_s) or ())}" '
     pairs = "" if s.impedance is None else "".join(_pairs(scene, s, contact))
     return (
         f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}{bodies}"
-        f"</worldbody><contact>{pairs}</contact></mujoco>"
+        f"{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
     )
 
 
@@ -73,11 +79,29 @@ def named(shape: str, number: int) -> str:
 def _base(scene: Scene, s: MujocoSettings) -> str:
     if scene.frame != "world":
         return f'<geom name="base" type="plane" size="1 1 1" {_friction(s)}/>'
+    place = f'pos="0 0 {-scene.bodies[0].height}"'
+    if welded(scene, s):
+        return f'<body name="guide" mocap="true" {place}/>'
     # a plane may not move, so a box does; any surface velocity will do to switch it on
     return (
-        f'<body mocap="true" pos="0 0 {-scene.bodies[0].height}"><geom name="base" type="box" '
+        f'<body mocap="true" {place}><geom name="base" type="box" '
         f'size="{_row(floor_half_size(scene))}" surfacevel="{int(s.floor == "surfacevel")} 0 0" '
         f"{_friction(s)}/></body>"
+    )
+
+
+def welded(scene: Scene, s: MujocoSettings) -> bool:
+    """Return whether the base is a body of its own, welded to the one that is moved."""
+    return scene.frame == "world" and s.floor == "weld"
+
+
+def _floor(scene: Scene, s: MujocoSettings) -> tuple[str, str]:
+    """Return such a base, whose joint comes after those of the bodies, and its weld."""
+    mass = FLOOR_MASSES * sum(body.mass for body in scene.bodies)
+    return (
+        f'<body name="floor" pos="0 0 {-scene.bodies[0].height}"><freejoint/><geom name="base" '
+        f'type="box" size="{_row(floor_half_size(scene))}" mass="{mass}" {_friction(s)}/></body>',
+        '<equality><weld body1="guide" body2="floor"/></equality>',
     )
 
 
@@ -152,6 +176,9 @@ def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tup
         else:
             places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
             velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+    if welded(scene, s):
+        places += (0.0, 0.0, -scene.bodies[0].height, 1.0, 0.0, 0.0, 0.0)
+        velocities += 6 * (0.0,)
     return tuple(places), tuple(velocities)
 
 

@@ -1,6 +1,8 @@
 """A scene in MuJoCo's own words, for a script that needs the library alone."""
 
-from engines.mujoco.model import coordinates, stepped_xml
+from collections.abc import Iterator
+
+from engines.mujoco.model import coordinates, stepped_xml, welded
 from engines.mujoco.settings import MujocoSettings, kept
 from engines.parts.script import Script
 from engines.scene import Scene
@@ -27,8 +29,20 @@ def _beginning(scene: Scene, s: MujocoSettings) -> tuple[str, ...]:
     return (f"data.qpos[:] = {place}", f"data.qvel[:] = {velocity}")
 
 
+def _step(scene: Scene, s: MujocoSettings) -> Iterator[str]:
+    """Yield lines that take a step; a base without a body of its own is moved after it."""
+    move = ("data.mocap_pos[0, 0] = base_x",) * (scene.frame == "world")
+    if move and s.floor == "surfacevel":
+        yield "model.geom_surfacevel[0, 0] = base_velocity"
+    if welded(scene, s):
+        yield from move
+    yield from ("model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)")
+    if not welded(scene, s):
+        yield from move
+
+
 def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as a model of MuJoCo; see `engines.parts.script`."""
+    """Return a scene as a model of MuJoCo; see `engines.parts.script`."""
     s = kept(scene, s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())
@@ -40,7 +54,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
             "data = mujoco.MjData(model)",
             *_beginning(scene, s),
         ),
-        step=("model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)"),
+        step=tuple(_step(scene, s)),
         pose=PLANAR_POSE if s.planar else FREE_POSE,
         moment=Moment.END if s.integrator == "RK4" else Moment.MIDDLE,
         files={MODEL: model},

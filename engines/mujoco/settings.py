@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from engines.declaration import Source
 from engines.parts.factors import (
     BOTH,
     DEFAULT,
@@ -67,7 +68,8 @@ class MujocoSettings:
     margin : float or None
         Gap, over the width, from which on a contact acts.
     floor : str
-        How a base that moves is moved: by its "surfacevel", or by "position" alone.
+        How a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
+        "position" alone.
     by_phase : bool
         Use `stiffness` at rest alone.
     reflection : bool
@@ -104,7 +106,7 @@ class MujocoSettings:
     noslip_iterations: int | None = setting(least=0)
     solref: tuple[float, float] | None = None
     margin: float | None = setting(least=0.0)
-    floor: str = setting("surfacevel", names=("surfacevel", "position"))
+    floor: str = setting("weld", names=("weld", "surfacevel", "position"))
 
     def __post_init__(self) -> None:
         check(self)
@@ -130,6 +132,7 @@ TUNED = MujocoSettings(
     sliding_damping=1.0,
     stiffness=0.01,
     impedance=(0.9999, 0.9999, 0.001, 0.5, 2.0),
+    floor="surfacevel",
 )
 
 LANDING = replace(
@@ -156,6 +159,26 @@ STEEP = "a pyramid this steep leaves too little normal force"
 ZERO = "one zero makes it the default, 0.02 s 1"
 ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness": None}
 """The direct form of the reference given up."""
+
+REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
+
+DOCUMENTED = (
+    Source("step", "timestep 0.002", f"{REFERENCE}, option"),
+    Source("integrator", "Euler", f"{REFERENCE}, option"),
+    Source("solver", "Newton, iterations 100, tolerance 1e-8", f"{REFERENCE}, option"),
+    Source("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
+    Source("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
+    Source("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
+    Source("friction", "1 0.005 0.0001, as here", f"{REFERENCE}, body/geom"),
+    Source("margin", "0", f"{REFERENCE}, body/geom"),
+    Source(
+        "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
+    ),
+    Source(
+        "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"
+    ),
+)
+"""What the library's documentation says of all that its defaults decide."""
 
 FACTORS = (
     factor(
@@ -214,7 +237,7 @@ FACTORS = (
             level("planar box", (DEFAULT,), planar=True),
         ),
     ),
-    moving_base("surfacevel", "position"),
+    moving_base("surfacevel", "weld", "position"),
 )
 """What its contact can be set to."""
 

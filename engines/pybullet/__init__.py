@@ -1,10 +1,11 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Preset, Source, Stepping
+from engines.declaration import Engine, Help, Preset, Stepping
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
+    DOCUMENTED,
     FACTORS,
     LANDING,
     LIBRARY_STEP_S,
@@ -16,6 +17,15 @@ from engines.pybullet.settings import (
 )
 from engines.scene import GEOMETRIES
 
+NAIVE = Preset(
+    name="naive",
+    settings=BulletSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    own={"friction": 0.5},
+)
+
 ENGINE = Engine(
     name="pybullet",
     title="PyBullet",
@@ -25,13 +35,8 @@ ENGINE = Engine(
     build=BulletWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=BulletSettings(),
-            step_s=LIBRARY_STEP_S,
-            documented=(Source("step", "?", "the library's own time step, 1/240 s"),),
-            own={"friction": 0.5},
-        ),
+        NAIVE,
+        NAIVE.at_rest(),
         Preset(name="fixed", settings=TUNED, step=5e-4, stacked=STACKED),
         Preset(
             name="landing",

@@ -30,7 +30,11 @@ from engines.pybullet.calls import (
     body_call,
     body_of,
     body_shape,
+    constrained,
     engine_call,
+    hold_call,
+    most_force,
+    move_call,
 )
 from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.fast import (
@@ -64,9 +68,9 @@ TRIAL = (
 class BulletWorld:
     """A block on a base in a PyBullet client that no other run uses meanwhile.
 
-    The base is a multibody without mass, whether it moves or not: of the bases PyBullet offers,
-    the only one whose velocity friction feels. On a static rigid body the response to the mirrored
-    motion is not the mirror image.
+    The base is a multibody without mass, whether it moves or not, if no constraint moves it: of
+    the massless bases PyBullet offers, the only one whose velocity friction feels. On a static
+    rigid body the response to the mirrored motion is not the mirror image.
     """
 
     moment = Moment.MIDDLE
@@ -74,7 +78,10 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
-        loops = scene.compiled and not interpreted() and loop_agrees()
+        most, self._due, self._lag = most_force(scene), 0.0, 0.0
+        self._held_by = -1, most
+        self._constrained = constrained(scene, settings)
+        loops = scene.compiled and not self.obstacle
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
         self._grip: Grip | None = None
@@ -82,9 +89,11 @@ class BulletWorld:
         with held_for_all:
             self._set_engine(scene)
             floor = self._do(base_shape(scene, settings))
-            self._base = int(self._do(base_body(floor, self._ground)))
+            self._base = int(self._do(base_body(scene, settings, floor)))
             self._bodies = [self._made(scene, number) for number in range(len(scene.bodies))]
             self._fault = self._set_bodies(scene)
+            if self._constrained:
+                self._held_by = int(self._do(hold_call(scene, settings, self._base))), most
             self._take_inertia(scene)
         self._put(scene)
         self._holds = Hold.blank()
@@ -105,6 +114,7 @@ class BulletWorld:
             self._move_base(step)
         p.setGravity(step.pull_x, 0.0, step.pull_z, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
+        self._due = step.base_x
 
     @property
     def drive(self) -> Driver | None:
@@ -114,6 +124,8 @@ class BulletWorld:
     @property
     def obstacle(self) -> str:
         """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
+        if self._constrained:
+            return "the base is held by a constraint"
         if switched_off() or interpreted():
             return SWITCHED_OFF if switched_off() else INTERPRETED
         if not clients(self._p).size:
@@ -126,14 +138,21 @@ class BulletWorld:
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        p, client, moved = self._p, self._client, 0.0
+        p, client, moved, raised = self._p, self._client, 0.0, 0.0
         if self._moving:
-            moved = p.getBasePositionAndOrientation(self._base, physicsClientId=client)[0][0]
+            (moved, _, z), _ = p.getBasePositionAndOrientation(self._base, physicsClientId=client)
+            raised = z - self._ground[2]
+            self._lag = max(self._lag, abs(moved - self._due))
         for row, body in zip(self._state, self._bodies, strict=True):
             (x, _, z), q = p.getBasePositionAndOrientation(body, physicsClientId=client)
             rate = p.getBaseVelocity(body, physicsClientId=client)[1][1]
-            row[:] = x - moved, z, 2.0 * math.atan2(q[1], q[3]), rate
+            row[:] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
         return self._state
+
+    @property
+    def lag_m(self) -> float | None:
+        """How far a held base was from where it should have been; see `engines.world.World`."""
+        return self._lag if self._constrained else None
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
@@ -167,13 +186,8 @@ class BulletWorld:
             p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
 
     def _move_base(self, step: Step) -> None:
-        p, client = self._p, self._client
-        if self._s.floor == "velocity":
-            velocity = (step.base_velocity, 0.0, 0.0)
-            p.resetBaseVelocity(self._base, velocity, physicsClientId=client)
-            return
-        place, upright = (step.base_x, *self._ground[1:]), (0.0, 0.0, 0.0, 1.0)
-        p.resetBasePositionAndOrientation(self._base, place, upright, physicsClientId=client)
+        place = [step.base_x, *self._ground[1:]]
+        self._do(move_call(self._s, self._base, self._held_by, place, step.base_velocity))
 
     def _erp(self, step: Step) -> dict[str, float]:
         """Return what a step corrects of positions."""

@@ -27,6 +27,16 @@ ROLLED = 0.75
 stays where it was made: from a gap away the library adds a contact, then another, and keeps all."""
 
 
+FLOOR_MASSES = 100.0
+"""Mass of a held base over that of the bodies on it; from ten on it does not matter."""
+
+FLOOR_G = 50.0
+"""Most force that holds it, over its weight, as in the library's example of such a constraint: 50 N
+on a cube of 0.1 kg. By its weight alone a base sinks; from twice as much on it does not matter."""
+
+NOWHERE = (0.0, 0.0, 0.0)
+
+
 class Constant(str):
     """A number of the library's, by its name there."""
 
@@ -76,9 +86,19 @@ def corner_radius(scene: Scene, s: BulletSettings, dt_s: float) -> float:
     return radius
 
 
+def constrained(scene: Scene, s: BulletSettings) -> bool:
+    """Return whether the base is a body with a mass, held by a constraint that moves it."""
+    return scene.frame == "world" and s.floor == "constraint"
+
+
+def _boxed(scene: Scene, s: BulletSettings) -> bool:
+    """Return whether the base is a box; a plane has no inertia with which to be held."""
+    return s.base_geometry == "box" or constrained(scene, s)
+
+
 def base_shape(scene: Scene, s: BulletSettings) -> Call:
     """Return the call that makes the shape of the base."""
-    if s.base_geometry == "box":
+    if _boxed(scene, s):
         return _shape("GEOM_BOX", halfExtents=floor_half_size(scene))
     return _shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
 
@@ -106,12 +126,50 @@ def _shape(kind: str, **shape: Any) -> Call:
 
 def base_place(scene: Scene, s: BulletSettings) -> Point:
     """Return where the centre of the base is [m]."""
-    return (0.0, 0.0, -scene.bodies[0].height if s.base_geometry == "box" else 0.0)
+    return (0.0, 0.0, -scene.bodies[0].height if _boxed(scene, s) else 0.0)
 
 
-def base_body(shape: Any, place: tuple[float, ...]) -> Call:
+def base_body(scene: Scene, s: BulletSettings, shape: Any) -> Call:
     """Return the call that makes the base of its shape."""
-    return _body(0.0, shape, place, False)
+    mass = FLOOR_MASSES * _mass(scene) if constrained(scene, s) else 0.0
+    return _body(mass, shape, base_place(scene, s), False)
+
+
+def hold_call(scene: Scene, s: BulletSettings, base: Any) -> Call:
+    """Return the call that holds the base where it is."""
+    frames = {"parentFramePosition": NOWHERE, "childFramePosition": base_place(scene, s)}
+    ends = {"parentBodyUniqueId": base, "parentLinkIndex": -1}
+    world = {"childBodyUniqueId": -1, "childLinkIndex": -1}
+    kind = {"jointType": Constant("JOINT_FIXED"), "jointAxis": NOWHERE}
+    return Call("createConstraint", {**ends, **world, **kind, **frames})
+
+
+def most_force(scene: Scene) -> float:
+    """Return the largest force [N] by which the constraint holds the base."""
+    return FLOOR_G * scene.system.gravity * FLOOR_MASSES * _mass(scene)
+
+
+def move_call(
+    s: BulletSettings, base: Any, held_by: tuple[Any, float], place: list[Any], speed: Any
+) -> Call:
+    """Return the call that moves the base, or its constraint of a largest force [N].
+
+    It goes to a place [m], which the velocity along x [m/s] leads it to in a step.
+    """
+    if s.floor == "constraint":
+        constraint, most = held_by
+        where = {"jointChildPivot": place, "maxForce": most}
+        return Call("changeConstraint", {"userConstraintUniqueId": constraint, **where})
+    if s.floor == "velocity":
+        velocity = {"linearVelocity": [speed, 0.0, 0.0]}
+        return Call("resetBaseVelocity", {"objectUniqueId": base, **velocity})
+    upright = {"posObj": place, "ornObj": (0.0, 0.0, 0.0, 1.0)}
+    return Call("resetBasePositionAndOrientation", {"bodyUniqueId": base, **upright})
+
+
+def _mass(scene: Scene) -> float:
+    """Return the mass [kg] of the bodies."""
+    return sum(body.mass for body in scene.bodies)
 
 
 def body_of(body: Body, s: BulletSettings, shape: Any) -> Call:

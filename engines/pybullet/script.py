@@ -17,18 +17,27 @@ from engines.pybullet.calls import (
     body_call,
     body_of,
     body_shape,
+    constrained,
     engine_call,
+    hold_call,
+    most_force,
+    move_call,
 )
 from engines.pybullet.settings import BulletSettings
 from engines.scene import Scene
 
-FLOOR, BASE = map(Constant, ("floor", "base"))
+FLOOR, BASE, HELD_BY = map(Constant, ("floor", "base", "held_by"))
 """Variables of the script; of the first body they are ``shape`` and ``block``."""
+
+PLACE, SPEED = map(Constant, ("base_x", "base_velocity"))
+"""What a step of it is told of the base."""
 
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of PyBullet; see `engines.parts.script`."""
-    ground = base_place(scene, s)
+    """Return a scene as calls of PyBullet; see `engines.parts.script`."""
+    ground, moves, holds = base_place(scene, s), scene.frame == "world", constrained(scene, s)
+    hold = hold_call(scene, s, BASE)
+    move = move_call(s, BASE, (HELD_BY, most_force(scene)), [PLACE, *ground[1:]], SPEED)
     engine, base, made, settings = engine_call(scene, s, dt_s), base_call(s, BASE), [], []
     names = [f"block{number or ''}" for number in range(len(scene.bodies))]
     for number, (body, name) in enumerate(zip(scene.bodies, names, strict=True)):
@@ -43,13 +52,17 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             "p.connect(p.DIRECT)",
             written(engine),
             f"floor = {written(base_shape(scene, s))}",
-            f"base = {written(base_body(FLOOR, ground))}",
+            f"base = {written(base_body(scene, s, FLOOR))}",
             *made,
             written(base),
+            *(f"held_by = {written(hold)}",) * holds,
             *_beginning(scene, names),
             "p.setTimeStep(DT)",
         ),
-        step=("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
+        step=(
+            *(written(move),) * moves,
+            *("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
+        ),
         pose=(
             "q = p.getBasePositionAndOrientation(block)[1]",
             "theta = 2.0 * math.atan2(q[1], q[3])",

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from engines.declaration import Source
 from engines.parts.factors import (
     AS_BEST,
     BEST,
@@ -84,7 +85,8 @@ class BulletSettings:
     base_geometry : str
         "plane" or "box".
     floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+        How a base that moves is moved: by a "constraint", which holds a box with a mass, by its
+        "velocity", or by "position" alone.
     solver : str or None
         Of the contacts: "sequential impulse", "PGS" or "Dantzig".
     warm_starting : float or None
@@ -120,7 +122,7 @@ class BulletSettings:
     gap_by_step: bool = False
     by_phase: bool = False
     base_geometry: str = setting("plane", names=("plane", "box"))
-    floor: str = setting("velocity", names=("velocity", "position"))
+    floor: str = setting("constraint", names=("constraint", "velocity", "position"))
     solver: str | None = setting(names=tuple(SOLVERS))
     warm_starting: float | None = setting(least=0.0, most=1.0)
     split_impulse: bool | None = None
@@ -152,6 +154,7 @@ TUNED = BulletSettings(
     contact_erp=1.0,
     friction_erp=0.0,
     contact_slop=0.0,
+    floor="velocity",
 )
 
 LANDING = replace(
@@ -160,6 +163,26 @@ LANDING = replace(
 
 STACKED: dict[str, Any] = {"geometry": "box", "base_geometry": "box", "iterations": 250}
 """Where bodies rest on others: corner spheres under a body that moves throw it."""
+
+GUIDE = "PyBullet Quickstart Guide, 2016-2022"
+READ = "of pybullet 3.2.7"
+EXAMPLE = "pybullet_examples/constraint.py, pybullet_data/cube_small.urdf"
+
+DOCUMENTED = (
+    Source("step", "240 Hz: best to leave it to the default", f"{GUIDE}, setTimeStep"),
+    Source("iterations", "numSolverIterations 50", f"getPhysicsEngineParameters {READ}"),
+    Source("residual", "solverResidualThreshold 1e-7", f"{GUIDE}, setPhysicsEngineParameter"),
+    Source("kept gap", "contactBreakingThreshold 0.02", f"{GUIDE}, setPhysicsEngineParameter"),
+    Source("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
+    Source("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
+    Source("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
+    Source("friction", "0.5; here 1.0", f"getDynamicsInfo {READ}"),
+    Source("restitution", "0.0", f"getDynamicsInfo {READ}"),
+    Source("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
+    Source("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
+    Source("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
+)
+"""Where the library's documentation, or the library itself, says what its defaults decide."""
 
 DRAG = "drag that nobody asked for"
 SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
@@ -231,7 +254,7 @@ FACTORS = (
     ),
     factor("warm_starting", level("off", warm_starting=0.0), level("0.95", warm_starting=0.95)),
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
-    moving_base("velocity", "position"),
+    moving_base("velocity", "constraint", "position"),
 )
 """What its contact can be set to."""
 

@@ -89,7 +89,7 @@ def test_where_functions_stand() -> None:
         ("friction_erp", 0.5),
         ("by_phase", False),
         ("moving", False),
-        ("floor", "position"),
+        ("base_velocity", False),
         ("ordinary", 1.0),
     ],
 )

@@ -15,6 +15,7 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic.kernels.compiled import Purse, interpreting
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene
+from engines.declaration import AT_REST
 from engines.mujoco import fast as mujoco_loop
 from engines.mujoco import models as mujoco_models
 from engines.parts import compiled as parts
@@ -38,19 +39,28 @@ OF_ALL = {
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
 }
+WELDED: dict[str, Any] = {"frame": "world", "settings": {"floor": "weld"}}
 SCENES = {
     "mujoco": {
         **OF_ALL,
+        "naive at rest": {"preset": AT_REST},
+        "landing on a welded base": {**WELDED, "accuracy": "loose"},
+        "free body on a welded base": {
+            **WELDED,
+            "settings": {**WELDED["settings"], "planar": False},
+            "accuracy": "loose",
+        },
         "no reflection": {"settings": {"reflection": False}, "accuracy": "loose"},
         "no margin": {"settings": {"carry": None, "preload": False}, "accuracy": "loose"},
         "Runge-Kutta": {"settings": {"integrator": "RK4"}, "accuracy": "loose"},
     },
     "pybullet": {
         **OF_ALL,
+        "naive": {"preset": AT_REST},
         "base without velocity": {"settings": {"floor": "position"}, "frame": "world"},
         "same in all phases": {"settings": {"by_phase": False}, "accuracy": "loose"},
         "same gap": {"settings": {"gap_by_step": False}, "accuracy": "loose"},
-        "naive on a moving base": {"preset": "naive", "frame": "world"},
+        "naive on a moving base": {"preset": "naive", "settings": {"floor": "velocity"}},
         "hull on a box": {
             "preset": "fixed",
             "settings": {"geometry": "hull", "base_geometry": "box"},
