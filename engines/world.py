@@ -120,8 +120,9 @@ class Pose(NamedTuple):
 class World(Protocol):
     """A built scene, its bodies where and as fast as `Scene.bodies` says.
 
-    One whose base moves may have an attribute ``lag_m``: how far [m] the base was at most, at the
-    end of a step, from where it should have been. The state is relative to where it really is.
+    One whose base moves may have attributes ``lag_m``, how far [m] the base was at most, at the end
+    of a step, from where it should have been, and ``base_x_m``, where it is [m] as the state was
+    read, which is relative to that.
     """
 
     @property

@@ -111,7 +111,7 @@ DOCUMENTED = (
     Source("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
     Source("sleeping", "on, the default", "b2BodyDef.allowSleep"),
     Source("friction", "0.2, the default; here 1", "b2FixtureDef.friction"),
-    Source("moving floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
+    Source("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
 )
 """What its documentation sets, in pybox2d 2.3.10."""
 

@@ -128,7 +128,7 @@ DOCUMENTED = (
     Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
     Source("friction", "1, the default", "DynamicsAspect.getFrictionCoeff"),
     Source(
-        "moving floor",
+        "floor",
         "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
         "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
     ),

@@ -1,11 +1,12 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Preset, Stepping
+from engines.declaration import Engine, Miss, Preset, Stepping
 from engines.drake.build import DrakeWorld, script
 from engines.drake.settings import (
     CONTROLLED,
     DOCUMENTED,
     FACTORS,
+    RECOMMENDED,
     RULES,
     TUNED,
     DrakeSettings,
@@ -31,7 +32,8 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(),
+        NAIVE.at_rest(Miss.PEAK),
+        NAIVE.recommended(*RECOMMENDED, solver="similar", geometry="corners", stiffness=0.0133),
         Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(
             name="error-controlled",

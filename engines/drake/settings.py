@@ -134,6 +134,13 @@ DOCUMENTED = (
 )
 """What the preset "naive" is documented by."""
 
+RECOMMENDED = (
+    Source("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
+    Source("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
+    Source("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
+)
+"""What it recommends for rigid contact; the stiffness is for 375 kg, and follows the mass."""
+
 TUNED = DrakeSettings(
     geometry="corners",
     planar=True,

@@ -9,6 +9,7 @@ from engines.mujoco.settings import (
     DOCUMENTED,
     FACTORS,
     LANDING,
+    RECOMMENDED,
     RULES,
     STACKED,
     TUNED,
@@ -37,6 +38,15 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
+        NAIVE.recommended(
+            *RECOMMENDED,
+            integrator="implicitfast",
+            cone="elliptic",
+            impratio=10.0,
+            solref=(2.0, 1.0),
+            solver="Newton",
+            tolerance=1e-10,
+        ),
         Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
         Preset(
             name="landing",

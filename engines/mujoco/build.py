@@ -78,6 +78,11 @@ class MujocoWorld:
         return INTERPRETED if interpreted() else obstacle()
 
     @property
+    def base_x_m(self) -> float:
+        """Where a base that moves is; see `engines.world.World`."""
+        return float(self._held.moved)
+
+    @property
     def lag_m(self) -> float | None:
         """How far a welded base was from where it should have been; see `engines.world.World`."""
         return float(self._held.lag) if self._held.welded else None

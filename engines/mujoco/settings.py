@@ -180,6 +180,14 @@ DOCUMENTED = (
 )
 """What the library's documentation says of all that its defaults decide."""
 
+RECOMMENDED = (
+    Source("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
+    Source("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
+    Source("contact", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"),
+    Source("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
+)
+"""What it recommends for rigid contact in place of its defaults, which it does not."""
+
 FACTORS = (
     factor(
         "cone",

@@ -2,7 +2,7 @@
 
 from engines.declaration import Engine, Precision, Preset
 from engines.newton.build import NewtonWorld, script
-from engines.newton.settings import DOCUMENTED, FACTORS, RULES, TUNED, NewtonSettings
+from engines.newton.settings import DOCUMENTED, FACTORS, RECOMMENDED, RULES, TUNED, NewtonSettings
 
 NAIVE = Preset(
     name="naive",
@@ -22,6 +22,7 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 600.0, iterations=20),
         Preset(name="fixed", settings=TUNED, step=1e-3),
     ),
     geometries=("box", "corners"),

@@ -9,6 +9,7 @@ from engines.pybullet.settings import (
     FACTORS,
     LANDING,
     LIBRARY_STEP_S,
+    RECOMMENDED,
     RULES,
     STACKED,
     TUNED,
@@ -37,6 +38,7 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, iterations=150, damping=0.0),
         Preset(name="fixed", settings=TUNED, step=5e-4, stacked=STACKED),
         Preset(
             name="landing",

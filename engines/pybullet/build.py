@@ -78,7 +78,7 @@ class BulletWorld:
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
         self._p = imported("pybullet")
-        most, self._due, self._lag = most_force(scene), 0.0, 0.0
+        most, self._due, self._lag, self.base_x_m = most_force(scene), 0.0, 0.0, 0.0
         self._held_by = -1, most
         self._constrained = constrained(scene, settings)
         loops = scene.compiled and not self.obstacle
@@ -142,7 +142,7 @@ class BulletWorld:
         if self._moving:
             (moved, _, z), _ = p.getBasePositionAndOrientation(self._base, physicsClientId=client)
             raised = z - self._ground[2]
-            self._lag = max(self._lag, abs(moved - self._due))
+            self.base_x_m, self._lag = moved, max(self._lag, abs(moved - self._due))
         for row, body in zip(self._state, self._bodies, strict=True):
             (x, _, z), q = p.getBasePositionAndOrientation(body, physicsClientId=client)
             rate = p.getBaseVelocity(body, physicsClientId=client)[1][1]

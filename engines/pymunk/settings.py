@@ -103,7 +103,7 @@ DOCUMENTED = (
     Source("collision_slop", "0.1, the default", "Space.collision_slop"),
     Source("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
     Source("friction", "0, the default; here 1", "Shape.friction"),
-    Source("moving floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
+    Source("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
 )
 """What its documentation sets, in pymunk 7.3.1."""
 

@@ -165,7 +165,7 @@ DOCUMENTED = (
     Source("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
     Source("friction", "0.5, the default; here 1", "ColliderBuilder.friction"),
     Source(
-        "moving floor",
+        "floor",
         "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
         "that is velocity-based",
         "rapier.rs, user guide for Python, Common recipes: Making a moving platform",

@@ -97,8 +97,15 @@ class Makers:
 
     def _kinds(self, job: Job) -> frozenset[Name]:
         """Return the kinds of a job's values, whose methods are called."""
-        values = (job.block, job.motion, *job.options.values())
-        return frozenset(name_of(type(value)) for value in values if is_dataclass(value))
+        values = [job.block, job.motion, *job.options.values()]
+        for value in values:  # a motion may hold another one
+            values += [getattr(value, item.name) for item in fields(value)] if _data(value) else []
+        return frozenset(name_of(type(value)) for value in values if _data(value))
+
+
+def _data(value: Any) -> bool:
+    """Return whether a value is one of a dataclass."""
+    return is_dataclass(value) and not isinstance(value, type)
 
 
 def _declared(source: Source) -> dict[str, str]:

@@ -9,16 +9,19 @@ STUDY = Study(
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
 pulse, a launch, and a hold below the onset; the floor is moved in each way that an engine has, and
-should carry a block along. Writes frame.csv, slide.csv and floor.csv, a summary and a picture of
-each, and findings.txt; resumable.""",
+should carry a block along; a block that rocks on it is held against the exact answer on the floor
+as it should move, and as it moved. Writes frame.csv, slide.csv, floor.csv, block.csv, their
+summaries and pictures, and findings.txt; resumable.""",
     table="frame-summary.csv",
     products=(
         "frame.csv",
         "slide.csv",
         "floor.csv",
+        "block.csv",
         "frame-summary.csv",
         "slide-summary.csv",
         "floor-summary.csv",
+        "block-summary.csv",
         "frame.png",
         "slide.png",
         "floor.png",
@@ -28,7 +31,7 @@ each, and findings.txt; resumable.""",
         Chapter(
             folder="scenes",
             question="Does it hold for several bodies, for friction alone, on a moving floor?",
-            tables=("frame-summary", "slide-summary", "floor-summary"),
+            tables=("frame-summary", "slide-summary", "floor-summary", "block-summary"),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, two places of the steps.",
         ),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Delayed, RockingFrame, SlidingBlock, Still, simulate
+from analytic import Delayed, RigidBlock, RockingFrame, SlidingBlock, Still, simulate
 from analytic.block import GRAVITY
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
@@ -38,7 +38,8 @@ HELD_S = 2.0
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the job of every case and source: of frames first."""
-    return [*frames(sources, quick), *slides(sources, quick), *floors(sources)]
+    beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
+    return [*frames(sources, quick), *beyond]
 
 
 def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
@@ -102,6 +103,19 @@ def floors(sources: Sequence[str]) -> Iterator[Job]:
                     source=source,
                     options={"settings": {"floor": floor}},
                 )
+
+
+def blocks(sources: Sequence[str], quick: bool) -> Iterator[Job]:
+    """Yield the jobs of a block that rocks on a floor which engines move as documented."""
+    block = RigidBlock(width=0.5, height=1.5)
+    for (amplitude_g, omega), half_cycles in itertools.product(PULSES[: 1 if quick else 3], (1, 2)):
+        labels = {"scene": "block", "amplitude_g": amplitude_g, "omega": omega}
+        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=half_cycles)
+        for source in sources:
+            asked = resolve(source)
+            if asked.engine and asked.used.frame == "world":
+                said = {**labels, "half_cycles": half_cycles}
+                yield Job(labels=said, block=block, motion=pulse, source=source)
 
 
 def ways(settings: Any) -> tuple[str, ...]:

@@ -9,6 +9,9 @@ from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import listed
 from studies.measures.words import part as share
 
+LATE_M = 1e-4
+"""From which lag on a floor is late [m]."""
+
 RIDES = 0.9
 """Part of a floor's way over which a block that rides on it is carried at least."""
 
@@ -59,6 +62,18 @@ def floor_sentence(lines: pd.DataFrame) -> str:
         f"way in any of {engines} engines, one moved by the other ways by {share(least)} and "
         f"more{slept}."
     )
+
+
+def block_sentence(lines: pd.DataFrame) -> str:
+    """Say what floors that lag cost a block's peak; empty where none does."""
+    late = lines[lines["floor_lag_m"] > LATE_M]
+    said = [
+        f"{row['source']}, whose floor lags by up to {_mm(row['floor_lag_m'])}, errs by "
+        f"{share(row['median_error'])}, "
+        f"on the floor as it moved by {share(row['median_own_error'])}"
+        for row in late.to_dict("records")
+    ]
+    return f"In the median {'; '.join(said)}." if said else ""
 
 
 def _wrong(part: pd.DataFrame) -> str:

@@ -20,10 +20,11 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
-from studies.measures.presets import engine_of, is_engine
+from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
-from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
+from studies.scenes.findings import block_sentence, floor_sentence, frame_sentence, slide_sentence
+from studies.scenes.own_floor import exact_on_its_floor
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
@@ -72,16 +73,30 @@ def reduce(job: Job, response: Response) -> Row:
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
     seen = response.observables
     if job.labels["scene"] == "frame":
-        both = response.outcome is Outcome.ROCKED is exact.outcome
-        error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
         row |= {"exact": exact.peak_ratio, "right": response.outcome is exact.outcome}
-        return {**row, "error": error, **_of(seen, SEEN_OF_A_FRAME)}
+        return {**row, "error": _off(response, exact), **_of(seen, SEEN_OF_A_FRAME)}
     if job.labels["scene"] == "floor":
         travel = float(job.motion.displacement(job.motion.duration))
         place = float(seen.get("place_m", math.nan))
         return {**row, "carried": 1.0 + place / travel, LAG: float(seen.get(LAG, math.nan))}
+    if job.labels["scene"] == "block":
+        own = exact_on_its_floor(*_named(job.source), job.block, job.motion)
+        found = {"exact": exact.peak_ratio, "own_exact": own.peak_ratio}
+        errors = {"error": _off(response, exact), "own_error": _off(response, own)}
+        return {**row, **found, **errors, LAG: float(seen.get(LAG, math.nan))}
     return {**row, "slips": len(response.slips), "exact_slips": len(exact.slips),
             "slip_error_m": _slip_error(response, exact), **_of(seen, SEEN_OF_A_SLIDE)}  # fmt: skip
+
+
+def _named(source: str) -> tuple[str, str]:
+    """Return the engine and the preset of a source."""
+    return engine_of(source), preset_of(source)
+
+
+def _off(response: Response, exact: Response) -> float:
+    """Return the relative error of a peak where both rock; nan elsewhere."""
+    both = response.outcome is Outcome.ROCKED is exact.outcome
+    return response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
 
 
 def _of(seen: Any, names: Sequence[str]) -> Row:
@@ -111,13 +126,14 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
     parts = {
         name: pd.DataFrame([row for row in rows if row["scene"] == name])
-        for name in ("frame", "slide", "floor")
+        for name in ("frame", "slide", "floor", "block")
     }
     return {
         **parts,
         "frame-summary": frame_summary(parts["frame"]),
         "slide-summary": slide_summary(parts["slide"]),
         "floor-summary": floor_summary(parts["floor"]),
+        "block-summary": block_summary(parts["block"]),
     }
 
 
@@ -178,12 +194,30 @@ def floor_summary(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines, columns=["engine", "floor", "carried", "carried_after_rest", LAG])
 
 
+def block_summary(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return for each source how far off its peaks are, and how far on the floor that it made."""
+    lines = []
+    if not rows.empty:
+        for source, part in rows.groupby("source", sort=False):
+            lines.append(
+                {
+                    "source": source,
+                    "blocks": len(part),
+                    "median_error": part["error"].abs().median(),
+                    "median_own_error": part["own_error"].abs().median(),
+                    LAG: part[LAG].max(),
+                }
+            )
+    names = ["source", "blocks", "median_error", "median_own_error", LAG]
+    return pd.DataFrame(lines, columns=names)
+
+
 def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-TABLES = ("frame-summary", "slide-summary", "floor-summary")
+TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
 
 
 def report(folder: Path) -> str:
@@ -195,14 +229,17 @@ def report(folder: Path) -> str:
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    *tables, floors = [read_table(folder / f"{name}.csv") for name in TABLES]
-    return [*(table[table["source"].map(is_engine)] for table in tables), floors]
+    *tables, floors, blocks = [read_table(folder / f"{name}.csv") for name in TABLES]
+    return [*(table[table["source"].map(is_engine)] for table in tables), floors, blocks]
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames, the slides and the floors show."""
-    frames, slides, floors = engines_in(folder)
-    said = (frame_sentence(frames), slide_sentence(slides), floor_sentence(floors))
+    """Say what the frames, the slides, the floors and the blocks on them show."""
+    frames, slides, floors, blocks = engines_in(folder)
+    said = (
+        *(frame_sentence(frames), slide_sentence(slides)),
+        *(floor_sentence(floors), block_sentence(blocks)),
+    )
     return " ".join(filter(None, said))
 
 
@@ -211,5 +248,5 @@ def pictures(folder: Path) -> Pictures:
     from studies.scenes.figure import draw_floors, draw_frames, draw_slides
 
     drawn = zip(("frame", "slide", "floor"), (draw_frames, draw_slides, draw_floors), strict=True)
-    found = zip(drawn, engines_in(folder), strict=True)
+    found = zip(drawn, engines_in(folder), strict=False)
     return {name: draw(lines) for (name, draw), lines in found if not lines.empty}
