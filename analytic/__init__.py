@@ -14,7 +14,7 @@ from analytic.frame import RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands, frame_faults
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
-from analytic.motion import Motion, SinePulse, Still
+from analytic.motion import Delayed, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
@@ -26,6 +26,7 @@ __all__ = [
     "GRAVITY",
     "MODELS",
     "CartBlock",
+    "Delayed",
     "FirstMode",
     "History",
     "Impact",

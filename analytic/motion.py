@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import GRAVITY
-from analytic.checks import finite, finite_result, measurable, whole_half_cycles
+from analytic.checks import finite, finite_result, measurable, positive, whole_half_cycles
 from analytic.kernels.law import FloatArray as FloatArray
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
@@ -150,3 +150,57 @@ class Still:
     def segments(self) -> FloatArray:
         """One row of `SEGMENT_COLUMNS`, of no length."""
         return np.zeros((1, len(SEGMENT_COLUMNS)))
+
+
+@dataclass(frozen=True, slots=True)
+class Delayed:
+    """A motion before which the ground is at rest for a while.
+
+    Parameters
+    ----------
+    motion : Motion
+        What follows.
+    rest_s : float
+        How long the ground is at rest [s], positive.
+
+    Raises
+    ------
+    ValueError
+        If the time is not positive and finite.
+    """
+
+    motion: Motion
+    rest_s: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rest_s", positive("rest_s", self.rest_s))
+
+    @property
+    def duration(self) -> float:
+        """Time [s] at which the acceleration ends."""
+        return self.rest_s + self.motion.duration
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Those of the motion, later, and the start [s]."""
+        return (0.0, *(self.rest_s + t for t in self.motion.breakpoints))
+
+    def acceleration(self, t: ArrayLike) -> FloatArray:
+        """Ground acceleration [m/s2] at the times `t` [s]."""
+        return self.motion.acceleration(np.asarray(t, dtype=np.float64) - self.rest_s)
+
+    def velocity(self, t: ArrayLike) -> FloatArray:
+        """Ground velocity [m/s] at the times `t` [s]."""
+        return self.motion.velocity(np.asarray(t, dtype=np.float64) - self.rest_s)
+
+    def displacement(self, t: ArrayLike) -> FloatArray:
+        """Ground displacement [m] at the times `t` [s]."""
+        return self.motion.displacement(np.asarray(t, dtype=np.float64) - self.rest_s)
+
+    def segments(self) -> FloatArray:
+        """Rows of `SEGMENT_COLUMNS`: the rest, and those of the motion, later."""
+        rows = self.motion.segments().copy()
+        rows[:, :2] += self.rest_s
+        rest = np.zeros((1, len(SEGMENT_COLUMNS)))
+        rest[0, 1] = self.rest_s
+        return np.concatenate([rest, rows])

@@ -61,12 +61,16 @@ class Source(NamedTuple):
 AT_REST = "naive-base-at-rest"
 """The library as it is documented, but for its floor: that is at rest, and gravity aimed anew."""
 
-AS_IT_COMES = ("naive", AT_REST)
-"""Names of the presets that nobody has tuned."""
+RECOMMENDED = "recommended"
+"""The library as its documentation, or who maintains it, recommends it for accurate contact."""
+
+UNTUNED = ("naive", AT_REST, RECOMMENDED)
+"""Names of the presets that are the library's own."""
 
 TITLES = {
     "naive": "as its documentation shows it",
     AT_REST: "the same on a base at rest",
+    RECOMMENDED: "as its documentation recommends for stiff contact",
     "fixed": "best at a fixed step",
     "landing": "steps that land on impacts",
 }
@@ -91,7 +95,7 @@ class Preset:
     step_s : float
         The library's own step [s].
     documented : tuple of Source
-        Of "naive": what its documentation sets, and where it says so, the step among it.
+        Of "naive" and "recommended": what its documentation sets, and where it says so.
     frame : str
         One of `FRAMES`, where a scene does not say.
     contact_s : float
@@ -142,6 +146,24 @@ class Preset:
         """Return the same on a base at rest, of which no documentation speaks; see `misses`."""
         title = TITLES[AT_REST]
         return replace(self, name=AT_REST, title=title, misses=misses, frame="base", documented=())
+
+    def recommended(
+        self,
+        *documented: Source,
+        misses: tuple[Miss, ...] = (),
+        step_s: float | None = None,
+        **settings: Any,
+    ) -> "Preset":
+        """Return the same with what is recommended, and where it is; see `misses`."""
+        return replace(
+            self,
+            name=RECOMMENDED,
+            title=TITLES[RECOMMENDED],
+            settings=replace(self.settings, **settings),
+            step_s=step_s or self.step_s,
+            documented=documented,
+            misses=misses,
+        )
 
     def chosen(self, scene: Scene) -> Any:
         """Return its settings for a scene, with the scene's own in their place.

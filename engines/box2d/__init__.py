@@ -1,7 +1,15 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
 from engines.box2d.build import LIBRARY_STEP_S, Box2DWorld, script
-from engines.box2d.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, Box2DSettings
+from engines.box2d.settings import (
+    DOCUMENTED,
+    FACTORS,
+    LANDING,
+    RECOMMENDED,
+    RULES,
+    TUNED,
+    Box2DSettings,
+)
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 
@@ -25,7 +33,10 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.SLEEP),
+        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
+        NAIVE.recommended(
+            *RECOMMENDED, misses=(Miss.MIRROR, Miss.PEAK), iterations=8, position_iterations=3
+        ),
         Preset(
             name="fixed",
             settings=TUNED,

@@ -107,7 +107,19 @@ TUNED = Box2DSettings(
 )
 LANDING = replace(TUNED, reflection=True)
 
-DOCUMENTED: tuple[Source, ...] = ()
+DOCUMENTED = (
+    Source("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
+    Source("sleeping", "on, the default", "b2BodyDef.allowSleep"),
+    Source("friction", "0.2, the default; here 1", "b2FixtureDef.friction"),
+    Source("moving floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
+)
+"""What its documentation sets, in pybox2d 2.3.10."""
+
+RECOMMENDED = (
+    Source("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
+    Source("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
+)
+"""What it recommends for accurate contact."""
 
 FACTORS = (
     factor("geometry"),

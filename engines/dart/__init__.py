@@ -1,7 +1,15 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
 from engines.dart.build import DartWorld, script
-from engines.dart.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, DartSettings
+from engines.dart.settings import (
+    DOCUMENTED,
+    FACTORS,
+    LANDING,
+    RECOMMENDED,
+    RULES,
+    TUNED,
+    DartSettings,
+)
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
 
@@ -25,6 +33,7 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, sleeping=False),
         Preset(
             name="fixed",
             settings=TUNED,

@@ -60,6 +60,7 @@ def values(s: DartSettings) -> SimpleNamespace:
     """Return settings as the library is given them."""
     return SimpleNamespace(
         **{"geometry": s.geometry, "planar": s.planar, "aside": s.aside},
+        actuator="SERVO" if s.floor == "servo" else "VELOCITY",
         **{"friction": float(s.friction), "exact_inertia": s.exact_inertia},
         **{"restitution": s.restitution, "base_restitution": s.base_restitution},
         **{"detector": s.collision and DETECTORS[s.collision], "sleeping": s.sleeping},
@@ -99,7 +100,7 @@ def build(dart: Any, n: Any, s: Any) -> Any:
             solver.setSplitImpulseEnabled(s.split_impulse)
     base = dart.dynamics.Skeleton("base")
     drive, floor = base.createTranslationalJointAndBodyNodePair()
-    drive.setActuatorType(dart.dynamics.ActuatorType.VELOCITY)
+    drive.setActuatorType(getattr(dart.dynamics.ActuatorType, s.actuator))
     if s.aside:
         aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # free out of the plane
         aside.setAxis((0.0, 1.0, 0.0))
@@ -162,6 +163,7 @@ class DartWorld:
     def __init__(self, scene: Scene, settings: DartSettings, dt_s: float) -> None:
         self._s, self._unit = settings, settings.unit
         self._way = settings.floor if scene.frame == "world" else ""
+        self._led = self._way in ("velocity", "servo")
         self._driven = bool(self._way) or settings.reflection
         self.lag_m = 0.0
         self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
@@ -186,14 +188,14 @@ class DartWorld:
         world.setGravity((step.pull_x * unit, 0.0, step.pull_z * unit))
         if self._margin:
             self._lower(0.0 if step.grip is Grip.REST else step.side)
-        if self._way == "velocity":
+        if self._led:
             speed = (step.base_x * unit - self._place) / step.dt_s
             self._ground.setCommands((speed, 0.0, 0.0))
         elif self._driven:
             self._drive(step)
         world.step(False)
         self._dt = step.dt_s
-        if self._way == "velocity":
+        if self._led:
             self._place = self._ground.getPosition(0)
             self.lag_m = max(self.lag_m, abs(self._place / unit - step.base_x))
         elif self._way:

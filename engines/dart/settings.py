@@ -76,8 +76,9 @@ class DartSettings:
         Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
         impact and the first one after it.
     floor : str
-        How a base that moves is moved: by its "velocity", which the library leads it by; by "both"
-        its place and its velocity; by "position" alone.
+        How a base that moves is moved: by the "velocity" of its joint, or by a "servo" that gives
+        it one, both of which lead it by the library; by "both" its place and its velocity; by
+        "position" alone.
     restitution : float or None
         Coefficient of the block.
     base_restitution : float
@@ -97,7 +98,7 @@ class DartSettings:
     corner_radius: float = setting(1e-6, above=0.0)
     margin: float | None = setting(above=0.0)
     reflection: bool = False
-    floor: str = setting("velocity", names=("velocity", "both", "position"))
+    floor: str = setting("velocity", names=("velocity", "servo", "both", "position"))
     restitution: float | None = setting(least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -121,7 +122,24 @@ LANDING = replace(TUNED, margin=0.5, reflection=True)
 MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 
-DOCUMENTED: tuple[Source, ...] = ()
+DOCUMENTED = (
+    Source("step", "0.001 s, the default", "World.getTimeStep"),
+    Source("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
+    Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
+    Source("friction", "1, the default", "DynamicsAspect.getFrictionCoeff"),
+    Source(
+        "moving floor",
+        "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
+        "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
+    ),
+)
+"""What its documentation sets, in dartpy 6.20.0."""
+
+RECOMMENDED = (
+    Source("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
+    Source("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
+)
+"""What it recommends: no page of it is on stiff contact."""
 
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
@@ -157,7 +175,7 @@ FACTORS = (
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
     factor("friction"),
-    moving_base("both", "velocity", "position"),
+    moving_base("both", "velocity", "servo", "position"),
 )
 """What its contact can be set to."""
 

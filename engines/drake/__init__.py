@@ -1,9 +1,25 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Miss, Preset, Source, Stepping
+from engines.declaration import Engine, Preset, Stepping
 from engines.drake.build import DrakeWorld, script
-from engines.drake.settings import CONTROLLED, FACTORS, RULES, TUNED, DrakeSettings
+from engines.drake.settings import (
+    CONTROLLED,
+    DOCUMENTED,
+    FACTORS,
+    RULES,
+    TUNED,
+    DrakeSettings,
+)
 from engines.layouts import Ability
+
+NAIVE = Preset(
+    name="naive",
+    settings=DrakeSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+    own={"friction": 0.5},
+)
 
 ENGINE = Engine(
     name="drake",
@@ -14,14 +30,8 @@ ENGINE = Engine(
     build=DrakeWorld,
     abilities=tuple(Ability),
     presets=(
-        Preset(
-            name="naive",
-            settings=DrakeSettings(),
-            step_s=1e-3,
-            documented=(Source("step", "?", "MultibodyPlantConfig's own time_step, 0.001 s"),),
-            misses=(Miss.PEAK,),
-            own={"friction": 0.5},
-        ),
+        NAIVE,
+        NAIVE.at_rest(),
         Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(
             name="error-controlled",
@@ -31,9 +41,9 @@ ENGINE = Engine(
             dial=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
-    frames=("base",),
     geometries=("box", "corners"),
     spatial=True,
+    scatter=2e-4,
     script=script,
     factors=FACTORS,
     rules=RULES,

@@ -3,7 +3,8 @@
 A discrete plant has its step from its making, and a solver of velocities for it. A continuous one
 is left to the integrator CENIC, which takes steps as it is told, or chooses its own by halving them
 and looking at the difference. Forces are constant through a step of either; the base's motion is
-therefore told as the mean of its acceleration, step by step or look by look.
+therefore told as the mean of its acceleration, step by step or look by look. Where the base moves,
+it is a box on a rail whose drive is told where it should be, and how fast.
 """
 
 import logging
@@ -16,8 +17,10 @@ import numpy as np
 
 from engines.drake.settings import (
     CENIC,
+    GAINS,
     LONGEST,
     PLANE,
+    SPEED_GAINS,
     DrakeSettings,
 )
 from engines.parts.compiled import FloatArray
@@ -25,7 +28,7 @@ from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.script import Script, filled, settings_of
 from engines.parts.settings import given
-from engines.parts.shapes import half_size, touching_spheres
+from engines.parts.shapes import floor_half_size, half_size, touching_spheres
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
@@ -51,12 +54,21 @@ IN_SPACE = (4, 6, 1)
 """Where x and z stand among the positions of a free body, which begin with a quaternion, and the
 rate among its velocities."""
 
+BACKWARDS = -1.0
+"""CENIC of 1.51.1 lets a drive run at its desired velocity with the opposite sign."""
+
+WITHIN = 8
+"""In so many parts of a look the base is told how fast it is, where steps are the engine's own."""
+
 
 def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
     """Return the numbers of a scene."""
     bodies = [of_body(scene, number, s) for number in range(len(scene.bodies))]
+    x, y, z = floor_half_size(scene)
     return SimpleNamespace(
         **{"plane": [list(row) for row in PLANE], "bodies": bodies},
+        **{"moving": scene.frame == "world", "floor": [2.0 * x, 2.0 * y, 2.0 * z]},
+        **{"below": [0.0, 0.0, -z], "along": [1.0, 0.0, 0.0], "heavy": bodies[0].mass},
         radius=s.corner_radius * scene.system.width,
         state=[q for body in bodies for q in body.state] + [v for b in bodies for v in b.speeds],
     )
@@ -101,6 +113,7 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
         **{"config": given(config), "material": given(material)},
         relaxation=None if s.relaxation is None else 0.5 * s.relaxation * dt_s,
         **{"scheme": CENIC if continuous else None, "fixed": s.accuracy is None},
+        gains=SPEED_GAINS if continuous else GAINS,
         # without an estimate of the error each step goes to where it is told
         longest=LONGEST * dt_s if s.accuracy is None else dt_s,
         accuracy=None if s.accuracy is None else s.accuracy * block.alpha * max(1.0, block.R),
@@ -108,7 +121,7 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(drake: Any, n: Any, s: Any) -> Any:
-    """Build bodies on a half-space that does not move."""
+    """Build bodies on a half-space that does not move, or on a box on a rail."""
     builder = drake.DiagramBuilder()
     config = drake.MultibodyPlantConfig(**s.config)
     plant, scene_graph = drake.AddMultibodyPlant(config, builder)
@@ -117,11 +130,22 @@ def build(drake: Any, n: Any, s: Any) -> Any:
     if s.relaxation is not None:
         properties.AddProperty("material", "relaxation_time", s.relaxation)
     ground, here, bodies = plant.world_body(), drake.RigidTransform(), []
-    plant.RegisterCollisionGeometry(ground, here, drake.HalfSpace(), "base", properties)
+    blocks = drake.default_model_instance()
+    if n.moving:
+        inertia = drake.SpatialInertia.SolidBoxWithMass(n.heavy, *n.floor)
+        floor = plant.AddRigidBody("floor", plant.AddModelInstance("floor"), inertia)
+        ends = ground.body_frame(), floor.body_frame()
+        rail = plant.AddJoint(drake.PrismaticJoint("rail", *ends, n.along))
+        drive = plant.AddJointActuator("drive", rail)
+        drive.set_controller_gains(drake.PdControllerGains(**s.gains))
+        shape, below = drake.Box(*n.floor), drake.RigidTransform(n.below)
+        plant.RegisterCollisionGeometry(floor, below, shape, "base", properties)
+    else:
+        plant.RegisterCollisionGeometry(ground, here, drake.HalfSpace(), "base", properties)
     turned = drake.RigidTransform(drake.RotationMatrix(n.plane))
     for b in n.bodies:
         inertia = drake.SpatialInertia.SolidBoxWithMass(b.mass, *b.size)
-        block = plant.AddRigidBody(b.name, inertia)
+        block = plant.AddRigidBody(b.name, blocks, inertia)
         bodies.append(block)
         if s.planar:
             base_plane = drake.FixedOffsetFrame(b.on_base, ground.body_frame(), turned)
@@ -140,7 +164,7 @@ def build(drake: Any, n: Any, s: Any) -> Any:
     simulator = drake.Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     if s.planar:
-        plant.SetPositionsAndVelocities(context, n.state)
+        plant.SetPositionsAndVelocities(context, blocks, n.state)
     else:
         for b in n.bodies:
             block = plant.GetBodyByName(b.name)
@@ -166,32 +190,38 @@ POSES = {
 
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Drake; see `engines.parts.script`."""
-    lines = filled(build, n=numbers(scene, settings), s=values(scene, settings, dt_s))
+    """Return a scene as calls of Drake; see `engines.parts.script`."""
+    n = numbers(scene, settings)
+    lines = filled(build, n=n, s=values(scene, settings, dt_s))
     count = len(scene.bodies)
+    moved = "desired.FixValue(context, [base_x, base_velocity])"
+    if settings.solver == CENIC:
+        moved = "desired.FixValue(context, [base_x, -base_velocity])  # CENIC turns it round"
     return Script(
         imports=("import pydrake.all as drake",),
         settings=settings_of(lines),
         build=(
             *(line.text for line in lines),
+            *("desired = plant.get_desired_state_input_port(floor.model_instance())",) * n.moving,
             # a discrete plant changes at the beginning of a step: half of one later it has, once
             f"end = {'0.0' if settings.solver == CENIC else '-0.5 * DT'}",
         ),
         step=(
             "global end",
             "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
+            *(moved,) * n.moving,
             "end += DT",
             "simulator.AdvanceTo(end)",
         ),
         pose=(
-            "state = plant.GetPositionsAndVelocities(context)",
+            "state = plant.GetPositionsAndVelocities(context, blocks)",
             POSES[settings.planar].format(planar=3 * count + 2, space=7 * count + 1),
         ),
     )
 
 
 class DrakeWorld:
-    """Bodies on a half-space that does not move."""
+    """Bodies on a half-space that does not move, or on a box on a rail."""
 
     def __init__(self, scene: Scene, settings: DrakeSettings, dt_s: float) -> None:
         self._s, self._dt = settings, dt_s
@@ -199,8 +229,16 @@ class DrakeWorld:
         self._count, self._time, self._problem = 0, 0.0, ""
         self._gravity = scene.system.gravity
         self._velocity_of = mean_velocity_of(scene.motion.segments())
-        built = build(library(), numbers(scene, settings), values(scene, settings, dt_s))
+        n = numbers(scene, settings)
+        built = build(library(), n, values(scene, settings, dt_s))
         self._plant, scene_graph, self._bodies, self._simulator, self._context = built
+        self._blocks = self._bodies[0].model_instance()
+        self._moving, self._place = n.moving, 0.0
+        if self._moving:
+            self._rail: Any = self._plant.GetJointByName("rail")
+            floor = self._plant.GetModelInstanceByName("floor")
+            self._desired = self._plant.get_desired_state_input_port(floor)
+            self.lag_m = 0.0
         self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._field = self._plant.mutable_gravity_field()
         if self._continuous:
@@ -217,6 +255,8 @@ class DrakeWorld:
         if self._problem:
             return
         self._field.set_gravity_vector((step.pull_x, 0.0, step.pull_z))
+        if self._moving:
+            self._drive(step.base_x, step.base_velocity)
         self._count += 1
         try:
             # a discrete plant changes at the beginning of a step: half of one later it has, once
@@ -224,38 +264,66 @@ class DrakeWorld:
             self._simulator.AdvanceTo(end)
         except GIVEN_UP as error:
             self._problem = one_line(error)
+        if self._moving:
+            self._look_back(step.base_x)
 
     def advance(self, end_s: float) -> int:
         """Advance to a time [s] in steps of the engine's own."""
         if self._problem:
             return 1
         gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
-        pull_x = -gained / (end_s - self._time)
+        pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
         self._field.set_gravity_vector((pull_x, 0.0, -self._gravity))
         before = self._integrator.get_num_steps_taken()
         try:
-            self._simulator.AdvanceTo(end_s)
+            if self._moving:
+                for end in np.linspace(self._time, end_s, WITHIN + 1)[1:-1]:
+                    self._carry(float(end))
+                self._carry(end_s)
+            else:
+                self._simulator.AdvanceTo(end_s)
         except GIVEN_UP as error:
             self._problem = one_line(error)
             return 1
         self._time = end_s
         return int(self._integrator.get_num_steps_taken() - before)
 
+    def _carry(self, end_s: float) -> None:
+        """Advance to a time [s], the base at its mean velocity."""
+        velocity = self._velocity_of(self._time, end_s)
+        self._place += velocity * (end_s - self._time)
+        self._drive(self._place, velocity)
+        self._simulator.AdvanceTo(end_s)
+        self._look_back(self._place)
+        self._time = end_s
+
+    def _drive(self, place: float, velocity: float) -> None:
+        """Tell the base's drive where it should be [m], and how fast [m/s]."""
+        if self._s.floor == "position":
+            self._rail.set_translation(self._context, place)
+            velocity = 0.0
+        turned = BACKWARDS if self._continuous else 1.0
+        self._desired.FixValue(self._context, [place, turned * velocity])
+
+    def _look_back(self, place: float) -> None:
+        """Take note of how far the base is from where it should be [m]."""
+        self.lag_m = max(self.lag_m, abs(self._rail.get_translation(self._context) - place))
+
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        found, count = (
-            self._plant.GetPositionsAndVelocities(self._context).tolist(),
-            len(self._state),
-        )
+        found = self._plant.GetPositionsAndVelocities(self._context, self._blocks).tolist()
+        count, base_x = len(self._state), 0.0
+        if self._moving:
+            base_x = self._rail.get_translation(self._context)
         for number, row in enumerate(self._state):
             if self._s.planar:
                 x, z, theta = (found[3 * number + i] for i in IN_PLANE)
-                row[:] = x, z, theta, found[3 * (count + number) + IN_PLANE[2]]
+                row[:] = x - base_x, z, theta, found[3 * (count + number) + IN_PLANE[2]]
             else:
                 q = found[7 * number : 7 * number + 7]
                 x, z, turning = IN_SPACE
                 rate = found[7 * count + 6 * number + turning]
-                row[:] = q[x], q[z], 2.0 * math.atan2(q[2], q[0]), rate
+                row[:] = q[x] - base_x, q[z], 2.0 * math.atan2(q[2], q[0]), rate
         return self._state
 
     def fault(self) -> str:

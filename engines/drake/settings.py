@@ -2,7 +2,19 @@
 
 from dataclasses import dataclass, replace
 
-from engines.parts.factors import BEST, BOTH, BY_DEFAULT, DEFAULT, Factor, Rule, factor, level
+from engines.declaration import Source
+from engines.parts.factors import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    UNMOVED_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+    moving_base,
+)
 from engines.parts.settings import check, setting
 from engines.parts.shapes import NO_JAM
 
@@ -17,6 +29,12 @@ PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
 
 LONGEST = 10.0
 """No step that CENIC is told is longer than this many ordinary ones."""
+
+GAINS = {"p": 1e12, "d": 1e8}
+"""Of the drive of a base that moves [N/m, N s/m]: nothing yields, and the ratio is an example's."""
+
+SPEED_GAINS = {"p": 0.0, "d": 1e12}
+"""The same where steps differ: how fast the base is does not depend on them, where it is does."""
 
 ACCURACY = 2e-9
 """Error of a step over alpha. CENIC is of first order: its steps go by the root of this, and so at
@@ -56,6 +74,8 @@ class DrakeSettings:
     accuracy : float or None
         Of "cenic": the error of a step over alpha, by which it chooses its own; without it, it
         takes those that it is told.
+    floor : str
+        How a base that moves is moved: by the "drive" of its joint, or by "position" alone.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -69,10 +89,50 @@ class DrakeSettings:
     near_rigid: float | None = setting(least=0.0)
     corner_radius: float = setting(1e-6, above=0.0)
     accuracy: float | None = setting(above=0.0, most=1.0)
+    floor: str = setting("drive", names=("drive", "position"))
 
     def __post_init__(self) -> None:
         check(self)
 
+
+DOCUMENTED = (
+    Source("step", "time_step = 0.001", "MultibodyPlantConfig, drake 1.51.1"),
+    Source(
+        "solver",
+        "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001",
+        "MultibodyPlantConfig, drake 1.51.1",
+    ),
+    Source(
+        "contact",
+        "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
+        "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
+        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
+    ),
+    Source(
+        "shapes",
+        "the table is a <box> with no properties of contact",
+        "tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1",
+    ),
+    Source(
+        "friction",
+        "dynamic_friction = static_friction = 0.5; 1.0 is used",
+        "DefaultProximityProperties, drake 1.51.1",
+    ),
+    Source(
+        "floor",
+        "'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains, "
+        "get_desired_state_input_port",
+        "RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD controlled actuators', "
+        "drake 1.51.1",
+    ),
+    Source(
+        "gains",
+        "{1e4, 1} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8 times "
+        "those are used, and a floor of the block's mass",
+        "examples/multibody/deformable/deformable_torus.cc",
+    ),
+)
+"""What the preset "naive" is documented by."""
 
 TUNED = DrakeSettings(
     geometry="corners",
@@ -116,6 +176,7 @@ FACTORS = (
     ),
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("friction", level("1.3", friction=NO_JAM)),
+    moving_base("drive", "position"),
 )
 """What its contact can be set to."""
 
@@ -131,6 +192,10 @@ RULES = (
     Rule(
         "Keep `dissipation` below 1e3/(p R): friction goes by the last step's normal force",
         *(BEST, "dissipation", "1e4"),
+    ),
+    Rule(
+        "Drive a base that moves, `set_controller_gains`: friction does not feel one just placed",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""

@@ -1,8 +1,16 @@
 """Newton: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Precision, Preset, Source
+from engines.declaration import Engine, Precision, Preset
 from engines.newton.build import NewtonWorld, script
-from engines.newton.settings import FACTORS, RULES, TUNED, NewtonSettings
+from engines.newton.settings import DOCUMENTED, FACTORS, RULES, TUNED, NewtonSettings
+
+NAIVE = Preset(
+    name="naive",
+    settings=NewtonSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+)
 
 ENGINE = Engine(
     name="newton",
@@ -12,20 +20,10 @@ ENGINE = Engine(
     install="rocking[newton]",
     build=NewtonWorld,
     presets=(
-        Preset(
-            name="naive",
-            title="the library's example",
-            settings=NewtonSettings(),
-            step_s=2e-3,
-            documented=(
-                Source(
-                    "step", "?", "the library's own example basic_shapes, 5 substeps of 1/100 s"
-                ),
-            ),
-        ),
+        NAIVE,
+        NAIVE.at_rest(),
         Preset(name="fixed", settings=TUNED, step=1e-3),
     ),
-    frames=("base",),
     geometries=("box", "corners"),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

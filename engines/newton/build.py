@@ -17,7 +17,7 @@ from engines.world import Moment, Pose, Step
 
 
 class NewtonWorld:
-    """A block in space, on a plane that does not move."""
+    """A block in space, on a plane that does not move, or on a kinematic box."""
 
     moment = Moment.MIDDLE
 
@@ -30,6 +30,9 @@ class NewtonWorld:
             self._recorded = taken(newton, self._warp, scene, settings, dt_s)
         self._graph, self._force = self._recorded.graph, self._recorded.force
         self._place, self._velocity = self._recorded.place, self._recorded.velocity
+        self._moving = scene.frame == "world"
+        if self._moving:
+            self.lag_m = 0.0
         self._put(scene)
         self._fault = self._read_back(scene)
 
@@ -39,11 +42,18 @@ class NewtonWorld:
             self._fault = self._fault or "its steps are recorded, and all of one length"
         self._force[0, 0] = self._mass * step.pull_x
         self._force[0, 2] = self._mass * (step.pull_z + self._gravity)
+        if self._moving:
+            speed = step.base_velocity if self._s.floor == "velocity" else 0.0
+            self._recorded.joint_q[-1], self._recorded.joint_qd[-1] = step.base_x, speed
         self._warp.capture_launch(self._graph)
+        if self._moving:
+            self.lag_m = max(self.lag_m, abs(float(self._place[1, 0]) - step.base_x))
 
     def state(self) -> tuple[Pose]:
         """Read the block's pose back."""
         x, _, z, _, turn_y, _, turn_w = self._place[0].tolist()
+        if self._moving:
+            x -= float(self._place[1, 0])
         theta = 2.0 * math.atan2(turn_y, turn_w)
         return (Pose(x, z, theta, float(self._velocity[0, 4])),)
 
@@ -61,6 +71,8 @@ class NewtonWorld:
         half = 0.5 * at.theta
         self._place[0] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
         self._velocity[0] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+        if self._moving:
+            self._place[1, 0] = 0.0
 
     def _read_back(self, scene: Scene) -> str:
         model, (body,) = self._recorded.model, scene.bodies
@@ -73,7 +85,7 @@ class NewtonWorld:
 
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
-    """Return a scene on a base at rest as calls of Newton; see `engines.parts.script`."""
+    """Return a scene as calls of Newton; see `engines.parts.script`."""
     n, at = numbers(scene, settings), scene.bodies[0].at
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     return Script(
@@ -89,6 +101,7 @@ def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
         step=(
             f"force[0, 0] = {n.mass!r} * pull_x",
             f"force[0, 2] = {n.mass!r} * (pull_z + GRAVITY)",
+            *("joint_q[-1], joint_qd[-1] = base_x, base_velocity",) * n.moving,
             "wp.capture_launch(recorded.graph)",
         ),
         pose=(

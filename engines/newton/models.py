@@ -28,6 +28,7 @@ class Made(NamedTuple):
     size: tuple[float, float, float]
     density: float
     gravity: float
+    moving: bool
 
 
 def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
@@ -37,6 +38,7 @@ def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
     first, second, third = body.inertia
     return SimpleNamespace(
         **{"x": x, "y": y, "z": z, "radius": radius, "most": MOST_CONTACTS},
+        moving=scene.frame == "world",
         **{"mass": body.mass, "density": scene.density, "weight": -scene.system.gravity},
         inertia=(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third),
         corners=corner_spheres(body, radius, planar=False),
@@ -54,12 +56,13 @@ def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
-    """Build a block in space, on a plane that does not move, and record a step."""
+    """Build a block in space, on a plane at rest or a kinematic one, and record a step."""
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, n.weight))
     if s.solver != "xpbd":
         newton.solvers.SolverKamino.register_custom_attributes(builder)
     builder.default_shape_cfg.mu = s.friction
-    builder.add_ground_plane()
+    if not n.moving:
+        builder.add_ground_plane()
     shape = builder.default_shape_cfg.copy()
     at = wp.transform((0.0, 0.0, n.z), (0.0, 0.0, 0.0, 1.0))
     if s.geometry == "box":
@@ -72,6 +75,12 @@ def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
         for corner in n.corners:
             there = wp.transform(corner, (0.0, 0.0, 0.0, 1.0))
             builder.add_shape_sphere(block, xform=there, radius=n.radius, cfg=shape)
+    if n.moving:
+        shape.density = 0.0
+        floor = builder.add_link(mass=n.mass, inertia=wp.mat33(*n.inertia), is_kinematic=True)
+        builder.add_shape_plane(body=floor, width=0.0, length=0.0, cfg=shape)
+        rail = builder.add_joint_prismatic(parent=-1, child=floor, axis=newton.Axis.X)
+        builder.add_articulation([rail])
     model = builder.finalize(device="cpu")
     model.rigid_contact_max = n.most
     pipeline = newton.CollisionPipeline(model, rigid_contact_max=n.most)
@@ -98,12 +107,18 @@ def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
         solver.step(now, after, None, contacts, s.dt)
         now.assign(after)
 
+    only = newton.BodyFlags.KINEMATIC
+    if n.moving:
+        newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=only)
     advance()  # compiles its kernels
     with wp.ScopedCapture(device="cpu") as recorded:
+        if n.moving:
+            newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=only)
         advance()
     force = now.body_f.numpy()  # on the CPU a view, as those that follow
     place, velocity = now.body_q.numpy(), now.body_qd.numpy()
-    return model, solver, now, recorded.graph, force, place, velocity
+    joint_q, joint_qd = now.joint_q.numpy(), now.joint_qd.numpy()
+    return model, solver, now, recorded.graph, force, place, velocity, joint_q, joint_qd
 
 
 class Recorded:
@@ -124,7 +139,7 @@ class Recorded:
         self.made_of = made_of(scene, settings, dt_s)
         built = build(newton, warp, numbers(scene, settings), values(scene, settings, dt_s))
         self.model, self._solver, self._now, self.graph, *views = built
-        self.force, self.place, self.velocity = views
+        self.force, self.place, self.velocity, self.joint_q, self.joint_qd = views
 
     def put_back(self) -> None:
         """Let the solver forget the last run; the block is put where it begins by who takes it."""
@@ -137,7 +152,8 @@ idle: "OrderedDict[Made, Recorded]" = OrderedDict()
 
 def made_of(scene: Scene, settings: NewtonSettings, dt_s: float) -> Made:
     """Return what the model of a scene is made of; where the scene begins is none of it."""
-    return Made(settings, dt_s, half_size(scene.bodies[0]), scene.density, scene.system.gravity)
+    size, moving = half_size(scene.bodies[0]), scene.frame == "world"
+    return Made(settings, dt_s, size, scene.density, scene.system.gravity, moving)
 
 
 def taken(newton: Any, warp: Any, scene: Scene, settings: NewtonSettings, dt_s: float) -> Recorded:

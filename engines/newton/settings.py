@@ -3,16 +3,19 @@
 from dataclasses import dataclass
 from typing import Any
 
+from engines.declaration import Source
 from engines.parts.factors import (
     AS_BEST,
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
+    UNMOVED_BASE,
     Factor,
     Rule,
     factor,
     level,
+    moving_base,
 )
 from engines.parts.settings import check, given, setting
 from engines.parts.shapes import NO_JAM
@@ -22,13 +25,10 @@ XPBD = "xpbd"
 
 SOLVERS = (XPBD, "padmm", "dvi")
 
-EXAMPLE_ITERATIONS = 5
-"""Of "xpbd", in the library's own example of shapes."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewtonSettings:
-    """Settings of Newton, by default those of its own example of shapes; None leaves its own.
+    """Settings of Newton, by default those of its own example of a belt; None leaves its own.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class NewtonSettings:
     solver : str
         "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
     iterations : int or None
-        Of "xpbd" and "padmm"; None is the example's 5, and the library's own. "dvi" has none.
+        Of "xpbd", whose own are 2, and "padmm"; "dvi" has none.
     relaxation : float or None
         Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
     weighting : bool or None
@@ -52,6 +52,8 @@ class NewtonSettings:
         Of "padmm"; its own is 1e-6.
     corner_radius : float
         Radius of the corner spheres over the width.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -64,6 +66,7 @@ class NewtonSettings:
     depth: float | None = setting(least=0.0)
     tolerance: float | None = setting(above=0.0)
     corner_radius: float = setting(1e-3, above=0.0)
+    floor: str = setting("velocity", names=("velocity", "position"))
 
     def __post_init__(self) -> None:
         check(self)
@@ -74,12 +77,35 @@ class NewtonSettings:
         """Return the arguments of XPBD that are set."""
         return given(
             {
-                "iterations": self.iterations or EXAMPLE_ITERATIONS,
+                "iterations": self.iterations,
                 "rigid_contact_relaxation": self.relaxation,
                 "rigid_contact_con_weighting": self.weighting,
             }
         )
 
+
+BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
+
+DOCUMENTED = (
+    Source("step", "fps = 100, sim_substeps = 10", BELT),
+    Source("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
+    Source("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
+    Source(
+        "contact",
+        "rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False",
+        "SolverXPBD, newton 1.8.0",
+    ),
+    Source("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
+    Source("friction", "mu: float = 1.0", "ModelBuilder.ShapeConfig, newton 1.8.0"),
+    Source(
+        "floor",
+        "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
+        "eval_fk(..., body_flag_filter=BodyFlags.KINEMATIC)",
+        BELT,
+    ),
+    Source("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
+)
+"""What the preset "naive" is documented by: the example in which a floor moves."""
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 
@@ -99,6 +125,7 @@ FACTORS = (
     factor("baumgarte", level("0.1", baumgarte=0.1)),
     factor("geometry", level("corners", BOTH, geometry="corners")),
     factor("friction"),
+    moving_base("velocity", "position"),
 )
 """What its contact can be set to."""
 
@@ -112,6 +139,10 @@ RULES = (
         "Set Kamino's `config.constraints.gamma` to 0: it makes speed of a depth, the more of it "
         "the shorter the step",
         *(BEST, "baumgarte", BY_DEFAULT),
+    ),
+    Rule(
+        "Give a kinematic base its `joint_qd` beside `joint_q`: friction does not feel a place",
+        *UNMOVED_BASE,
     ),
 )
 """What its users should know first."""

@@ -3,7 +3,15 @@
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
-from engines.pymunk.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, PymunkSettings
+from engines.pymunk.settings import (
+    DOCUMENTED,
+    FACTORS,
+    LANDING,
+    RECOMMENDED,
+    RULES,
+    TUNED,
+    PymunkSettings,
+)
 
 NAIVE = Preset(
     name="naive",
@@ -11,7 +19,7 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+    misses=(Miss.MIRROR,),
     own={"friction": 0.0},
 )
 
@@ -26,6 +34,9 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+        NAIVE.recommended(
+            *RECOMMENDED, misses=(Miss.MIRROR,), step_s=LIBRARY_STEP_S / 10.0, slop=1e-3
+        ),
         Preset(
             name="fixed",
             settings=TUNED,

@@ -31,36 +31,36 @@ MOST_REFLECTION = 2.0
 LIBRARY_STEP_S = 0.02
 
 
-def numbers(scene: Scene, deeper: float = 0.0) -> SimpleNamespace:
-    """Return the numbers of a scene whose floors lie deeper [m] in their bodies."""
-    far, bodies = FLOOR_HEIGHTS * scene.bodies[0].height, scene.bodies
+def numbers(scene: Scene, unit: float, deeper: float = 0.0) -> SimpleNamespace:
+    """Return the numbers of a scene in a unit of length, its floors so much deeper in bodies."""
+    far, bodies = FLOOR_HEIGHTS * scene.bodies[0].height * unit, scene.bodies
     deep = [(-far, -far), (far, -far), (far, -deeper), (-far, -deeper)]
     contacts = [
         SimpleNamespace(
-            **{"x": 0.5 * bodies[contact.body].width, "body": contact.body, "on": contact.on},
-            z=0.5 * contact.face * bodies[contact.body].height,
-            under=deep if contact.on == BASE else boxed(bodies[contact.on], deeper),
+            **{"x": 0.5 * bodies[contact.body].width * unit, "body": contact.body},
+            **{"z": 0.5 * contact.face * bodies[contact.body].height * unit, "on": contact.on},
+            under=deep if contact.on == BASE else boxed(bodies[contact.on], unit, deeper),
         )
         for contact in scene.layout.contacts
     ]
     return SimpleNamespace(
-        **{"far": far, "bodies": list(map(of_body, bodies)), "contacts": contacts},
+        **{"far": far, "bodies": [of_body(body, unit) for body in bodies], "contacts": contacts},
     )
 
 
-def of_body(body: Body) -> SimpleNamespace:
+def of_body(body: Body, unit: float) -> SimpleNamespace:
     """Return the numbers of a body."""
     at = body.at
     return SimpleNamespace(
-        **{"mass": body.mass, "inertia": body.inertia[1], "box": boxed(body)},
-        **{"place": (at.x, at.z), "angle": -at.theta, "at_rest": at.at_rest},
-        **{"velocity": (at.velocity_x, at.velocity_z), "rate": -at.rate},
+        **{"mass": body.mass, "inertia": body.inertia[1] * unit**2, "box": boxed(body, unit)},
+        **{"place": (at.x * unit, at.z * unit), "angle": -at.theta, "at_rest": at.at_rest},
+        **{"velocity": (at.velocity_x * unit, at.velocity_z * unit), "rate": -at.rate},
     )
 
 
-def boxed(body: Body, deeper: float = 0.0) -> list[tuple[float, float]]:
-    """Return the corners [m] of a body, about its centre, the lower face so much deeper in it."""
-    x, z = 0.5 * body.width, 0.5 * body.height
+def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, float]]:
+    """Return the corners of a body, about its centre, the lower face so much deeper in it."""
+    x, z = 0.5 * body.width * unit, 0.5 * body.height * unit
     return [(-x, deeper - z), (x, deeper - z), (x, z), (-x, z)]
 
 
@@ -132,16 +132,16 @@ def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
     """Return a scene as calls of pymunk; see `engines.parts.script`."""
     s, moves = values(scene, settings, dt_s), scene.frame == "world"
-    lines = filled(build, n=numbers(scene), s=s)
-    held = defined(hold, s=s) if s.margin else ()
+    lines, unit = filled(build, n=numbers(scene, settings.unit), s=s), settings.unit
+    held, times = defined(hold, s=s) if s.margin else (), "" if unit == 1.0 else f" * {unit!r}"
     return Script(
         imports=("import pymunk",),
         settings=(f"space.step({dt_s!r})", *settings_of(lines)),
         build=tuple(line.text for line in (*lines, *held)),
         step=(
             *("hold(floors, -bodies[0].angle)",) * bool(held),
-            *("base.velocity = (base_x - base.position.x) / DT, 0.0",) * moves,
-            *("space.gravity = pull_x, pull_z", "space.step(DT)"),
+            *(f"base.velocity = (base_x{times} - base.position.x) / DT, 0.0",) * moves,
+            *(f"space.gravity = pull_x{times}, pull_z{times}", "space.step(DT)"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
         moment=Moment.MIDDLE if settings.positions else Moment.NEXT,
@@ -157,7 +157,8 @@ class PymunkWorld:
         self._floor = settings.floor if scene.frame == "world" else ""
         self._dt = self._under = self.lag_m = 0.0
         self._values = values(scene, settings, dt_s)
-        n = numbers(scene, self._values.margin if self._values.together else 0.0)
+        self._unit = settings.unit
+        n = numbers(scene, self._unit, self._values.margin if self._values.together else 0.0)
         built = build(self._pm, n, self._values)
         self._space, self._base, self._bodies, self._corners, self._floors = built
         self._at = [(x, c.z) for c in n.contacts for x in (-c.x, c.x)]
@@ -175,21 +176,23 @@ class PymunkWorld:
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
-        own = self.settings.positions
+        own, unit = self.settings.positions, self._unit
         dt = UNIT_S if own else step.dt_s
-        self._space.gravity = (step.pull_x * step.dt_s / dt, step.pull_z * step.dt_s / dt)
+        pull = unit * step.dt_s / dt
+        self._space.gravity = (step.pull_x * pull, step.pull_z * pull)
         if self.settings.geometry == "corners":
             self._hold(step)
         if self._floor == "velocity":
             self._under = self._base.position.x
-            self._base.velocity = ((step.base_x - self._under) / step.dt_s, 0.0)
+            self._base.velocity = ((step.base_x * unit - self._under) / step.dt_s, 0.0)
         elif self._floor == "both":
-            self._base.velocity = (step.base_velocity, 0.0)
+            self._base.velocity = (step.base_velocity * unit, 0.0)
         self._space.step(dt)
         if self._floor == "velocity":
-            self.lag_m = max(self.lag_m, abs(self._base.position.x - step.base_x))
+            self.lag_m = max(self.lag_m, abs(self._base.position.x / unit - step.base_x))
         elif self._floor:
-            self._base.position, self._under = (step.base_x, 0.0), step.base_x
+            self._under = step.base_x * unit
+            self._base.position = (self._under, 0.0)
         for body in self._bodies if own else ():
             self._pm.Body.update_position(body, step.dt_s)
 
@@ -198,9 +201,15 @@ class PymunkWorld:
 
         A base that the library moves is a step ahead: it carries the bodies in the next one.
         """
+        unit = self._unit
         for number, body in enumerate(self._bodies):
             x, z = body.position
-            self._state[number] = x - self._under, z, -body.angle, -body.angular_velocity
+            self._state[number] = (
+                (x - self._under) / unit,
+                z / unit,
+                -body.angle,
+                -body.angular_velocity,
+            )
         return self._state
 
     def fault(self) -> str:
@@ -238,7 +247,7 @@ class PymunkWorld:
         s, space, masses = self.settings, self._space, {}
         for number, (wanted, found) in enumerate(zip(scene.bodies, self._bodies, strict=True)):
             masses[f"mass {number}"] = (wanted.mass, found.mass)
-            masses[f"moment {number}"] = (wanted.inertia[1], found.moment)
+            masses[f"moment {number}"] = (wanted.inertia[1] * self._unit**2, found.moment)
         return disagreement(
             {
                 **masses,

@@ -35,7 +35,7 @@ class PymunkSettings:
     friction : float
         Coefficient between block and base.
     iterations, slop, bias : optional
-        `Space.iterations`, `collision_slop` [m] and `collision_bias`.
+        `Space.iterations`, `collision_slop` [units of length] and `collision_bias`.
     sweeps : float or None
         Iterations over 1/sin^2(alpha), where `iterations` are None.
     positions : bool
@@ -49,6 +49,8 @@ class PymunkSettings:
     floor : str
         How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
         by "position" alone.
+    unit : float
+        Units of length in a metre.
     restitution : float
         Coefficient of the corners, which have it as their `elasticity`; a box has none.
     base_restitution : float
@@ -65,6 +67,7 @@ class PymunkSettings:
     margin: float | None = setting(None, above=0.0)
     reflection: bool = False
     floor: str = setting("velocity", names=("velocity", "both", "position"))
+    unit: float = setting(1.0, above=0.0)
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -76,11 +79,11 @@ class PymunkSettings:
         return iterations_for(scene, self.iterations, self.sweeps)
 
     def margin_of(self, scene: Scene, dt_s: float) -> float:
-        """Return the gap [m] up to which the pivot is kept in contact."""
-        return (self.margin or 0.0) * fall(scene, dt_s)
+        """Return the gap, in units of length, up to which the pivot is kept in contact."""
+        return (self.margin or 0.0) * fall(scene, dt_s) * self.unit
 
     def slop_of(self, scene: Scene, dt_s: float) -> float | None:
-        """Return the penetration [m] that is left alone; None is the library's own."""
+        """Return the penetration that is left alone; None is the library's own."""
         return self.slop if self.margin is None else 10.0 * self.margin_of(scene, dt_s)
 
 
@@ -94,7 +97,25 @@ TUNED = PymunkSettings(
 )
 LANDING = replace(TUNED, positions=True, reflection=True)
 
-DOCUMENTED: tuple[Source, ...] = ()
+DOCUMENTED = (
+    Source("step", "space.step(0.02)", "README, the first example"),
+    Source("iterations", "10, the default", "Space.iterations"),
+    Source("collision_slop", "0.1, the default", "Space.collision_slop"),
+    Source("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
+    Source("friction", "0, the default; here 1", "Shape.friction"),
+    Source("moving floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
+)
+"""What its documentation sets, in pymunk 7.3.1."""
+
+RECOMMENDED = (
+    Source("step", "ten of a tenth", "Space.step: multiple calls with a smaller dt"),
+    Source(
+        "collision_slop",
+        "as high as you can without noticeable overlapping: here 1 mm",
+        "Space.collision_slop",
+    ),
+)
+"""What it recommends for stable and accurate contact."""
 
 FACTORS = (
     factor("geometry"),
@@ -106,6 +127,7 @@ FACTORS = (
     ),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
+    factor("unit", level("the README's 100 in a metre", ("naive",), unit=100.0)),
     factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
     factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
     moving_base("both", "velocity", "position"),

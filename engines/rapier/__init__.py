@@ -3,7 +3,15 @@
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
-from engines.rapier.settings import DOCUMENTED, FACTORS, LANDING, RULES, TUNED, RapierSettings
+from engines.rapier.settings import (
+    DOCUMENTED,
+    FACTORS,
+    LANDING,
+    RECOMMENDED,
+    RULES,
+    TUNED,
+    RapierSettings,
+)
 
 NAIVE = Preset(
     name="naive",
@@ -11,7 +19,7 @@ NAIVE = Preset(
     step_s=1.0 / 60.0,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR,),
+    misses=(Miss.MIRROR, Miss.PEAK),
     own={"friction": 0.5},
 )
 
@@ -25,7 +33,14 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.SLEEP),
+        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
+        NAIVE.recommended(
+            *RECOMMENDED,
+            misses=(Miss.MIRROR, Miss.PEAK),
+            step_s=1.0 / 120.0,
+            substeps=8,
+            coulomb=True,
+        ),
         Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",

@@ -159,7 +159,26 @@ FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
 WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
-DOCUMENTED: tuple[Source, ...] = ()
+DOCUMENTED = (
+    Source("step", "1/60 s, the default", "IntegrationParameters.dt"),
+    Source("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
+    Source("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
+    Source("friction", "0.5, the default; here 1", "ColliderBuilder.friction"),
+    Source(
+        "moving floor",
+        "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
+        "that is velocity-based",
+        "rapier.rs, user guide for Python, Common recipes: Making a moving platform",
+    ),
+)
+"""What its documentation sets, in rapier3d 0.36.1."""
+
+RECOMMENDED = (
+    Source("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
+    Source("substeps", "8, for a more accurate simulation", "the same page"),
+    Source("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
+)
+"""What it recommends for accurate contact."""
 
 FACTORS = (
     Factor(

@@ -8,6 +8,7 @@ from analytic.frame_forces import frame_demands
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
 from engines.layouts import BEAM_DEPTH, SPACING, System
+from engines.run.drive import LAG
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
 from studies.measures.differences import scientific
@@ -17,6 +18,9 @@ Columns = dict[str, list[object]]
 OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
 """Observable of a frame -> its column."""
 
+
+SEEN_M = 1e-6
+"""Of a floor's lag, what is shown [m]."""
 
 HOW_SURE = ("κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",)
 
@@ -47,6 +51,7 @@ def columns_of(
     peak = "θmax [°]" if degrees else "θmax/θcr"
     seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
     slips = [part(row["response"].slip_m / system.width) for row in rows]
+    lags = [_lag(row["response"].observables.get(LAG, 0.0)) for row in rows]
     return {
         peak: [_peak(row, scale) for row in rows],
         "vs exact": [_difference(row) for row in rows],
@@ -57,6 +62,7 @@ def columns_of(
         "late·p": [part(row["impact_error"]) for row in rows],
         "ratio": [fixed(row["velocity_ratio"]) for row in rows],
         **({"slip/B": slips} if any(slip != "-" for slip in slips) else {}),
+        **({"lag [m]": lags} if any(lag != "-" for lag in lags) else {}),
         **{
             column: [_observed(row["response"].observables, name) for row in rows]
             for name, column in seen.items()
@@ -117,6 +123,11 @@ def _slips(response: Response) -> str:
 
 def _stop(response: Response) -> str:
     return f"{response.slip_times[-1][1]:.6f}" if response.slip_times else "-"
+
+
+def _lag(metres: float) -> str:
+    """Return how far a floor lagged, where that is more than its numbers' rounding."""
+    return part(metres) if metres > SEEN_M else "-"
 
 
 def _observed(observables: Mapping[str, float], name: str) -> str:

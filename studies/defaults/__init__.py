@@ -8,15 +8,16 @@ STUDY = Study(
     help="""Engines as they come, over the plane of pulses: where they are right, and where not.
 
 Half and full sines over frequency and amplitude, H/B of 2, 3 and 4, and two widths, which by
-similarity are one. Writes defaults.csv, parts.csv, small.png, large.png and findings.txt;
+similarity are one; every other pulse begins after a second of rest, in which an engine may fall
+asleep. Writes defaults.csv, parts.csv, rests.csv, small.png, large.png and findings.txt;
 resumable. The full study takes some three minutes on two cores, --quick seconds.""",
     table="defaults.csv",
-    products=("defaults.csv", "parts.csv", "small.png", "large.png", "findings.txt"),
+    products=("defaults.csv", "parts.csv", "rests.csv", "small.png", "large.png", "findings.txt"),
     chapters=(
         Chapter(
             folder="defaults",
             question="Where on the map of pulses do engines go wrong as they come?",
-            tables=("parts.csv",),
+            tables=("parts.csv", "rests.csv"),
             full=("--sources", "exact", "engines:naive"),
             minutes=(0.1, 3.5),
             weaker="One H/B, full sines and fewer pulses.",

@@ -11,12 +11,12 @@ from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.measures.presets import engine_of
-from studies.measures.words import alike, part
+from studies.measures.words import alike, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
 
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""
-CASE = ["pulse", "aspect", "width_m", "onsets", "omega_over_p"]
+CASE = ["pulse", "aspect", "width_m", "onsets", "omega_over_p", "rest_s"]
 ALIKE = ["pulse", "aspect", "onsets", "omega_over_p", "source"]
 """Columns that similarity lets answers depend on."""
 
@@ -95,6 +95,29 @@ def shares(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([table.reset_index(), kinds], axis=1)
 
 
+def rests(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each engine and rest before the pulse: how many pulses by verdict."""
+    asked = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
+    lines = []
+    for (source, rest_s), found in asked.groupby(["source", "rest_s"], sort=False):
+        close = int(found["verdict"].isin(RIGHT).sum())
+        lines.append(
+            {"source": source, "rest_s": rest_s, "cases": len(found), "close": close}
+            | counted(found["verdict"].map(KIND))
+        )
+    return pd.DataFrame(lines)
+
+
+def rest_claim(table: pd.DataFrame) -> str:
+    """Say which engines lose answers when all is at rest before a pulse; empty if none does."""
+    said = []
+    for source, found in table.groupby("source", sort=False):
+        close = (found["close"] / found["cases"]).groupby(found["rest_s"] > 0.0).mean()
+        if len(close) == 2 and close[False] - close[True] > CLOSE:
+            said.append(f"{engine_of(str(source))} {_whole(close[False])} to {_whole(close[True])}")
+    return f"After a second of rest fewer are right in {listed(said)}." if said else ""
+
+
 def first_claim(table: pd.DataFrame) -> str:
     """Say between which parts of all pulses the engines get right."""
     sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
@@ -141,4 +164,5 @@ def findings(table: pd.DataFrame, rows: pd.DataFrame) -> str:
     shown = table.assign(
         median_error=table["median_error"].map(part), p90_error=table["p90_error"].map(part)
     )
-    return f"{first_claim(table)} {similarity(rows)}\n\n{shown.to_string(index=False)}"
+    claims = filter(None, (first_claim(table), rest_claim(rests(rows)), similarity(rows)))
+    return f"{' '.join(claims)}\n\n{shown.to_string(index=False)}"

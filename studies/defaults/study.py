@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 
 from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic.motion import Delayed, SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import findings, first_claim, shares, with_verdicts
+from studies.defaults.claims import findings, first_claim, rests, shares, with_verdicts
 from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
@@ -30,6 +30,9 @@ RATIOS = tuple(0.5 * np.arange(1, 17))
 """ω/p."""
 ONSETS = tuple(1.0 + 0.6 * (np.arange(15) + 0.5))
 """Amplitudes over g tan α."""
+REST_S = 1.0
+"""For how long all is at rest before every other pulse [s], in which an engine may fall asleep."""
+
 QUICK_ASPECTS, QUICK_PULSES, QUICK_EVERY = (3.0,), ("full-sine",), 3
 DEFAULT_SOURCES = ("exact", *core_sources("naive"))
 
@@ -38,7 +41,7 @@ def command(
     *,
     out: Out,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
-    frame: Literal["base", "world"] = "base",
+    frame: Literal["base", "world"] | None = None,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -52,7 +55,8 @@ def command(
     sources
         Who is asked; the exact solution always is.
     frame
-        base: the motion of the base is a body force; world: the engines move the base.
+        base: the motion of the base is a body force; world: the engines move the base. By default
+        as an engine's documentation does it.
     quick
         Full sines at H/B 3 alone, and every third frequency and amplitude.
     """
@@ -60,7 +64,7 @@ def command(
     return carry_out(STUDY, plan(sources, frame, quick), out, running, report)
 
 
-def plan(sources: Sequence[str], frame: str, quick: bool) -> Plan:
+def plan(sources: Sequence[str], frame: str | None, quick: bool) -> Plan:
     """Return the plan that puts the pulses to some sources, and to the exact solution."""
     asked = tuple(dict.fromkeys(("exact", *sources)))
     return Plan(
@@ -71,7 +75,7 @@ def plan(sources: Sequence[str], frame: str, quick: bool) -> Plan:
     )
 
 
-def grid_jobs(sources: Sequence[str], frame: str, quick: bool) -> list[Job]:
+def grid_jobs(sources: Sequence[str], frame: str | None, quick: bool) -> list[Job]:
     """Return a job for each pulse, block and source."""
     every = QUICK_EVERY if quick else 1
     return [
@@ -86,7 +90,13 @@ def grid_jobs(sources: Sequence[str], frame: str, quick: bool) -> list[Job]:
 
 
 def _job(
-    pulse: str, aspect: float, width_m: float, onsets: float, ratio: float, source: str, frame: str
+    pulse: str,
+    aspect: float,
+    width_m: float,
+    onsets: float,
+    ratio: float,
+    source: str,
+    frame: str | None,
 ) -> Job:
     block = RigidBlock(width=width_m, height=aspect * width_m)
     amplitude_g = float(onsets) * math.tan(block.alpha)
@@ -97,21 +107,29 @@ def _job(
         "amplitude_g": amplitude_g,
         "onsets": float(onsets),
         "omega_over_p": float(ratio),
+        "rest_s": rest_s_of(onsets, ratio),
     }
-    motion = SinePulse(
+    pulse_alone = SinePulse(
         amplitude=amplitude_g * block.gravity,
         omega=float(ratio) * block.p,
         half_cycles=PULSES[pulse],
     )
-    engine = resolve(source).kind == "engine"
-    options = {"frame": frame} if engine and frame != "base" else {}
+    motion = Delayed(pulse_alone, REST_S) if labels["rest_s"] else pulse_alone
+    options = {"frame": frame} if frame and resolve(source).engine else {}
     return Job(labels=labels, block=block, motion=motion, source=source, options=options)
+
+
+def rest_s_of(onsets: float, ratio: float) -> float:
+    """Return for how long all is at rest before a pulse [s]: every other one of a map begins so."""
+    odd = (ONSETS.index(onsets) + RATIOS.index(ratio)) % 2
+    return REST_S * odd
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's defaults.csv; return the findings as text."""
     rows = read(folder)
     write_table(folder / "parts.csv", shares(rows))
+    write_table(folder / "rests.csv", rests(rows))
     return keep(folder, pictures(folder), findings(shares(rows), rows))
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
+from engines.declaration import AT_REST, RECOMMENDED
 from studies.sources.registry import resolve
 
 Fill = Literal["none", "left", "bottom", "full"]
@@ -37,12 +38,27 @@ class Told:
 
 PRESETS = {
     "naive": Told(
-        words="with the libraries' defaults",
-        short="defaults",
-        varied="one from the defaults",
+        words="as their documentation shows them",
+        short="as documented",
+        varied="one change from the documented settings",
         colour="#D55E00",
         line=":",
         fill="full",
+    ),
+    AT_REST: Told(
+        words="as documented but on a base at rest",
+        short="base at rest",
+        varied="one change from the documented settings on a base at rest",
+        colour="#E69F00",
+        line=":",
+    ),
+    RECOMMENDED: Told(
+        words="as their documentation recommends",
+        short="as recommended",
+        varied="one change from the recommended settings",
+        colour="#56B4E9",
+        line="-.",
+        fill="bottom",
     ),
     "fixed": Told(
         words="with a tuned contact and a fixed step",

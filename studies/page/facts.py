@@ -365,6 +365,16 @@ def _variants(published: Path) -> pd.DataFrame:
     return read_variants(published / "contact" / "variants.csv")
 
 
+def documented() -> str:
+    """Return what the documentation of each engine sets, and where it says so."""
+    rows = [
+        (ENGINES[name].title if not place else "", source.setting, source.value, source.where)
+        for name in OWN
+        for place, source in enumerate(ENGINES[name].preset("naive").documented)
+    ]
+    return table(("engine", "setting", "value", "where it says so"), rows)
+
+
 def beside_own() -> str:
     """Return which settings of "naive" are not the libraries' own, and what those would be."""
     naive = {ENGINES[name].title: ENGINES[name].preset("naive") for name in OWN}

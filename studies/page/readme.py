@@ -83,6 +83,7 @@ def pages(root: Path) -> dict[Path, str]:
         "made": facts.made(published),
         "helps": facts.helps(published),
         "beside_own": facts.beside_own(),
+        "documented": facts.documented(),
         "frames": facts.frames_of_engines(published),
         "rules": facts.rules_of_engines(published),
         "ninth": facts.ninth(root),

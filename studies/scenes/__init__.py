@@ -1,30 +1,34 @@
-"""Scenes beyond one block: a frame of columns and a beam, and a block that slides."""
+"""Scenes beyond one block: a frame of columns and a beam, a block that slides, a moving floor."""
 
 from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="scenes",
     module="studies.scenes.study",
-    help="""A rocking frame and a sliding block in each engine, against their exact solutions.
+    help="""A rocking frame, a sliding block and a moving floor, against their exact solutions.
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
-pulse, a launch, and a hold below the onset. Writes frame.csv and slide.csv, a summary and a picture
-of each, and findings.txt; resumable.""",
+pulse, a launch, and a hold below the onset; the floor is moved in each way that an engine has, and
+should carry a block along. Writes frame.csv, slide.csv and floor.csv, a summary and a picture of
+each, and findings.txt; resumable.""",
     table="frame-summary.csv",
     products=(
         "frame.csv",
         "slide.csv",
+        "floor.csv",
         "frame-summary.csv",
         "slide-summary.csv",
+        "floor-summary.csv",
         "frame.png",
         "slide.png",
+        "floor.png",
         "findings.txt",
     ),
     chapters=(
         Chapter(
             folder="scenes",
-            question="Does it hold for several bodies, and for friction alone?",
-            tables=("frame-summary", "slide-summary"),
+            question="Does it hold for several bodies, for friction alone, on a moving floor?",
+            tables=("frame-summary", "slide-summary", "floor-summary"),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, two places of the steps.",
         ),
@@ -38,6 +42,10 @@ of each, and findings.txt; resumable.""",
         "slide": (
             "Largest error of a slip of a sliding block, in millimetres, for each engine by its "
             "defaults and with its tuned contact at equal steps, on a logarithmic scale."
+        ),
+        "floor": (
+            "How far a floor carries a block of what it should, for each engine and each way of "
+            "moving the floor, when it moves at once and when it moves after a second of rest."
         ),
     },
 )

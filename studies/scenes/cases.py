@@ -1,18 +1,20 @@
-"""The frames and the slides that every engine is asked about."""
+"""The frames, the slides and the floors that every engine is asked about."""
 
 import itertools
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
-from analytic import RockingFrame, SlidingBlock, Still, simulate
+from analytic import Delayed, RockingFrame, SlidingBlock, Still, simulate
 from analytic.block import GRAVITY
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
 from engines.declaration import Stepping
 from engines.layouts import System
+from engines.parts.factors import DEFAULT
 from studies.kit.jobs import Job
 from studies.sources.registry import resolve
 
@@ -24,13 +26,19 @@ PHASES = 4
 """Where in a step an impact falls costs per mille: so many runs at steps that differ by a hair."""
 
 FRICTIONS = (0.1, 0.2, 0.3)
+RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
+"""Of a floor, which a block with a friction of 1 rides over 0.32 m."""
+
+RESTS_S = (0.0, 1.0)
+"""For how long all is at rest before a floor moves [s]."""
+
 HELD_S = 2.0
 """How long a base is accelerated by less than what friction holds [s]."""
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the job of every case and source: of frames first."""
-    return [*frames(sources, quick), *slides(sources, quick)]
+    return [*frames(sources, quick), *slides(sources, quick), *floors(sources)]
 
 
 def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
@@ -79,6 +87,27 @@ def slides(sources: Sequence[str], quick: bool) -> Iterator[Job]:
             if not resolve(source).lands:
                 labels = {"scene": "slide", "case": name}
                 yield Job(labels=labels, block=box, motion=motion, source=source, options=options)
+
+
+def floors(sources: Sequence[str]) -> Iterator[Job]:
+    """Yield the jobs of a block on a floor that moves, as documented but in every way there is."""
+    for source in sources:
+        asked = resolve(source)
+        if asked.engine and asked.preset == DEFAULT and asked.used.frame == "world":
+            for floor, rest_s in itertools.product(ways(asked.used.settings), RESTS_S):
+                yield Job(
+                    labels={"scene": "floor", "floor": floor, "rest_s": rest_s},
+                    block=flat(1.0),
+                    motion=Delayed(RIDE, rest_s) if rest_s else RIDE,
+                    source=source,
+                    options={"settings": {"floor": floor}},
+                )
+
+
+def ways(settings: Any) -> tuple[str, ...]:
+    """Return in which ways an engine's floor can be moved."""
+    known = {item.name: item.metadata["allowed"] for item in fields(settings) if item.metadata}
+    return tuple(known["floor"].names)
 
 
 def flat(friction: float) -> SlidingBlock:

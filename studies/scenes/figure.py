@@ -1,4 +1,4 @@
-"""Errors of frames and slides: engines as rows, presets as bars and dots."""
+"""Errors of frames and slides, and what a floor carries: engines as rows, bars and dots."""
 
 from __future__ import annotations
 
@@ -12,6 +12,12 @@ from studies.measures.presets import engine_of, in_order, preset_of, told
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
 
+
+FLOORS = (
+    ("carried", "moved at once", "o", "#0072B2"),
+    ("carried_after_rest", "after 1 s of rest", "s", "#D55E00"),
+)
+"""Column -> how it is drawn."""
 
 ROOM = 30.0
 """By how much the axis is longer where words stand beside a bar."""
@@ -56,6 +62,30 @@ def draw_slides(lines: pd.DataFrame) -> Figure:
             value = max(1e3 * row["largest_slip_error_m"], LOWEST)
             axes.plot(value, heights[row["source"]], "o", color=colour, markersize=8)
     axes.set_xlabel("largest error of a slip  [mm]")
+    return figure
+
+
+def draw_floors(lines: pd.DataFrame) -> Figure:
+    """Draw how far a floor carries a block: a row for each engine and way of moving the floor.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of floor-summary.csv.
+    """
+    figure = Figure(figsize=(8.0, 1.2 + 0.26 * len(lines)), layout="constrained")
+    axes = figure.subplots()
+    for column, label, marker, colour in FLOORS:
+        axes.plot(100.0 * lines[column], range(len(lines)), marker, color=colour, label=label,
+                  markersize=8, markerfacecolor=colour if marker == "o" else "none")  # fmt: skip
+    pairs = zip(lines["engine"].astype(str), lines["floor"], strict=True)
+    names = [f"{ENGINES[engine].title}: {floor}" for engine, floor in pairs]
+    axes.set_yticks(range(len(lines)), names)
+    axes.set(ylim=(len(lines) - 0.5, -0.5), xlim=(-8.0, 108.0))
+    axes.set_xlabel("way over which the floor carries the block, of its own  [%]")
+    axes.grid(axis="x", alpha=0.25)
+    axes.legend(loc="center", frameon=False)
+    axes.set_title("A floor that is moved by position alone carries nothing", fontsize=12)
     return figure
 
 

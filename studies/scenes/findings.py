@@ -1,11 +1,16 @@
-"""What the summaries of frames and slides show, in a sentence each."""
+"""What the summaries of frames, slides and floors show, in a sentence each."""
 
 from __future__ import annotations
 
 import pandas as pd
 
+from engines import ENGINES
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.words import listed
 from studies.measures.words import part as share
+
+RIDES = 0.9
+"""Part of a floor's way over which a block that rides on it is carried at least."""
 
 
 def frame_sentence(lines: pd.DataFrame) -> str:
@@ -35,6 +40,24 @@ def slide_sentence(lines: pd.DataFrame) -> str:
         f"The slips of a block are off {', '.join(said)}; held at nine tenths of its friction "
         f"for two seconds it creeps by up to {_mm(creeps['creep_m'])} ({creeps['source']}), and "
         f"one launched along its base lifts by up to {_mm(lifts['lift_m'])} ({lifts['source']})."
+    )
+
+
+def floor_sentence(lines: pd.DataFrame) -> str:
+    """Say which ways of moving a floor carry a block, and which not; empty without any."""
+    if lines.empty:
+        return ""
+    alone = lines["floor"] == "position"
+    left = lines[~alone & (lines["carried"] > RIDES) & ~(lines["carried_after_rest"] > RIDES)]
+    asleep = [ENGINES[str(name)].title for name in left["engine"].unique()]
+    slept = f"; after a second of rest it sleeps on in {listed(asleep)}" if asleep else ""
+    most = share(max(float(lines.loc[alone, "carried"].abs().max()), 0.0))
+    engines = lines.loc[alone, "engine"].nunique()
+    least = lines.loc[~alone, "carried"].min()
+    return (
+        f"A floor that is moved by position alone carries a block by no more than {most} of its "
+        f"way in any of {engines} engines, one moved by the other ways by {share(least)} and "
+        f"more{slept}."
     )
 
 

@@ -1,4 +1,4 @@
-"""A rocking frame and a sliding block in each engine, against their exact solutions."""
+"""A rocking frame, a sliding block and a moving floor, against their exact solutions."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Response
+from engines.run.drive import LAG
 from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job, summary
@@ -19,10 +20,10 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
-from studies.measures.presets import is_engine
+from studies.measures.presets import engine_of, is_engine
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
-from studies.scenes.findings import frame_sentence, slide_sentence
+from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
@@ -37,10 +38,11 @@ def command(
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a rocking frame and a sliding block in each engine against their exact solutions.
+    """Hold a rocking frame, a sliding block and a floor that moves against their exact solutions.
 
     The frame's columns turn as a block of another size and restitution does; the block that slides
-    has a closed form. What an engine is not built for is a row that says so.
+    has a closed form; on the floor a block should ride. What an engine is not built for is a row
+    that says so.
 
     Parameters
     ----------
@@ -49,7 +51,8 @@ def command(
     quick
         One frame, one slide, and two places of the steps.
     sources
-        Who is asked; steps that land on impacts are asked about frames alone.
+        Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
+        moved of engines as they are documented.
     """
     check_sources(sources)
     plan = Plan(
@@ -73,6 +76,10 @@ def reduce(job: Job, response: Response) -> Row:
         error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
         row |= {"exact": exact.peak_ratio, "right": response.outcome is exact.outcome}
         return {**row, "error": error, **_of(seen, SEEN_OF_A_FRAME)}
+    if job.labels["scene"] == "floor":
+        travel = float(job.motion.displacement(job.motion.duration))
+        place = float(seen.get("place_m", math.nan))
+        return {**row, "carried": 1.0 + place / travel, LAG: float(seen.get(LAG, math.nan))}
     return {**row, "slips": len(response.slips), "exact_slips": len(exact.slips),
             "slip_error_m": _slip_error(response, exact), **_of(seen, SEEN_OF_A_SLIDE)}  # fmt: skip
 
@@ -104,12 +111,13 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
     parts = {
         name: pd.DataFrame([row for row in rows if row["scene"] == name])
-        for name in ("frame", "slide")
+        for name in ("frame", "slide", "floor")
     }
     return {
         **parts,
         "frame-summary": frame_summary(parts["frame"]),
         "slide-summary": slide_summary(parts["slide"]),
+        "floor-summary": floor_summary(parts["floor"]),
     }
 
 
@@ -152,12 +160,30 @@ def slide_summary(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
+def floor_summary(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return for each way of moving a floor how far it carried a block, and how far it lagged."""
+    lines = []
+    if not rows.empty:
+        for (source, floor), part in rows.groupby(["source", "floor"], sort=False):
+            at_once, rested = (part[(part["rest_s"] > 0.0) == after] for after in (False, True))
+            lines.append(
+                {
+                    "engine": engine_of(str(source)),
+                    "floor": floor,
+                    "carried": at_once["carried"].max(),
+                    "carried_after_rest": rested["carried"].max(),
+                    LAG: part[LAG].max(),
+                }
+            )
+    return pd.DataFrame(lines, columns=["engine", "floor", "carried", "carried_after_rest", LAG])
+
+
 def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-TABLES = ("frame-summary", "slide-summary")
+TABLES = ("frame-summary", "slide-summary", "floor-summary")
 
 
 def report(folder: Path) -> str:
@@ -168,21 +194,22 @@ def report(folder: Path) -> str:
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
-    """Return the lines of both summaries that are of engines."""
-    tables = [read_table(folder / f"{name}.csv") for name in TABLES]
-    return [table[table["source"].map(is_engine)] for table in tables]
+    """Return the lines of the summaries that are of engines."""
+    *tables, floors = [read_table(folder / f"{name}.csv") for name in TABLES]
+    return [*(table[table["source"].map(is_engine)] for table in tables), floors]
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames and the slides show."""
-    frames, slides = engines_in(folder)
-    return f"{frame_sentence(frames)} {slide_sentence(slides)}"
+    """Say what the frames, the slides and the floors show."""
+    frames, slides, floors = engines_in(folder)
+    said = (frame_sentence(frames), slide_sentence(slides), floor_sentence(floors))
+    return " ".join(filter(None, said))
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw the errors of frames and slides, where there are any, from their summaries alone."""
-    from studies.scenes.figure import draw_frames, draw_slides
+    """Draw what there is of frames, slides and floors, from their summaries alone."""
+    from studies.scenes.figure import draw_floors, draw_frames, draw_slides
 
-    frames, slides = engines_in(folder)
-    drawn = {"frame": (draw_frames, frames), "slide": (draw_slides, slides)}
-    return {name: draw(lines) for name, (draw, lines) in drawn.items() if not lines.empty}
+    drawn = zip(("frame", "slide", "floor"), (draw_frames, draw_slides, draw_floors), strict=True)
+    found = zip(drawn, engines_in(folder), strict=True)
+    return {name: draw(lines) for (name, draw), lines in found if not lines.empty}

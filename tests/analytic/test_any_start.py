@@ -9,6 +9,7 @@ from independent import peak_and_impacts
 
 from analytic import (
     MODELS,
+    Delayed,
     Outcome,
     Record,
     RigidBlock,
@@ -286,3 +287,24 @@ def test_a_block_that_does_not_rebound_is_lifted_again_at_once(source, omega_ove
     # average acceleration is of second order in its step, 1e-3 of 1/p, and omega is eight times p
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
     assert type(found.peak_ratio) is float
+
+
+@pytest.mark.parametrize("model", ["exact", "modified"])
+def test_a_rest_before_a_motion_changes_nothing_but_the_time(model):
+    pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+    later = Delayed(pulse, 1.25)
+    times = np.linspace(0.0, later.duration + 1.0, 301)
+    shifted = times - 1.25
+    for name in ("acceleration", "velocity", "displacement"):
+        wanted = np.where(shifted < 0.0, 0.0, getattr(pulse, name)(shifted))
+        assert getattr(later, name)(times) == pytest.approx(wanted, abs=1e-12)
+    at_once, after = simulate(BLOCK, pulse, model), simulate(BLOCK, later, model)
+    assert after.peak_ratio == pytest.approx(at_once.peak_ratio, rel=1e-12)
+    assert after.uplifts[0] == pytest.approx(at_once.uplifts[0] + 1.25, rel=1e-12)
+    assert len(after.impacts) == len(at_once.impacts)
+
+
+@pytest.mark.parametrize("rest", [0.0, -1.0, math.inf, math.nan, "x"])
+def test_a_rest_that_cannot_be(rest):
+    with pytest.raises(ValueError, match="rest_s is"):
+        Delayed(SinePulse(amplitude=1.0, omega=1.0), rest)

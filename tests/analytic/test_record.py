@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, FRAMES, installed_engines
-from engines.declaration import Miss
+from engines.declaration import UNTUNED, Miss
 from engines.run.ground import mean_velocity_of
 from engines.run.timetable import loads_of
 from studies import respond
@@ -271,7 +271,8 @@ def test_loads_are_where_the_acceleration_exceeds_the_onset():
 
 
 RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
-BANDS = {"naive": 0.6, "fixed": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
+BANDS = dict.fromkeys(UNTUNED, 0.6)
+BANDS |= {"fixed": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
 """Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
 fixed step of p dt = 5e-4 is of first order in each of the five impacts, an engine that controls
 its error keeps some 4e-4 of a peak at κ = 1, landing steps of 1/200 are of second order, or add up

@@ -16,7 +16,7 @@ from analytic import simulate
 from analytic.record import Record
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
-from engines.declaration import AS_IT_COMES, Engine, Miss, Precision, Preset, Stepping
+from engines.declaration import UNTUNED, Engine, Miss, Precision, Preset, Stepping
 from engines.parts.compiled import FloatArray
 from engines.pybullet.build import BulletWorld
 from engines.run.drive import build, run
@@ -70,7 +70,7 @@ def test_a_declaration_is_whole(name: str) -> None:
     assert replace(bare, **{name: getattr(naive.settings, name) for name in naive.own}) == (
         naive.settings
     )
-    assert not any(use.misses for use in engine.presets if use.name not in AS_IT_COMES)
+    assert not any(use.misses for use in engine.presets if use.name not in UNTUNED)
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)
         for left_out in filter(None, preset.helped_by.values()):

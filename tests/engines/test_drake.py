@@ -13,9 +13,10 @@ from uses import BLOCK, HERE, pulse, scene
 from analytic import RigidBlock, simulate
 from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
-from engines import Scene
+from engines import ENGINES, Scene
+from engines.declaration import AT_REST
 from engines.parts.shapes import NO_JAM
-from engines.run.drive import run
+from engines.run.drive import LAG, build, run
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
 
@@ -25,12 +26,15 @@ MOTION = pulse(1.3, 3.0, 2)
 OWN_STEPS = "error-controlled"
 
 
-def rocked(preset: str, density: float = 1000.0, **settings: Any) -> Response:
-    return run("drake", scene(MOTION, preset=preset, density=density, settings=settings))
+def rocked(
+    preset: str, density: float = 1000.0, frame: str | None = None, **settings: Any
+) -> Response:
+    asked = scene(MOTION, preset=preset, density=density, frame=frame, settings=settings)
+    return run("drake", asked)
 
 
-def error(preset: str, density: float = 1000.0, **settings: Any) -> float:
-    peak = rocked(preset, density, **settings).peak_ratio
+def error(preset: str, density: float = 1000.0, frame: str | None = None, **settings: Any) -> float:
+    peak = rocked(preset, density, frame, **settings).peak_ratio
     return abs(peak / simulate(BLOCK, MOTION).peak_ratio - 1.0)
 
 
@@ -80,9 +84,9 @@ def test_the_library_s_own_accuracy_is_too_loose_for_a_block() -> None:
 
 def test_a_contact_is_as_stiff_under_a_heavier_block() -> None:
     """1e6 N/m, whatever stands on it: a light block errs little, a heavy one sinks in."""
-    light, ordinary = (error("naive", density) for density in (10.0, 1000.0))
+    light, ordinary = (error(AT_REST, density) for density in (10.0, 1000.0))
     assert light < 0.02 < 0.1 < ordinary
-    heavy = rocked("naive", density=1e5)
+    heavy = rocked(AT_REST, density=1e5)
     assert heavy.sink_m > 0.05 * BLOCK.width
     assert "sank" in heavy.message
 
@@ -156,9 +160,51 @@ def test_settings_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_box_turns_out_of_the_plane_about_its_one_contact() -> None:
     """Its deepest corner alone holds it: what is seen in the plane is a pivot that slides away,
     whatever the friction. Spheres at four corners hold it, and so does a joint in the plane."""
-    hard = Scene(system=BLOCK, motion=pulse(7.0, 6.0, 2), preset="naive")
+    hard = Scene(system=BLOCK, motion=pulse(7.0, 6.0, 2), preset=AT_REST)
     assert simulate(BLOCK, hard.motion).friction_needed < 0.7
     for friction in (1.0, 10.0):
         assert run("drake", replace(hard, settings={"friction": friction})).reason is Reason.SLID
     for settings in ({"planar": True}, {"geometry": "corners"}):
         assert run("drake", replace(hard, settings=settings)).slip_m < 2e-3
+
+
+@pytest.mark.parametrize("preset", ["naive", "fixed", OWN_STEPS])
+def test_a_base_on_a_rail_is_where_it_should_be(preset: str) -> None:
+    found = run("drake", scene(MOTION, preset=preset, frame="world"))
+    assert 0.0 < found.observables[LAG] < 1e-7
+    assert error(preset, frame="world") < (0.2 if preset == "naive" else 5e-3)
+
+
+@pytest.mark.parametrize("preset", ["naive", "fixed"])
+def test_a_base_by_position_alone_drags_nothing(preset: str) -> None:
+    found = run(
+        "drake", scene(MOTION, preset=preset, frame="world", settings={"floor": "position"})
+    )
+    assert found.reason is Reason.SLID
+
+
+def test_a_drive_that_yields_is_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An example's own gains, for a gripper of 0.1 kg, are nothing to a block."""
+    from engines.drake import build as drake
+
+    monkeypatch.setattr(drake, "GAINS", {"p": 1e4, "d": 1.0})
+    assert run("drake", scene(MOTION, preset="naive")).observables[LAG] > 0.1
+
+
+def test_what_naive_leaves_is_what_the_library_does_itself() -> None:
+    from pydrake.geometry import SceneGraphConfig
+    from pydrake.multibody.plant import MultibodyPlantConfig
+
+    said = {source.setting: source.value for source in ENGINES["drake"].presets[0].documented}
+    bare, shapes = MultibodyPlantConfig(), SceneGraphConfig().default_proximity_properties
+    assert f"time_step = {bare.time_step}" in said["step"]
+    assert f"{bare.discrete_contact_approximation!r}" in said["solver"]
+    assert f"stiction_tolerance = {bare.stiction_tolerance}" in said["solver"]
+    assert f"contact_model = {bare.contact_model!r}" in said["contact"]
+    assert f"compliance_type = {shapes.compliance_type!r}" in said["contact"]
+    assert f"point_stiffness = {shapes.point_stiffness:.0f}" in said["contact"]
+    assert f"dissipation = {shapes.hunt_crossley_dissipation:.0f}" in said["contact"]
+    assert f"static_friction = {shapes.static_friction}" in said["friction"]
+    world: Any = build(HERE["drake"], scene(MOTION, preset="naive"))
+    assert world._plant.time_step() == bare.time_step
+    assert world._plant.get_contact_model().name == "kHydroelasticWithFallback"

@@ -34,7 +34,7 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import AS_IT_COMES, Stepping
+from engines.declaration import UNTUNED, Stepping
 from engines.pybullet.calls import Call
 from engines.run.drive import build, run, simulate_world
 from engines.world import Moment, Pose, Step, World
@@ -71,7 +71,7 @@ def test_mirror(engine: str, preset: str) -> None:
     assert there.history is not None
     assert back.history is not None
     # as it comes, a solver ends its iterations early, and visits the corners in one order
-    tolerance = 1e-3 if preset in AS_IT_COMES else equal_to(engine)
+    tolerance = 1e-3 if preset in UNTUNED else equal_to(engine)
     assert there.history.theta == pytest.approx(-back.history.theta, abs=tolerance)
     assert there.peak_ratio > 0.01
 

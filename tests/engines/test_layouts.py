@@ -11,7 +11,7 @@ from analytic import RockingFrame, SlidingBlock, Still, simulate
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason
 from engines import Scene
-from engines.declaration import AS_IT_COMES, Stepping
+from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
 from engines.run.drive import run
 
@@ -26,7 +26,7 @@ APART = [
     for name, engine in HERE.items()
     if Ability.SEVERAL in engine.abilities
     for preset in engine.presets
-    if preset.name not in AS_IT_COMES
+    if preset.name not in UNTUNED
 ]
 
 

@@ -13,7 +13,7 @@ from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
 from engines import Scene
-from engines.declaration import AS_IT_COMES, Miss, Stepping
+from engines.declaration import UNTUNED, Miss, Stepping
 from engines.run.drive import run
 
 MISSED = {
@@ -53,7 +53,7 @@ def test_hardly_above_the_onset(
     exact = simulate(block, motion)
     response = run(engine, Scene(system=block, motion=motion, preset=preset, max_steps=MOST))
     assert response.outcome in (Outcome.AT_REST, Outcome.ROCKED), response.message
-    least, part = MISSED["naive" if preset in AS_IT_COMES else HERE[engine].preset(preset).stepping]
+    least, part = MISSED["naive" if preset in UNTUNED else HERE[engine].preset(preset).stepping]
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=part, abs=least)
 
 
@@ -72,7 +72,7 @@ def test_a_quiet_start_changes_nothing_but_the_time(
     exact = simulate(BLOCK, record)
     response = run(engine, scene(record, preset=preset, max_steps=MOST))
     assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
-    if preset in AS_IT_COMES:  # some lean in their contact before the onset, or lose impacts
+    if preset in UNTUNED:  # some lean in their contact before the onset, or lose impacts
         assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1.0)
     else:
         assert abs(response.uplifts[0] - exact.uplifts[0]) < 0.02 / BLOCK.p

@@ -13,10 +13,10 @@ from uses import BLOCK, HERE, pulse, scene
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, Scene
-from engines.declaration import Stepping
-from engines.run.drive import build, run
+from engines.declaration import AT_REST, Stepping
+from engines.run.drive import LAG, build, run
 from engines.run.look import Look
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
@@ -122,6 +122,51 @@ def test_two_runs_at_once_have_a_model_each() -> None:
     assert second.state() == before
     for world in (first, second):
         world.close()
+
+
+@installed
+@pytest.mark.parametrize("preset", ["naive", "fixed"])
+def test_a_kinematic_base_is_where_it_should_be(preset: str) -> None:
+    found = run("newton", scene(MOTION, preset=preset, frame="world"))
+    assert 0.0 < found.observables[LAG] < 1e-6
+    at_rest = run("newton", scene(MOTION, preset=preset, frame="base"))
+    assert found.peak_ratio == pytest.approx(at_rest.peak_ratio, rel=5e-3)
+
+
+@installed
+@pytest.mark.parametrize("preset", ["naive", "fixed"])
+def test_a_base_by_position_alone_drags_nothing(preset: str) -> None:
+    asked = scene(MOTION, preset=preset, frame="world", settings={"floor": "position"})
+    assert run("newton", asked).reason is Reason.SLID
+
+
+@installed
+def test_a_base_that_moved_begins_anew_for_the_next_run() -> None:
+    asked = scene(MOTION, preset="naive")
+    first, again = (run("newton", asked) for _ in range(2))
+    assert (first.peak_ratio, first.observables) == (again.peak_ratio, again.observables)
+
+
+@installed
+def test_naive_and_the_same_at_rest_are_near_the_exact_peak() -> None:
+    assert error("naive") < 0.15
+    assert error(AT_REST) < 0.15
+
+
+@installed
+def test_what_naive_leaves_is_what_the_library_does_itself() -> None:
+    import newton
+
+    world: Any = build(HERE["newton"], scene(MOTION, preset="naive"))
+    solver, bare = world._recorded._solver, newton.solvers.SolverXPBD(world._recorded.model)
+    for name in (
+        *("iterations", "rigid_contact_relaxation", "rigid_contact_con_weighting"),
+        *("angular_damping", "enable_restitution"),
+    ):
+        assert getattr(solver, name) == getattr(bare, name)
+    assert (bare.iterations, bare.angular_damping) == (2, 0.0)
+    assert newton.ModelBuilder.ShapeConfig().mu == ENGINES["newton"].presets[0].settings.friction
+    world.close()
 
 
 def slow_at_first(marker: Path, job: Job, source: Source) -> Response:

@@ -8,14 +8,14 @@ from declared import held_to
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import AS_IT_COMES, Miss, Stepping
+from engines.declaration import UNTUNED, Miss, Stepping
 from engines.world import ROUNDINGS
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
-TUNED = [(name, preset) for name, preset in USES if preset not in AS_IT_COMES]
+TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
 FIXED = [
     name
     for name, engine in HERE.items()

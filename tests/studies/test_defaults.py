@@ -17,6 +17,8 @@ from studies.defaults.claims import (
     RIGHT,
     friction_needed,
     friction_of,
+    rest_claim,
+    rests,
     shares,
     similarity,
     with_verdicts,
@@ -106,7 +108,8 @@ def test_a_block_that_slides_or_lifts_off_is_not_judged(exact):
             if all(job.labels[name] == case[name] for name in ("width_m", "onsets", "omega_over_p"))
         )
         found = simulate(job.block, job.motion)
-        assert needed == (found.friction_needed if found.min_normal > 0.0 else math.inf)
+        wanted = found.friction_needed if found.min_normal > 0.0 else math.inf
+        assert needed == pytest.approx(wanted, rel=1e-9)  # after a rest, times are rounded anew
     assert friction_of("exact") == math.inf
     assert friction_of("pybullet:naive") == 1.0
 
@@ -140,6 +143,27 @@ def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
     assert study.headline(out) in capsys.readouterr().out
     assert study.headline(out).startswith("As the libraries come, outcome and peak (within 10 %)")
     assert set(study.pictures(out)) == {"small", "large"}
+
+
+def test_every_other_pulse_begins_after_a_rest():
+    jobs = study.grid_jobs(("exact",), None, True)
+    rested = [job for job in jobs if job.labels["rest_s"]]
+    assert len(rested) == len(jobs) // 2
+    for job in rested[::9]:
+        ahead, alone = simulate(job.block, job.motion), simulate(job.block, job.motion.motion)
+        assert ahead.outcome is alone.outcome
+        assert ahead.peak_ratio == pytest.approx(alone.peak_ratio, rel=1e-9)
+
+
+def test_an_engine_that_sleeps_through_a_rest_is_named(exact):
+    asleep = exact["rest_s"] > 0.0
+    lost = made_up(exact)
+    lost.loc[asleep, ["outcome", "peak_ratio"]] = ["failed", math.nan]
+    for engine, said in ((lost, "fewer are right in mujoco all to 0 %."), (made_up(exact), "")):
+        rows = with_verdicts(pd.concat([exact, engine], ignore_index=True))
+        assert rest_claim(rests(rows)).endswith(said) and bool(said) == bool(
+            rest_claim(rests(rows))
+        )
 
 
 def test_a_moving_base_is_asked_of_engines_alone():

@@ -12,8 +12,9 @@ from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.kit.jobs import ask
 from studies.kit.tables import read_table
-from studies.scenes.cases import frames, slides, steps
-from studies.scenes.study import reduce, tabulate
+from studies.scenes.cases import RIDE, floors, frames, slides, steps
+from studies.scenes.findings import floor_sentence
+from studies.scenes.study import floor_summary, reduce, tabulate
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
 PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
@@ -134,6 +135,31 @@ def test_rows_are_reduced_and_summarized():
     }
     assert held.pop("pymunk:naive") == Outcome.SLID.value
     assert held == dict.fromkeys(("exact", "pymunk:fixed", "newton:fixed"), Outcome.AT_REST.value)
+
+
+def test_a_floor_carries_by_its_velocity_and_not_by_its_position():
+    sources = ["exact", "pymunk:naive", "dart:naive", "dart:fixed"]
+    jobs = list(floors(sources))
+    assert {job.source for job in jobs} == {"pymunk:naive", "dart:naive"}
+    rows = [
+        {**job.labels, "source": job.source, **reduce(job, ask(job, job.asked))} for job in jobs
+    ]
+    lines = floor_summary(pd.DataFrame(rows)).set_index(["engine", "floor"])
+    travel = float(RIDE.displacement(RIDE.duration))
+    assert travel == pytest.approx(1.0 / (2.0 * math.pi) ** 2 * 4.0 * math.pi, rel=1e-12)
+    for engine in ("pymunk", "dart"):
+        assert abs(lines.loc[(engine, "position"), "carried"]) < 1e-2
+        assert lines.loc[(engine, "velocity"), "carried"] == pytest.approx(1.0, abs=1e-2)
+        assert lines.loc[(engine, "velocity"), "floor_lag_m"] < 1e-9
+    # what sleeps is not woken by a joint that is driven by its velocity, and is by a servo
+    assert lines.loc[("pymunk", "velocity"), "carried_after_rest"] > 0.99
+    assert abs(lines.loc[("dart", "velocity"), "carried_after_rest"]) < 1e-2
+    assert lines.loc[("dart", "servo"), "carried_after_rest"] > 0.99
+    said = floor_sentence(lines.reset_index())
+    assert said.endswith("after a second of rest it sleeps on in DART.")
+    awake = lines.loc[["pymunk"]].reset_index()
+    assert "sleeps" not in floor_sentence(awake)
+    assert floor_sentence(awake.iloc[:0]) == ""
 
 
 def test_the_study_leaves_its_tables_and_goes_on(tmp_path, capsys):
