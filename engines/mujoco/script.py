@@ -11,7 +11,7 @@ from engines.world import Moment
 MODEL = "block.xml"
 """File of the model, beside the script."""
 
-SAID = ("<option", "<geom", "<pair")
+SAID = ("<option", "<geom", "<pair", "<weld")
 """Elements of a model that a preset sets, the joints apart."""
 
 PLANAR_POSE = ("theta, rate = data.qpos[2], data.qvel[2]",)

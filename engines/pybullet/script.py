@@ -60,7 +60,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             "p.setTimeStep(DT)",
         ),
         step=(
-            *(written(move),) * moves,
+            *written(move).splitlines() * moves,
             *("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
         ),
         pose=(
