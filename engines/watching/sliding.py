@@ -19,6 +19,9 @@ LEAST_SLIP = 1e-5
 STILL_TIME = 0.05
 """A box is at rest when it has not slid for this time, in units of sqrt(B/g)."""
 
+TREMORS = 20.0
+"""After so many times of a rest a box is at rest, too, that trembles where it is."""
+
 WHEN, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
 
@@ -46,6 +49,8 @@ class Slide(State):
         Which way it slides, 0 while it does not.
     since, origin : float
         When and where it last began to slide, or else came to rest.
+    stays_since, stays_at : float
+        Since when, and where, it has moved by no more than a tremor [s, m].
     lift, turn, depth : float
         How high and how deep its centre was seen beyond where it rests [m], and how far it turned
         [rad].
@@ -70,6 +75,8 @@ class Slide(State):
     way: float
     since: float
     origin: float
+    stays_since: float
+    stays_at: float
     lift: float
     turn: float
     depth: float
@@ -95,6 +102,7 @@ def begin_slide(slide: Slide, scene: Scene) -> None:
         keeps_rows=scene.times is not None,
         place=body.at.x - body.home[0],
         origin=body.at.x - body.home[0],
+        stays_at=body.at.x - body.home[0],
     )
 
 
@@ -116,6 +124,8 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
         if way == 0.0:
             slide.since, slide.origin = time, place
     slide.place, slide.time = place, time
+    if abs(place - slide.stays_at) > LEAST_SLIP * slide.width:
+        slide.stays_since, slide.stays_at = time, place
     raised = pose.z - slide.half_height
     slide.lift, slide.depth = max(slide.lift, raised), max(slide.depth, -raised)
     slide.turn = max(slide.turn, abs(pose.theta))
@@ -124,7 +134,8 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
     elif raised > THROWN_WIDTHS * slide.width + slide.half_height:
         slide.problem, slide.far = THROWN, raised
     slide.overturned = abs(pose.theta) > LYING_PART * LYING
-    rests = slide.way == 0.0 and time - slide.since >= slide.still
+    stays = time - slide.stays_since >= TREMORS * slide.still
+    rests = stays or (slide.way == 0.0 and time - slide.since >= slide.still)
     over = time >= slide.motion_end and slide.end == math.inf and rests
     slide.done = slide.overturned or over or time >= slide.end
 

@@ -107,7 +107,8 @@ def test_frames_agree(engine: str, preset: str) -> None:
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
     motion = pulse(1.3, 3.0, 2)
     peaks = [run(engine, scene(motion, preset=preset, frame=frame)).peak_ratio for frame in FRAMES]
-    assert peaks[0] == pytest.approx(peaks[1], rel=equal_to(engine, 1e-6))
+    within = max(equal_to(engine, 1e-6), HERE[engine].scatter)
+    assert peaks[0] == pytest.approx(peaks[1], rel=within)
     assert peaks[0] > 0.1
 
 
