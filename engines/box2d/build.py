@@ -122,7 +122,8 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         build=tuple(line.text for line in lines),
         step=(
             f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}",
-            *("floors[0].linearVelocity = (base_x - floors[0].position.x) / DT, 0.0",) * moves,
+            *(f"ahead = base_x * {n.unit!r} - floors[0].position.x",) * moves,
+            *("floors[0].linearVelocity = ahead / DT, 0.0",) * moves,
             step.format("DT"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),

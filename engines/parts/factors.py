@@ -133,15 +133,14 @@ ASLEEP = Factor(
         Level(
             name="on",
             settings={"sleeping": True},
-            presets=(DEFAULT,),
             trap="a block asleep: gravity that turns wakes nothing",
         ),
     ),
     by_default=False,
 )
-"""A block that was put to sleep, which the presets forbid (setting `sleeping`)."""
+"""A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""
 
-SLEEP = (DEFAULT, ASLEEP.name, ASLEEP.levels[0].name)
+SLEEP = (BEST, ASLEEP.name, ASLEEP.levels[0].name)
 """What a rule about it is shown by."""
 
 UNMOVED_BASE = (BEST, MOVING_BASE, BY_POSITION)

@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import Preset, Stepping
+from engines.declaration import AT_REST, Preset, Stepping
 from studies.advise.evidence import LADDER
 from studies.advise.words import literal
 from studies.kit.journal import Row
@@ -68,7 +68,7 @@ def _kept(lines: pd.DataFrame, engine: str, preset: Preset, p_dt: float) -> Row:
 
 
 def _equal(engine: str) -> list[Preset]:
-    return [use for use in ENGINES[engine].presets if use.stepping is Stepping.FIXED]
+    return [use for use in _uses(engine) if use.stepping is Stepping.FIXED]
 
 
 def reverse_text(
@@ -88,7 +88,7 @@ def reverse_text(
             "published at": [_at(line) for _, line in lines.iterrows()],
         }
     )
-    without = [name for name in lines["engine"].unique() if len(_equal(name)) < _uses(name)]
+    without = [name for name in lines["engine"].unique() if len(_equal(name)) < len(_uses(name))]
     note = (
         f"\nThe other presets of {listed(without)} have no one step: they land on impacts, or "
         "choose their own."
@@ -99,8 +99,8 @@ def reverse_text(
     return "\n\n".join([f"{head}\n{left_aligned(shown.astype(str))}{note}", *parts])
 
 
-def _uses(engine: str) -> int:
-    return len(ENGINES[engine].presets)
+def _uses(engine: str) -> list[Preset]:
+    return [use for use in ENGINES[engine].presets if use.name != AT_REST]
 
 
 def _said(error: float) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from engines import ENGINES
-from engines.declaration import Preset
+from engines.declaration import AT_REST, Preset
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +94,12 @@ OF_NO_ENGINE = {
 
 def methods_of(engines: Iterable[str]) -> dict[str, Method]:
     """Return every method by its name, with the presets of some engines."""
-    uses = [(engine, preset) for engine in engines for preset in ENGINES[engine].presets]
+    uses = [
+        (engine, preset)
+        for engine in engines
+        for preset in ENGINES[engine].presets
+        if preset.name != AT_REST  # it is a variant of what is documented
+    ]
     return {
         **OF_NO_ENGINE,
         **{f"{engine} {preset.name}": _of_preset(engine, preset) for engine, preset in uses},

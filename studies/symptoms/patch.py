@@ -57,9 +57,9 @@ def patch(
         for v in variants(engine)
         if (v.preset, v.factor, v.level) == (DEFAULT, factor, level)
     )
-    usual = ENGINES[engine].preset(DEFAULT).settings
-    scenes = (_scene({}, friction), _scene(settings, friction))
-    before, after = (_files(script(each, each.choose(usual), dt_s)) for each in scenes)
+    usual = ENGINES[engine].preset(DEFAULT)
+    scenes = [usual.posed(_scene(said, friction)) for said in ({}, settings)]
+    before, after = (_files(script(each, usual.chosen(each), dt_s)) for each in scenes)
     return "\n".join(line for name in after for line in _places(name, before[name], after[name]))
 
 

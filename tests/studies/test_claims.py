@@ -112,7 +112,7 @@ def test_of_many_engines_a_sweep_tells_the_range_and_who_is_at_its_ends():
         ]
     )
     said = (
-        "With the libraries' defaults, 3 engines have the fall wrong in up to 3 (pymunk) of 10 "
+        "As their documentation shows them, 3 engines have the fall wrong in up to 3 (pymunk) of 10 "
         "cases each, and peaks off by up to 90 %."
     )
     assert sweep.first_claim(lines) == said
@@ -302,7 +302,7 @@ def test_each_preset_is_counted_over_the_engines_that_were_asked():
     }
     rows = pd.DataFrame([extreme(source, word) for source, word in words.items()])
     text = stability.first_claim(rows)
-    assert "with the libraries' defaults 1 of 3, with" in text
+    assert "as their documentation shows them 1 of 3, with" in text
     assert "with a tuned contact and a fixed step 0 and 1 of 1" in text
 
 

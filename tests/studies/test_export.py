@@ -11,7 +11,7 @@ import pytest
 from analytic import RigidBlock, SinePulse
 from analytic.record import Record
 from engines import ENGINES, Scene, installed_engines
-from engines.declaration import Stepping
+from engines.declaration import UNTUNED, Stepping
 from engines.run.drive import run
 from studies.__main__ import run as rocking
 from studies.export.writing import Exported, files, script_of
@@ -73,7 +73,7 @@ SCENES = {
 @pytest.mark.parametrize(("engine", "preset"), USES)
 def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_path):
     motion, start = SCENES[name]
-    step = {} if preset == "naive" else {"step": 2e-3}
+    step = {} if preset in UNTUNED else {"step": 2e-3}
     asked = scene(motion, preset, start=start, **step)
     row = run(engine, asked)
     assert row.peak_ratio > 0.01
@@ -85,7 +85,7 @@ def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_p
 
 @pytest.mark.parametrize(("engine", "preset"), USES)
 def test_a_script_runs_from_any_folder_and_says_the_versions(engine, preset, tmp_path):
-    asked = scene(PULSE, preset, **({} if preset == "naive" else {"step": 5e-3}))
+    asked = scene(PULSE, preset, **({} if preset in UNTUNED else {"step": 5e-3}))
     written(tmp_path, engine, asked, run(engine, asked).peak_ratio)
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
@@ -175,11 +175,13 @@ def test_no_room_for_a_file_leaves_no_part_of_a_script(tmp_path, capsys):
         (["--engine", "bullet", *SHAKEN], "--engine is 'bullet'; it must be one that can be"),
         (
             ["--engine", "mujoco", "--preset", "landing", *SHAKEN],
-            "--preset is 'landing'; it must have equal steps: naive, fixed",
+            "--preset is 'landing'; it must have equal steps: naive, naive-base-at-rest, "
+            "recommended, fixed",
         ),
         (
             ["--engine", "mujoco:landing", *SHAKEN],
-            "--engine is 'mujoco:landing'; its preset must have equal steps: naive, fixed",
+            "--engine is 'mujoco:landing'; its preset must have equal steps: naive, "
+            "naive-base-at-rest, recommended, fixed",
         ),
         (
             ["--engine", "mujoco:naive", "--preset", "fixed", *SHAKEN],

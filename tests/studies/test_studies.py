@@ -12,7 +12,7 @@ from declared import held_to
 from analytic import RigidBlock, SinePulse
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, installed_engines
-from engines.declaration import Miss
+from engines.declaration import UNTUNED, Miss
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.histories import study as histories
@@ -58,7 +58,7 @@ def within(name):
     if source.lands:
         return max(1e-4, ENGINES[source.engine].scatter)
     # out of the box an engine is wrong by a quarter; an impact inside an equal step costs 1e-2
-    return 0.3 if source.preset == "naive" else 2e-2
+    return 0.3 if source.preset in UNTUNED else 2e-2
 
 
 @pytest.mark.parametrize("name", EVERY_NAME)

@@ -110,7 +110,7 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
     told = sweep.verdict(table, posed(rows))
     assert told.startswith(
         "6 cases are 4 problems, in up to 2 sizes, at 1.1 times the onset. "
-        f"With the libraries' defaults, {said}"
+        f"As their documentation shows them, {said}"
     )
     assert said in sweep.first_claim(many)
     assert f"housner {words}." in sweep.first_claim(lines.assign(source="housner"))
