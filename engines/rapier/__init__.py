@@ -33,10 +33,10 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
+        NAIVE.at_rest(Miss.MIRROR, Miss.RECORD, Miss.SLEEP),
         NAIVE.recommended(
             *RECOMMENDED,
-            misses=(Miss.MIRROR, Miss.PEAK),
+            misses=(Miss.MIRROR,),
             step_s=1.0 / 120.0,
             substeps=8,
             coulomb=True,

@@ -37,7 +37,7 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
 ASIDE = frozenset({"core", "factors", "install", "own_step", "rules", "script", "title"})
 """What an engine declares for readers, and for what is no row of a journal."""
 
-OF_A_PRESET = ("settings", "stepping", "step", "step_s")
+OF_A_PRESET = ("settings", "stepping", "step", "step_s", "frame", "stacked")
 """What of a preset makes a row."""
 
 SHOWN = 3

@@ -112,8 +112,8 @@ def test_of_many_engines_a_sweep_tells_the_range_and_who_is_at_its_ends():
         ]
     )
     said = (
-        "As their documentation shows them, 3 engines have the fall wrong in up to 3 (pymunk) of 10 "
-        "cases each, and peaks off by up to 90 %."
+        "As their documentation shows them, 3 engines have the fall wrong in up to 3 (pymunk) of "
+        "10 cases each, and peaks off by up to 90 %."
     )
     assert sweep.first_claim(lines) == said
     asked = Posed(cases=10, problems=5, sizes=2, least=1.1, largest=1.5)
