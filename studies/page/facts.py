@@ -46,6 +46,9 @@ from studies.sweep.study import read as read_sweep
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
 
+MOVING = "0.2.0"
+"""Version from which on an engine as documented stands on a floor that moves."""
+
 MANY = 15
 """Statements of a chapter up to which they are shown; more are folded."""
 NINTH = Path("tests", "plugin", "my_engine.py")
@@ -105,6 +108,24 @@ def is_published(published: Path, chapter: Chapter) -> bool:
 def missing(published: Path) -> list[str]:
     """Return the folders of the chapters without published results."""
     return [each.folder for _, each in CHAPTERS if not is_published(published, each)]
+
+
+def earlier(published: Path) -> str:
+    """Return the folders of an earlier version that hold what engines did as they were documented.
+
+    Until 0.2.0 that was on a base at rest.
+    """
+    return listed([f"`{each.folder}`" for _, each in CHAPTERS if _earlier(published / each.folder)])
+
+
+def _earlier(folder: Path) -> bool:
+    made = (
+        provenance.record_of(folder)["version"]
+        if (folder / "provenance.json").is_file()
+        else MOVING
+    )
+    tables = folder.glob("*.csv") if made < MOVING else ()
+    return any("naive" in table.read_text(encoding="utf-8") for table in tables)
 
 
 def presets(published: Path) -> pd.DataFrame:

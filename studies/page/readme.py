@@ -84,6 +84,7 @@ def pages(root: Path) -> dict[Path, str]:
         "helps": facts.helps(published),
         "beside_own": facts.beside_own(),
         "documented": facts.documented(),
+        "earlier": facts.earlier(published),
         "frames": facts.frames_of_engines(published),
         "rules": facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
