@@ -17,7 +17,7 @@ from engines.world import Moment, Pose, Step
 
 
 class NewtonWorld:
-    """A block in space, on a plane that does not move, or on a kinematic box."""
+    """A block in space, on a plane that does not move, or on a kinematic one."""
 
     moment = Moment.MIDDLE
 
