@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Help, Preset, Stepping
+from engines.declaration import AT_REST, Help, Preset, Stepping
 from engines.registry import OWN
 from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
@@ -153,8 +153,10 @@ def shared(lines: pd.DataFrame) -> list[str]:
 def presets_short(lines: pd.DataFrame) -> str:
     """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
 
-    A preset of one engine alone has no column: it is named in its cell in the last.
+    A preset of one engine alone has no column: it is named in its cell in the last. What is
+    documented but on a base at rest stands on the engines' page.
     """
+    lines = lines[lines["preset"] != AT_REST]
     names = shared(lines)
     heads = [f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names]
     rows = []

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from engines import ENGINES
+from engines.declaration import AT_REST
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import preset_style, style_of
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
@@ -36,6 +37,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     table : DataFrame
         From `studies.sweep.claims.preset_table`.
     """
+    table = table[table["preset"] != AT_REST]  # a variant, which the table has
     drawing = Figure(figsize=(8.6, 5.6), layout="constrained")
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log")
