@@ -37,7 +37,7 @@ def ladder(method):
 def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(engine, dt):
     p_dt = dt * BLOCK.p
     kept = kept_errors(PUBLISHED, [engine], BLOCK, dt)
-    assert list(kept["preset"]) == ["naive", "recommended", "fixed"]
+    assert list(kept["preset"]) == ["naive", "fixed"]
     for _, line in kept.iterrows():
         known = ladder(f"{engine} {line['preset']}")
         coarser = min(value for _, value, _ in known if value >= p_dt)
