@@ -111,10 +111,28 @@ def build(Box2D: Any, n: Any, s: Any) -> Any:
     return world, bodies, floors
 
 
+FLOORS = {
+    "velocity": (
+        "for floor in floors:",
+        "    floor.linearVelocity = ({x} - floor.position.x) / DT, 0.0",
+    ),
+    "both": (
+        "for floor in floors:",
+        "    floor.position = {x} - DT * {v}, floor.position.y",
+        "    floor.linearVelocity = {v}, 0.0",
+    ),
+    "position": (
+        "for floor in floors:",
+        "    floor.position = {x} - DT * {v}, floor.position.y",
+    ),
+}
+"""How a script moves a floor, in place x and with velocity v in units of length."""
+
+
 def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
     """Return a scene as calls of Box2D; see `engines.parts.script`."""
     n, s = numbers(scene, settings, dt_s), values(scene, settings)
-    lines, moves = filled(build, n=n, s=s), scene.frame == "world"
+    lines, moved = filled(build, n=n, s=s), FLOORS[settings.floor] if scene.frame == "world" else ()
     step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"
     return Script(
         imports=("import Box2D",),
@@ -122,8 +140,10 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         build=tuple(line.text for line in lines),
         step=(
             f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}",
-            *(f"ahead = base_x * {n.unit!r} - floors[0].position.x",) * moves,
-            *("floors[0].linearVelocity = ahead / DT, 0.0",) * moves,
+            *(
+                line.format(x=f"base_x * {n.unit!r}", v=f"base_velocity * {n.unit!r}")
+                for line in moved
+            ),
             step.format("DT"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),

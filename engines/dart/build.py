@@ -136,19 +136,30 @@ def build(dart: Any, n: Any, s: Any) -> Any:
     return world, drive, floor, joints, bodies, shapes
 
 
+LED = ("drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))",)
+PLACED = "drive.setPositions(({x} - DT * {v}, 0.0, 0.0))"
+FLOORS = {
+    "velocity": LED,
+    "servo": LED,
+    "both": (PLACED, "drive.setCommands(({v}, 0.0, 0.0))"),
+    "position": (PLACED,),
+}
+"""How a script moves the base, to a place x with velocity v in units of length."""
+
+
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     """Return a scene as calls of DART; see `engines.parts.script`."""
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
-    unit, theta, moves = settings.unit, n.coordinates[2], scene.frame == "world"
+    unit, theta = settings.unit, n.coordinates[2]
+    moved = FLOORS[settings.floor] if scene.frame == "world" else ()
     return Script(
         imports=("import dartpy as dart",),
         settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
         build=(*(line.text for line in (*defined(touching), *lines)), "world.setTimeStep(DT)"),
         step=(
             f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
-            *(f"ahead = base_x * {unit!r} - drive.getPosition(0)",) * moves,
-            *("drive.setCommands((ahead / DT, 0.0, 0.0))",) * moves,
+            *(line.format(x=f"base_x * {unit!r}", v=f"base_velocity * {unit!r}") for line in moved),
             "world.step(False)",
         ),
         pose=(f"theta, rate = joints[0].getPosition({theta}), joints[0].getVelocity({theta})",),

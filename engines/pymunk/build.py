@@ -129,19 +129,29 @@ def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
         floor.unsafe_set_radius(s.margin * (2.0 if side * about >= s.level else free))
 
 
+STILL = "position_func = lambda body, dt: None"
+"""Of a base in a script: the library leaves it where it is."""
+
+
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
     """Return a scene as calls of pymunk; see `engines.parts.script`."""
     s, moves = values(scene, settings, dt_s), scene.frame == "world"
     lines, unit = filled(build, n=numbers(scene, settings.unit), s=s), settings.unit
     held, times = defined(hold, s=s) if s.margin else (), "" if unit == 1.0 else f" * {unit!r}"
+    before = {
+        "velocity": (f"velocity = (base_x{times} - base.position.x) / DT, 0.0",),
+        "both": (STILL, f"velocity = base_velocity{times}, 0.0"),
+        "position": (STILL,),
+    }[settings.floor if moves else "velocity"] * moves
     return Script(
         imports=("import pymunk",),
         settings=(f"space.step({dt_s!r})", *settings_of(lines)),
         build=tuple(line.text for line in (*lines, *held)),
         step=(
             *("hold(floors, -bodies[0].angle)",) * bool(held),
-            *(f"base.velocity = (base_x{times} - base.position.x) / DT, 0.0",) * moves,
+            *(f"base.{line}" for line in before),
             *(f"space.gravity = pull_x{times}, pull_z{times}", "space.step(DT)"),
+            *(f"base.position = base_x{times}, 0.0",) * (moves and settings.floor != "velocity"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
         moment=Moment.MIDDLE if settings.positions else Moment.NEXT,
