@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import AT_REST, Help, Preset, Stepping
+from engines.declaration import UNTUNED, Help, Preset, Stepping
 from engines.registry import OWN
 from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
@@ -26,6 +26,7 @@ from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED, scientific
 from studies.measures.posed import Posed, posed
 from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.presets import told as told_of
 from studies.measures.words import (
     capital,
     duration,
@@ -154,11 +155,13 @@ def presets_short(lines: pd.DataFrame) -> str:
     """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
 
     A preset of one engine alone has no column: it is named in its cell in the last. What is
-    documented but on a base at rest stands on the engines' page.
+    documented but on a base at rest, and equal steps where there are better ones, stand on the
+    engines' page.
     """
-    lines = lines[lines["preset"] != AT_REST]
+    best = lines["engine"].map(lambda name: ENGINES[str(name)].best.name)
+    lines = lines[lines["preset"].isin(UNTUNED[::2]) | (lines["preset"] == best)]
     names = shared(lines)
-    heads = [f"{in_words(name).removeprefix('with ')} `:{name}`" for name in names]
+    heads = [f"{told_of(name).short} `:{name}`" for name in names]
     rows = []
     for engine, mine in lines.groupby("engine", sort=False):
         cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
