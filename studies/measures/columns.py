@@ -74,8 +74,7 @@ ANSWERS = {
     "carried_after_rest": Column("-", "the same after a second of rest"),
     "floor_lag_m": Column("m", "how far a moving floor was from where it should be, at most"),
     "own_exact": Column("-", "exact peak on the floor as the engine moved it"),
-    "own_error": Column("-", "error of the peak against that"),
-    "median_own_error": Column("-", "the median of these"),
+    "median_own_error": Column("-", "the median of own_error"),
     "blocks": Column("-", "blocks that were asked about"),
     "place_m": Column("m", "where a block ended, relative to its base"),
     "lift_m": Column("m", "how high a block that slides was seen above where it rests"),
@@ -257,7 +256,11 @@ METHODS = {
     "value": Column(
         "-", "of a method, its setting: tolerance, p dt or iterations; of a print, the answer to it"
     ),
-    "own_error": Column("-", "difference of the peak from the method's own finest one"),
+    "own_error": Column(
+        "-",
+        "difference of the peak from the method's own finest one; of a block on a floor that "
+        "moves from own_exact",
+    ),
     "impact_error": Column("1/p", "largest error of the first impact times"),
     "impact_times": Column("1/p", "times of the first impacts"),
     "energy_drift": Column("-", "largest change of energy between impacts, over its scale"),

@@ -26,7 +26,7 @@ from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED, scientific
 from studies.measures.posed import Posed, posed
 from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.presets import told as told_of
+from studies.measures.presets import told as as_told
 from studies.measures.words import (
     capital,
     duration,
@@ -161,7 +161,7 @@ def presets_short(lines: pd.DataFrame) -> str:
     best = lines["engine"].map(lambda name: ENGINES[str(name)].best.name)
     lines = lines[lines["preset"].isin(UNTUNED[::2]) | (lines["preset"] == best)]
     names = shared(lines)
-    heads = [f"{told_of(name).short} `:{name}`" for name in names]
+    heads = [f"{as_told(name).short} `:{name}`" for name in names]
     rows = []
     for engine, mine in lines.groupby("engine", sort=False):
         cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
