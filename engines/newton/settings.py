@@ -109,7 +109,11 @@ DOCUMENTED = (
 
 RECOMMENDED = (
     Source("step", "60 fps of 10 substeps; a smaller dt first", "simulation_tuning.rst"),
-    Source("iterations", "20, free dominoes", "example_basic_dominoes.py, simulation_tuning.rst"),
+    Source(
+        "iterations",
+        "20, free dominoes",
+        "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0",
+    ),
 )
 """What it recommends for less penetration: a smaller step, then more iterations."""
 

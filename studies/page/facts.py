@@ -392,13 +392,14 @@ def _variants(published: Path) -> pd.DataFrame:
 
 
 def documented() -> str:
-    """Return what the documentation of each engine sets, and where it says so."""
+    """Return what the documentation of each engine sets or recommends, and where it says so."""
     rows = [
-        (ENGINES[name].title if not place else "", source.setting, source.value, source.where)
+        (f"{ENGINES[name].title} `:{use.name}`" if not place else "", *source)
         for name in OWN
-        for place, source in enumerate(ENGINES[name].preset("naive").documented)
+        for use in ENGINES[name].presets
+        for place, source in enumerate(use.documented)
     ]
-    return table(("engine", "setting", "value", "where it says so"), rows)
+    return table(("engine and preset", "setting", "value", "where it says so"), rows)
 
 
 def beside_own() -> str:
