@@ -8,6 +8,7 @@ import pytest
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
 from analytic.response import Outcome
+from engines import ENGINES
 from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.kit.jobs import ask
@@ -135,7 +136,9 @@ def test_rows_are_reduced_and_summarized():
         row["source"]: row["outcome"] for row in rows if str(row.get("case", "")).startswith("held")
     }
     assert held.pop("pymunk:naive") == Outcome.SLID.value
-    assert held == dict.fromkeys(("exact", "pymunk:fixed", "newton:fixed"), Outcome.AT_REST.value)
+    if not ENGINES["newton"].installed:
+        assert held.pop("newton:fixed") == Outcome.FAILED.value
+    assert set(held.values()) == {Outcome.AT_REST.value}
 
 
 def test_a_floor_carries_by_its_velocity_and_not_by_its_position():
