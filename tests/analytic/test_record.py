@@ -320,8 +320,21 @@ def test_frames_agree(engine):
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-5)
 
 
+DRAGGED = pytest.mark.xfail(
+    strict=True,
+    reason="its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s",
+)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in NAMES if not getattr(name, "marks", ())])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(*name.values, marks=DRAGGED) if name.values == ("pybullet:naive",) else name
+        for name in (pytest.param(name) if isinstance(name, str) else name for name in NAMES)
+        if not name.marks
+    ],
+)
 def test_a_long_record_through_every_source(name):
     """40 s at 0.005 s, 192 impacts, three times at rest and lifted again twice, κ = 9."""
     record = noise(5, 8001, 0.005, 1.3 * ONSET)
