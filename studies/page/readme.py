@@ -14,7 +14,7 @@ from studies.kit.arguments import BadInputError
 from studies.kit.digests import check, seal
 from studies.kit.journal import PROVENANCE
 from studies.measures.words import capital, meant
-from studies.page import facts, hero
+from studies.page import engine_facts, facts, hero
 from studies.sweep.claims import verdict
 
 PUBLISHED = Path("studies", "published")
@@ -81,14 +81,14 @@ def pages(root: Path) -> dict[Path, str]:
         "counts": facts.counts(published),
         "hero": facts.hero_lines(published),
         "made": facts.made(published),
-        "helps": facts.helps(published),
-        "beside_own": facts.beside_own(),
-        "documented": facts.documented(),
+        "helps": engine_facts.helps(published),
+        "beside_own": engine_facts.beside_own(),
+        "documented": engine_facts.documented(),
         "earlier": facts.earlier(published),
-        "frames": facts.frames_of_engines(published),
-        "rules": facts.rules_of_engines(published),
+        "frames": engine_facts.frames_of_engines(published),
+        "rules": engine_facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
-        "random_fixed": facts.random_fixed(published),
+        "random_fixed": engine_facts.random_fixed(published),
         "glossary": facts.glossary(),
         "minutes": facts.minutes,
     }

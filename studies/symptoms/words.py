@@ -8,8 +8,8 @@ from typing import Any
 
 import pandas as pd
 
-from studies.measures.columns import COLUMNS
 from studies.measures.differences import scientific
+from studies.measures.glossary import COLUMNS
 from studies.measures.words import listed, part
 from studies.symptoms.patch import BLOCK, named
 

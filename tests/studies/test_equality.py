@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from studies.kit import app
-from studies.measures.columns import COLUMNS
 from studies.measures.equality import MEASURED, SAME
+from studies.measures.glossary import COLUMNS
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 

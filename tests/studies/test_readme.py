@@ -10,7 +10,7 @@ import pytest
 
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
-from studies.measures.columns import COLUMNS, GROUPS
+from studies.measures.glossary import COLUMNS, GROUPS
 from studies.page import facts, hero, readme
 from studies.page.markdown import table
 
