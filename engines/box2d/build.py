@@ -17,7 +17,7 @@ from engines.layouts import BASE
 from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
-from engines.parts.script import Script, filled, settings_of
+from engines.parts.script import Script, filled, moved, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
 from engines.world import Grip, Moment, Pose, Step
@@ -121,18 +121,14 @@ FLOORS = {
         "    floor.position = {x} - DT * {v}, floor.position.y",
         "    floor.linearVelocity = {v}, 0.0",
     ),
-    "position": (
-        "for floor in floors:",
-        "    floor.position = {x} - DT * {v}, floor.position.y",
-    ),
 }
-"""How a script moves a floor, in place x and with velocity v in units of length."""
+"""How a script moves a floor that carries, to a place x with velocity v in units of length."""
 
 
 def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
     """Return a scene as calls of Box2D; see `engines.parts.script`."""
     n, s = numbers(scene, settings, dt_s), values(scene, settings)
-    lines, moved = filled(build, n=n, s=s), FLOORS[settings.floor] if scene.frame == "world" else ()
+    lines = filled(build, n=n, s=s)
     step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"
     return Script(
         imports=("import Box2D",),
@@ -140,10 +136,7 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         build=tuple(line.text for line in lines),
         step=(
             f"world.gravity = pull_x * {n.unit!r}, pull_z * {n.unit!r}",
-            *(
-                line.format(x=f"base_x * {n.unit!r}", v=f"base_velocity * {n.unit!r}")
-                for line in moved
-            ),
+            *moved(scene, settings.floor, n.unit, FLOORS),
             step.format("DT"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),

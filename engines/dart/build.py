@@ -22,7 +22,7 @@ from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.script import Script, defined, filled, settings_of
+from engines.parts.script import Script, defined, filled, moved, settings_of
 from engines.parts.shapes import fall, floor_half_size, half_size, touching_spheres
 from engines.parts.units import counted
 from engines.scene import Scene
@@ -137,14 +137,15 @@ def build(dart: Any, n: Any, s: Any) -> Any:
 
 
 LED = ("drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))",)
-PLACED = "drive.setPositions(({x} - DT * {v}, 0.0, 0.0))"
 FLOORS = {
     "velocity": LED,
     "servo": LED,
-    "both": (PLACED, "drive.setCommands(({v}, 0.0, 0.0))"),
-    "position": (PLACED,),
+    "both": (
+        "drive.setPositions(({x} - DT * {v}, 0.0, 0.0))",
+        "drive.setCommands(({v}, 0.0, 0.0))",
+    ),
 }
-"""How a script moves the base, to a place x with velocity v in units of length."""
+"""How a script moves a base that carries, to a place x with velocity v in units of length."""
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
@@ -152,14 +153,13 @@ def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
     unit, theta = settings.unit, n.coordinates[2]
-    moved = FLOORS[settings.floor] if scene.frame == "world" else ()
     return Script(
         imports=("import dartpy as dart",),
         settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
         build=(*(line.text for line in (*defined(touching), *lines)), "world.setTimeStep(DT)"),
         step=(
             f"world.setGravity((pull_x * {unit!r}, 0.0, pull_z * {unit!r}))",
-            *(line.format(x=f"base_x * {unit!r}", v=f"base_velocity * {unit!r}") for line in moved),
+            *moved(scene, settings.floor, unit, FLOORS),
             "world.step(False)",
         ),
         pose=(f"theta, rate = joints[0].getPosition({theta}), joints[0].getVelocity({theta})",),

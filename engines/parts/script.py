@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from textwrap import dedent
 from typing import Any, NamedTuple
 
+from engines.scene import Scene, one_of
 from engines.world import Moment
 
 SETTINGS = "s"
@@ -99,6 +100,31 @@ def defined(function: Callable[..., Any], **values: Any) -> tuple[Line, ...]:
     body = (Line(f"    {text}", setting) for text, setting in lines)
     apart = (Line("", False),) * 2
     return (*apart, *(Line(text, False) for text in head), *body, *apart)
+
+
+def moved(scene: Scene, floor: str, unit: float, ways: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return the lines by which a script moves a base before a step; none where it is at rest.
+
+    Parameters
+    ----------
+    scene : Scene
+    floor : str
+        How a base that moves is moved.
+    unit : float
+        Units of length in a metre.
+    ways : mapping
+        A floor -> its lines, with the place {x} and the velocity {v} of the base to be filled in.
+
+    Raises
+    ------
+    ValueError
+        If a base that moves cannot be moved so.
+    """
+    if scene.frame != "world":
+        return []
+    one_of("floor of a script", floor, tuple(ways))
+    times = "" if unit == 1.0 else f" * {unit!r}"
+    return [line.format(x=f"base_x{times}", v=f"base_velocity{times}") for line in ways[floor]]
 
 
 class _Filling:

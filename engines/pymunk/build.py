@@ -16,7 +16,7 @@ from engines.layouts import BASE, Ability, Body
 from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
-from engines.parts.script import Script, defined, filled, settings_of
+from engines.parts.script import Script, defined, filled, moved, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.pymunk.settings import LEVEL, PymunkSettings
 from engines.scene import Scene
@@ -129,8 +129,11 @@ def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
         floor.unsafe_set_radius(s.margin * (2.0 if side * about >= s.level else free))
 
 
-STILL = "position_func = lambda body, dt: None"
-"""Of a base in a script: the library leaves it where it is."""
+FLOORS = {
+    "velocity": ("base.velocity = ({x} - base.position.x) / DT, 0.0",),
+    "both": ("base.position_func = lambda body, dt: None", "base.velocity = {v}, 0.0"),
+}
+"""How a script moves a base that carries, to a place x with velocity v in units of length."""
 
 
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
@@ -138,20 +141,15 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
     s, moves = values(scene, settings, dt_s), scene.frame == "world"
     lines, unit = filled(build, n=numbers(scene, settings.unit), s=s), settings.unit
     held, times = defined(hold, s=s) if s.margin else (), "" if unit == 1.0 else f" * {unit!r}"
-    before = {
-        "velocity": (f"velocity = (base_x{times} - base.position.x) / DT, 0.0",),
-        "both": (STILL, f"velocity = base_velocity{times}, 0.0"),
-        "position": (STILL,),
-    }[settings.floor if moves else "velocity"] * moves
     return Script(
         imports=("import pymunk",),
         settings=(f"space.step({dt_s!r})", *settings_of(lines)),
         build=tuple(line.text for line in (*lines, *held)),
         step=(
             *("hold(floors, -bodies[0].angle)",) * bool(held),
-            *(f"base.{line}" for line in before),
+            *moved(scene, settings.floor, unit, FLOORS),
             *(f"space.gravity = pull_x{times}, pull_z{times}", "space.step(DT)"),
-            *(f"base.position = base_x{times}, 0.0",) * (moves and settings.floor != "velocity"),
+            *(f"base.position = base_x{times}, 0.0",) * (moves and settings.floor == "both"),
         ),
         pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
         moment=Moment.MIDDLE if settings.positions else Moment.NEXT,

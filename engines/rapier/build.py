@@ -17,7 +17,7 @@ from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
 from engines.parts.reflection import returned
-from engines.parts.script import Script, filled, settings_of
+from engines.parts.script import Script, filled, moved, settings_of
 from engines.parts.shapes import half_size, touching_spheres
 from engines.parts.units import counted
 from engines.rapier.settings import RapierSettings
@@ -125,28 +125,27 @@ def build(rapier: Any, n: Any, s: Any) -> Any:
 
 
 FLOORS = {
-    "target": ("base.set_next_kinematic_translation(({x}, 0.0, {z}))",),
+    "target": ("base.set_next_kinematic_translation(({x}, 0.0, base.translation.z))",),
     "velocity": ("base.linvel = ({x} - base.translation.x) / DT, 0.0, 0.0",),
-    "both": ("base.translation = {x} - DT * {v}, 0.0, {z}", "base.linvel = {v}, 0.0, 0.0"),
-    "position": ("base.translation = {x} - DT * {v}, 0.0, {z}",),
+    "both": (
+        "base.translation = {x} - DT * {v}, 0.0, base.translation.z",
+        "base.linvel = {v}, 0.0, 0.0",
+    ),
 }
-"""How a script moves the base, to a place x at a height z with velocity v in units of length."""
+"""How a script moves a base that carries, to a place x with velocity v in units of length."""
 
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
     """Return a scene as calls of Rapier; see `engines.parts.script`."""
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
-    x, v, z = f"base_x{times}", f"base_velocity{times}", repr(n.lowered[2])
-    floors = FLOORS[settings.floor] if scene.frame == "world" else ()
-    moved = [line.format(x=x, v=v, z=z) for line in floors]
     return Script(
         imports=("import rapier3d as rapier",),
         settings=(f"parameters.dt = {dt_s!r}", *settings_of(lines)),
         build=(*(line.text for line in lines), "parameters.dt = DT"),
         step=(
             f"world.gravity = pull_x{times}, 0.0, pull_z{times}",
-            *moved,
+            *moved(scene, settings.floor, n.unit, FLOORS),
             "world.step()",
         ),
         pose=(

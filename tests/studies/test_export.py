@@ -16,6 +16,7 @@ from engines.run.drive import run
 from studies.__main__ import run as rocking
 from studies.export.writing import Exported, files, script_of
 from studies.kit.provenance import project_version, version_of
+from studies.scenes.cases import ways
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
@@ -81,6 +82,24 @@ def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_p
     done = run_alone(tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"largest rotation {row.peak_ratio:.12g}; " in done.stdout
+
+
+FLOORS = [
+    (engine, floor)
+    for engine in dict.fromkeys(name for name, _ in USES)
+    for floor in ways(ENGINES[engine].presets[0].settings)
+    if floor != "position"
+]
+
+
+@pytest.mark.parametrize(("engine", "floor"), FLOORS)
+def test_a_script_moves_its_floor_in_every_way_that_carries(engine, floor, tmp_path):
+    asked = scene(PULSE, "naive", settings={"floor": floor})
+    row = run(engine, asked)
+    assert row.peak_ratio > 0.01
+    written(tmp_path, engine, asked, row.peak_ratio)
+    done = run_alone(tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.parametrize(("engine", "preset"), USES)
