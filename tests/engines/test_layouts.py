@@ -13,7 +13,8 @@ from analytic.response import Outcome, Reason
 from engines import Scene
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
-from engines.run.drive import run
+from engines.run.drive import run, simulate_world
+from engines.world import Moment, Pose, Step
 
 SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
 
@@ -116,6 +117,37 @@ def test_a_slide_that_is_cut_short_counts_as_far_as_it_got() -> None:
     assert found.history is not None and exact.history is not None
     assert found.history.theta == pytest.approx(exact.history.theta, abs=1e-3)
     assert found.history.velocity == pytest.approx(exact.history.velocity, abs=1e-2)
+
+
+class Trembles:
+    """A world in which a box is pushed to and fro, step by step, by a hundredth of a tremor's way.
+
+    Its velocities are those of a slide.
+    """
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, way_m: float) -> None:
+        self.way_m, self.steps = way_m, 0
+
+    def step(self, step: Step) -> None:
+        self.steps += 1
+
+    def state(self) -> list[Pose]:
+        return [Pose(self.way_m * (self.steps % 2), 0.25, 0.0, 0.0)]
+
+    def fault(self) -> str:
+        return ""
+
+
+def test_a_box_that_trembles_where_it_is_is_at_rest() -> None:
+    """Else a run of a box that two contacts hold in turn would never end."""
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.5)
+    scene = Scene(system=box, motion=SINE, max_steps=20_000)
+    still = simulate_world(Trembles(5e-6), scene, 1e-3, Stepping.FIXED)
+    assert still.outcome is Outcome.AT_REST
+    assert still.steps < 2_000
+    assert simulate_world(Trembles(5e-4), scene, 1e-3, Stepping.FIXED).reason is Reason.UNDECIDED
 
 
 def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:

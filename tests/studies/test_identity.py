@@ -174,7 +174,11 @@ def test_a_table_is_of_its_rows_and_its_tabulation(file, old, new, tables, rows,
 
 @pytest.mark.parametrize(
     ("change", "sources"),
-    [({"settings": {"friction": 0.9}}, {"mujoco:naive"}), ({"title": "another"}, set())],
+    [
+        ({"settings": {"friction": 0.9}}, {"mujoco:naive"}),
+        ({"frame": "base"}, {"mujoco:naive"}),
+        ({"title": "another", "documented": ()}, set()),
+    ],
 )
 def test_a_number_that_an_engine_declares_is_in_its_rows(change, sources, monkeypatch):
     before, whole = made(summary), Source.used.fget

@@ -1,6 +1,7 @@
 """README.md and the page of the published results: what the tables say, and nothing else."""
 
 import csv
+import json
 import re
 import shutil
 from pathlib import Path
@@ -82,6 +83,20 @@ def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
     )
     assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
     assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+
+
+def test_folders_of_an_earlier_version_say_what_they_hold(tmp_path):
+    for name, version, source in (
+        ("sweep", "0.1.0", "mujoco:naive"),
+        ("free", "0.1.0", "mujoco"),
+        ("contact", facts.MOVING, "mujoco:naive"),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "provenance.json").write_text(json.dumps({"version": version}))
+        (tmp_path / name / "rows.csv").write_text(f"source\n{source}\n")
+    assert facts.earlier(tmp_path) == "`sweep`"
+    shutil.rmtree(tmp_path / "sweep")
+    assert facts.earlier(tmp_path) == "none"
 
 
 def runs_of(*runs, commit="a", **record):

@@ -66,6 +66,18 @@ def test_a_slide_is_compared(capsys):
     assert found["message"] == "as pymunk:fixed"
 
 
+def test_a_floor_that_lags_has_a_column_of_its_own(capsys):
+    sources = ("--sources", "exact", "pybullet:naive", "rapier:naive")
+    run(["compare", *SIZE, *sources])
+    said = capsys.readouterr().out
+    assert "lag [m]" in said and "1.8e-02" in said
+    run(["compare", *SIZE, "--sources", "exact", "rapier:naive"])  # its numbers' rounding is none
+    assert "lag [m]" not in capsys.readouterr().out
+    code, (_, found, other) = compared(capsys, *sources)
+    assert code == 0
+    assert found["floor_lag_m"] > 1e-3 > other["floor_lag_m"] > 0.0
+
+
 def test_from_python():
     found = respond("mujoco", FRAME, PULSE)
     assert found.peak_ratio == pytest.approx(simulate(FRAME, PULSE).peak_ratio, rel=2e-5)
