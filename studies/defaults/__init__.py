@@ -1,11 +1,11 @@
-"""Engines as they come, over the plane of pulses and two sizes of a block."""
+"""Engines as documented, over the plane of pulses and two sizes of a block."""
 
 from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="defaults",
     module="studies.defaults.study",
-    help="""Engines as they come, over the plane of pulses: where they are right, and where not.
+    help="""Engines as documented, over the plane of pulses: where they are right, and where not.
 
 Half and full sines over frequency and amplitude, H/B of 2, 3 and 4, and two widths, which by
 similarity are one; every other pulse begins after a second of rest, in which an engine may fall
@@ -16,7 +16,7 @@ resumable. The full study takes some three minutes on two cores, --quick seconds
     chapters=(
         Chapter(
             folder="defaults",
-            question="Where on the map of pulses do engines go wrong as they come?",
+            question="Where on the map of pulses do engines go wrong as documented?",
             tables=("parts.csv", "rests.csv"),
             full=("--sources", "exact", "engines:naive"),
             minutes=(0.1, 3.5),
@@ -25,8 +25,8 @@ resumable. The full study takes some three minutes on two cores, --quick seconds
     ),
     captions={
         "small": (
-            "Frequency and amplitude of full-sine pulses, a map for each engine with its library's "
-            "defaults, of the smaller block: where the outcome is another than the exact one, and "
+            "Frequency and amplitude of full-sine pulses, a map for each engine as its "
+            "documentation shows it, of the smaller block: where the outcome is another than the exact one, and "
             "where the peak is off by more than a tenth."
         ),
         "large": (

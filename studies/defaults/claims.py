@@ -1,4 +1,4 @@
-"""What engines as they come get right of the plane of pulses, and what they make of similarity."""
+"""What engines as documented get right of the plane of pulses, and what they make of similarity."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def first_claim(table: pd.DataFrame) -> str:
         f"{_whole(parts[name])} ({engine_of(str(name))})" for name in parts.index[[0, -1]]
     )
     return (
-        f"As the libraries come, outcome and peak (within {part(CLOSE)}) are right in "
+        f"As documented, outcome and peak (within {part(CLOSE)}) are right in "
         f"{' to '.join(ends)} of {int(sums['cases'].iloc[0])} pulses under which a block neither "
         "slides nor lifts off."
     )
@@ -154,7 +154,7 @@ def similarity(rows: pd.DataFrame) -> str:
     words = alike([f"{engine_of(name)} {value:.0%}" for name, value in engines.items()])
     return (
         f"By similarity a block of {widths[-1]:g} m answers as one of {widths[0]:g} m: the exact "
-        f"solution does; with the defaults an outcome differs, or a peak by more than "
+        f"solution does; as documented an outcome differs, or a peak by more than "
         f"{part(CLOSE)}, in {words} of the pulses.".replace("%", " %").replace("  %", " %")
     )
 

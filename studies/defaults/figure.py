@@ -67,7 +67,7 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
         axes.set_visible(False)
     width = rows["width_m"].iloc[0]
     drawing.suptitle(
-        f"As the libraries come: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m",
+        f"As documented: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m",
         fontsize=11,
     )
     drawing.legend(

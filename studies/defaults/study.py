@@ -1,4 +1,4 @@
-"""Engines as they come, asked over the plane of pulses, of blocks that similarity makes alike."""
+"""Engines as documented, asked over the plane of pulses, of blocks that similarity makes alike."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def command(
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Ask engines as they come over frequency and amplitude of a pulse, and two sizes of a block.
+    """Ask engines as documented over frequency and amplitude of a pulse, and two sizes of a block.
 
     A case that fails is an answer, which the maps show: the exit code is 1 only where an engine
     has no result at all.

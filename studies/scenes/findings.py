@@ -54,7 +54,7 @@ def floor_sentence(lines: pd.DataFrame) -> str:
     left = lines[~alone & (lines["carried"] > RIDES) & ~(lines["carried_after_rest"] > RIDES)]
     asleep = [ENGINES[str(name)].title for name in left["engine"].unique()]
     slept = f"; after a second of rest it sleeps on in {listed(asleep)}" if asleep else ""
-    most = share(max(float(lines.loc[alone, "carried"].abs().max()), 0.0))
+    most = share(float(lines.loc[alone, "carried"].abs().max()))
     engines = lines.loc[alone, "engine"].nunique()
     least = lines.loc[~alone, "carried"].min()
     return (

@@ -141,7 +141,7 @@ def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
     rows = pd.read_csv(out / "defaults.csv")
     assert list(rows["source"].unique()) == ["exact", "pybullet:naive"]
     assert study.headline(out) in capsys.readouterr().out
-    assert study.headline(out).startswith("As the libraries come, outcome and peak (within 10 %)")
+    assert study.headline(out).startswith("As documented, outcome and peak (within 10 %)")
     assert set(study.pictures(out)) == {"small", "large"}
 
 
