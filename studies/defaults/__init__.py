@@ -26,8 +26,8 @@ resumable. The full study takes some three minutes on two cores, --quick seconds
     captions={
         "small": (
             "Frequency and amplitude of full-sine pulses, a map for each engine as its "
-            "documentation shows it, of the smaller block: where the outcome is another than the exact one, and "
-            "where the peak is off by more than a tenth."
+            "documentation shows it, of the smaller block: where the outcome is another than the "
+            "exact one, and where the peak is off by more than a tenth."
         ),
         "large": (
             "The same maps of the larger block, which by similarity should look the same as those "

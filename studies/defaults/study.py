@@ -14,7 +14,7 @@ from analytic.block import RigidBlock
 from analytic.motion import Delayed, SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import findings, first_claim, rests, shares, with_verdicts
+from studies.defaults.claims import findings, first_claim, rest_claim, rests, shares, with_verdicts
 from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
@@ -140,8 +140,12 @@ def read(folder: Path) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say what part of the pulses each engine gets right."""
-    return first_claim(pd.read_csv(folder / "parts.csv"))
+    """Say what part of the pulses each engine gets right, and who loses by a rest."""
+    told = (
+        first_claim(pd.read_csv(folder / "parts.csv")),
+        rest_claim(pd.read_csv(folder / "rests.csv")),
+    )
+    return " ".join(filter(None, told))
 
 
 def pictures(folder: Path) -> Pictures:
