@@ -114,8 +114,9 @@ def rest_claim(table: pd.DataFrame) -> str:
     for source, found in table.groupby("source", sort=False):
         close = (found["close"] / found["cases"]).groupby(found["rest_s"] > 0.0).mean()
         if len(close) == 2 and close[False] - close[True] > CLOSE:
-            said.append(f"{engine_of(str(source))} {_whole(close[False])} to {_whole(close[True])}")
-    return f"After a second of rest fewer are right in {listed(said)}." if said else ""
+            ends = f"from {_whole(close[False])} to {_whole(close[True])}"
+            said.append(f"{engine_of(str(source))} falls {ends}")
+    return f"After 1 s of rest {listed(said)}." if said else ""
 
 
 def first_claim(table: pd.DataFrame) -> str:
@@ -127,8 +128,8 @@ def first_claim(table: pd.DataFrame) -> str:
     )
     return (
         f"As documented, outcome and peak (within {part(CLOSE)}) are right in "
-        f"{' to '.join(ends)} of {int(sums['cases'].iloc[0])} pulses under which a block neither "
-        "slides nor lifts off."
+        f"{' to '.join(ends)} of {int(sums['cases'].iloc[0])} pulses that neither slide a block "
+        "nor lift it off."
     )
 
 
