@@ -114,7 +114,7 @@ def _look(source: str) -> dict[str, Any]:
     if source == "exact":
         return {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
     if colon:
-        return {"color": style.colour, "linewidth": 1.6, "label": f"{engine}, defaults"}
+        return {"color": style.colour, "linewidth": 1.6, "label": f"{engine}, as documented"}
     if style.marker:
         return {
             "color": style.colour,

@@ -93,7 +93,8 @@ def _rows(lines: pd.DataFrame, title: str) -> tuple[Figure, Axes, dict[str, floa
     """Return a figure with a row for each engine, and the height of each source's bar in it."""
     engines = list(dict.fromkeys(map(engine_of, lines["source"])))
     presets = in_order(map(preset_of, lines["source"]))
-    figure = Figure(figsize=(8.0, 1.3 + 0.55 * len(engines)), layout="constrained")
+    each = 0.25 + 0.12 * len(presets)
+    figure = Figure(figsize=(8.0, 1.3 + each * len(engines)), layout="constrained")
     axes = figure.subplots()
     apart = 0.6 / max(len(presets), 1)
     heights = {

@@ -16,7 +16,7 @@ tables of `rocking contact`, `rocking precision` and `rocking restitution`.""",
     captions={
         "symptoms": (
             "What users of an engine see, a panel for each symptom, its size for each engine on a "
-            "logarithmic scale: by the library's defaults, with the one setting that helps most, "
+            "logarithmic scale: as documented, with the one setting that helps most, "
             "with all of a contact tuned at equal steps, and with steps that land on impacts."
         ),
     },
