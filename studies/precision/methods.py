@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Preset
+from engines.declaration import AT_REST, Preset
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +98,7 @@ def methods_of(engines: Iterable[str]) -> dict[str, Method]:
         (engine, preset)
         for engine in engines
         for preset in ENGINES[engine].presets
-        if preset.name not in (AT_REST, RECOMMENDED)  # variants of what is documented
+        if preset.name != AT_REST  # a variant of what is documented
     ]
     return {
         **OF_NO_ENGINE,

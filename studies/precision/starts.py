@@ -16,6 +16,9 @@ from tempfile import TemporaryDirectory
 
 import pandas as pd
 
+from analytic.block import GRAVITY
+from analytic.synthetic import kanai_tajimi
+
 LOADING = ("-c", "import numba, pandas")
 """What R is the time of."""
 
@@ -25,12 +28,18 @@ ASKED = {
     "rocking compare --help": "compare --help",
     "rocking compare, three models": f"{ONE} exact housner modified",
     "rocking compare, five sources": f"{ONE} exact housner modified pybullet mujoco",
+    "rocking blocks, forty under a record": "blocks blocks.csv --record shaking.AT2 --out results",
 }
 AT_LENGTH = {
     "rocking sweep, three models": "sweep --sources exact housner modified --out results",
     "rocking sweep": "sweep --out results",
 }
 """Arguments by what they are called; those of the second are not asked quickly."""
+
+BLOCKS = "\n".join(
+    ["name,width,height", *(f"N{n},{0.3 + 0.02 * n:.2f},{1.6 + 0.03 * n:.2f}" for n in range(40))]
+)
+"""What `rocking blocks` is asked about."""
 
 REPEATS = 5
 """Of what is warm, of which the median counts."""
@@ -76,6 +85,13 @@ def starts_text(starts: pd.DataFrame) -> str:
     return f"{shown.to_string(index=False)}\n{unit}"
 
 
+def _shaking() -> str:
+    """Return an artificial record of 40 s as PEER's files hold one."""
+    record = kanai_tajimi(1, peak=4.0, duration=40.0, omega=12.0, rise=5.0, fall=15.0)
+    head = f"PEER\nA\nACCELERATION IN UNITS OF G\nNPTS= {len(record.samples)}, DT= {record.dt} SEC"
+    return f"{head}\n{' '.join(repr(float(a)) for a in record.samples / GRAVITY)}\n"
+
+
 def _spent(arguments: tuple[str, ...], variables: dict[str, str]) -> float:
     """Return how long a process of Python takes [s], in a folder of its own.
 
@@ -87,6 +103,8 @@ def _spent(arguments: tuple[str, ...], variables: dict[str, str]) -> float:
     # what is imported here is there, too, wherever it was found
     places = os.pathsep.join(str(Path(place).resolve()) for place in sys.path if place)
     with TemporaryDirectory() as folder:
+        Path(folder, "blocks.csv").write_text(BLOCKS)
+        Path(folder, "shaking.AT2").write_text(_shaking())
         began = time.perf_counter()
         done = subprocess.run(
             [sys.executable, *arguments],

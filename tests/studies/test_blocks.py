@@ -289,24 +289,3 @@ def test_what_finished_before_a_kill_is_not_lost(place):
     assert run([*arguments[:-1], "fresh"]) == 0
     both = [pd.read_csv(place / name / "blocks.csv") for name in ("out", "fresh")]
     pd.testing.assert_frame_equal(*(table.drop(columns="wall_s") for table in both), rtol=0.0)
-
-
-@pytest.mark.slow
-def test_forty_blocks_take_ten_times_the_import_of_numba_and_pandas(place):
-    """The least of some runs: what else the machine does only adds."""
-    lines = [f"N{n},{0.3 + 0.02 * n},{1.6 + 0.03 * n}" for n in range(40)]
-    (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))
-    strong = kanai_tajimi(1, peak=4.0, duration=40.0, omega=12.0, rise=5.0, fall=15.0)
-    write_record(place / "X.AT2", strong)
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-
-    def took(*command):
-        begin = time.perf_counter()
-        subprocess.run([sys.executable, *command], check=True, env=environment,
-                       stdout=subprocess.DEVNULL)  # fmt: skip
-        return time.perf_counter() - begin
-
-    asked = ["-m", "studies", "blocks", "list.csv", "--record", "X.AT2", "--out"]
-    took(*asked, "compiles")
-    listed = min(took(*asked, f"out-{n}") for n in range(3))
-    assert listed < 10.0 * min(took("-c", "import numba, pandas") for _ in range(3))
