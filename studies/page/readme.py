@@ -15,6 +15,7 @@ from studies.kit.digests import check, seal
 from studies.kit.journal import PROVENANCE
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
+from studies.page.objections import objections, slippery
 from studies.sweep.claims import verdict
 
 PUBLISHED = Path("studies", "published")
@@ -86,6 +87,8 @@ def pages(root: Path) -> dict[Path, str]:
         "documented": engine_facts.documented(),
         "earlier": facts.earlier(published),
         "frames": engine_facts.frames_of_engines(published),
+        "objections": objections(published, lines),
+        "slippery": slippery(),
         "rules": engine_facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
         "random_fixed": engine_facts.random_fixed(published),

@@ -12,7 +12,7 @@ from declared import held_to
 from scipy.integrate import solve_ivp
 from uses import BLOCK, HERE, USES, every_use, pulse, scene
 
-from analytic import simulate
+from analytic import RigidBlock, SinePulse, simulate
 from analytic.record import Record
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
@@ -159,6 +159,17 @@ BARE = {
 def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) -> None:
     found = BARE[engine](importlib.import_module(HERE[engine].library))
     assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    "engine", [name for name in HERE if "friction" in HERE[name].preset("naive").own]
+)
+def test_a_squat_block_slides_at_the_library_s_own_friction(engine: str) -> None:
+    own = HERE[engine].preset("naive").own["friction"]
+    cube, sine = RigidBlock(width=0.5, height=0.5), SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
+    assert simulate(cube, sine).friction_needed > own
+    posed = Scene(system=cube, motion=sine, preset="naive", settings={"friction": own})
+    assert run(engine, posed).reason is Reason.SLID
 
 
 def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:

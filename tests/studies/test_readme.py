@@ -11,9 +11,11 @@ import pytest
 
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
+from studies.kit.tables import read_table
 from studies.measures.glossary import COLUMNS, GROUPS
 from studies.page import facts, hero, readme
 from studies.page.markdown import table
+from studies.page.objections import objections
 
 ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / readme.PUBLISHED
@@ -83,6 +85,26 @@ def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
     )
     assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
     assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+
+
+def test_what_users_would_object_follows_the_tables(tmp_path):
+    """What lowers an error is shown with what it lowers; what makes more cases wrong is not."""
+    for name in ("contact", "precision", "scenes"):
+        shutil.copytree(PUBLISHED / name, tmp_path / name)
+    path = tmp_path / "contact" / "own-steps.csv"
+    lines = read_table(path, "factor", "level", "trap")
+    plain = (lines["engine"] == "mujoco") & (lines["factor"] == "")
+    better = (lines["engine"] == "mujoco") & (lines["factor"] == "integrator")
+    worse = (lines["engine"] == "mujoco") & (lines["factor"] == "cone")
+    lines.loc[plain, ["median_error", "max_error", "failed", "wrong"]] = [0.5, 0.75, 0, 1]
+    lines.loc[better, ["median_error", "max_error", "failed", "wrong"]] = [0.0123, 0.06, 0, 1]
+    lines.loc[worse, ["median_error", "max_error", "failed", "wrong"]] = [0.001, 0.002, 0, 2]
+    lines.to_csv(path, index=False, na_rep="nan")
+    said = objections(tmp_path, facts.presets(PUBLISHED)).splitlines()
+    row = next(line for line in said if "50 %, max 75 %, 1 wrong" in line)
+    assert "integrator" in row and "1.2 %, max 6 %, 1 wrong" in row
+    assert not any("cone" in line for line in said if "50 %, max 75 %" in line)
+    assert sum(line.startswith("| MuJoCo") for line in said) == 1
 
 
 def test_folders_of_an_earlier_version_say_what_they_hold(tmp_path):
