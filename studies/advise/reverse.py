@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Preset, Stepping
+from engines.declaration import AT_REST, Preset, Stepping
 from studies.advise.evidence import LADDER
 from studies.advise.words import literal
 from studies.kit.journal import Row
@@ -100,7 +100,7 @@ def reverse_text(
 
 
 def _uses(engine: str) -> list[Preset]:
-    return [use for use in ENGINES[engine].presets if use.name not in (AT_REST, RECOMMENDED)]
+    return [use for use in ENGINES[engine].presets if use.name != AT_REST]
 
 
 def _said(error: float) -> str:
