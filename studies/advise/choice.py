@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import Preset
+from engines.declaration import AT_REST, Preset
 from studies.advise.evidence import declared_value, extremes, in_words, settings
 from studies.advise.tried import COUNTS, counted, random_runs
 from studies.kit.journal import Row
@@ -65,6 +65,8 @@ def _of_engine(
     published: Path, known: pd.DataFrame, engine: str, target: float, block: RigidBlock
 ) -> Iterator[Row]:
     for preset in ENGINES[engine].presets:
+        if preset.name == AT_REST:  # the frame of what is documented, varied
+            continue
         mine = known[known["preset"] == preset.name]
         best = cheapest(mine, target)
         yield {
