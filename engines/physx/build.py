@@ -16,6 +16,7 @@ from engines.declaration import Precision
 from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported
 from engines.parts.readback import disagreement
+from engines.parts.reflection import returned
 from engines.parts.script import Script, filled, moved, settings_of
 from engines.parts.settings import given
 from engines.parts.shapes import floor_half_size, half_size, touching_spheres
@@ -23,6 +24,10 @@ from engines.parts.units import counted
 from engines.physx.settings import PhysxSettings
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
+
+CORNER, BASE_DEPTH = 1e-3, 1e-2
+"""Radius of corner balls and half the depth of the base over the height of the block: contacts are
+looked for from the middle of the base, the deeper that is, the more coarsely."""
 
 NOTHING = 1e-9
 """A pull within this part of the weight is the weight: the rounding of a difference wakes a block.
@@ -32,9 +37,9 @@ NOTHING = 1e-9
 def numbers(scene: Scene, s: PhysxSettings) -> SimpleNamespace:
     """Return the numbers of a scene in the settings' unit of length."""
     unit, sunk = s.unit_of(scene), s.sunk_of(scene)
-    radius = s.corner_radius * scene.bodies[0].height
+    radius = CORNER * scene.bodies[0].height
     x, y, z = floor_half_size(scene)
-    half = counted((x, y, s.base_depth * z), unit)
+    half = counted((x, y, BASE_DEPTH * z), unit)
     return SimpleNamespace(
         **{"radius": radius * unit, "base_half": half, "below": (0.0, 0.0, -half[2])},
         **{"lowered": (0.0, 0.0, -sunk), "gravity": (0.0, 0.0, -scene.system.gravity * unit)},
@@ -59,14 +64,14 @@ def of_body(scene: Scene, number: int, s: PhysxSettings, radius: float) -> Simpl
 
 def values(scene: Scene, s: PhysxSettings, dt_s: float) -> SimpleNamespace:
     """Return settings as the library is given them, for ordinary steps dt_s [s]."""
-    unit, reach = s.unit_of(scene), s.contact_offset
-    reach = None if reach is None else reach * scene.system.height * unit
+    unit = s.unit_of(scene)
     bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
+    fastest = None if s.depenetration is None else s.depenetration * unit
     return SimpleNamespace(
-        **{"geometry": s.geometry, "planar": s.planar, "aside": s.locked_aside},
+        **{"geometry": s.geometry, "planar": s.planar},
         **{"friction": float(s.friction), "restitution": s.restitution},
-        **{"dt": dt_s, "damping": s.angular_damping, "depenetration": s.depenetration_of(unit)},
-        scene=given({"bounce_threshold": bounce, "enable_tgs": s.tgs, "enable_pcm": s.pcm}),
+        **{"dt": dt_s, "damping": s.angular_damping, "depenetration": fastest},
+        scene=given({"bounce_threshold": bounce, "enable_tgs": s.tgs}),
         solver=given(
             {
                 "solver_position_iterations": s.iterations,
@@ -74,7 +79,6 @@ def values(scene: Scene, s: PhysxSettings, dt_s: float) -> SimpleNamespace:
                 "sleep_threshold": None if s.sleeping in (None, True) else 0.0,
             }
         ),
-        shape=given({"contact_offset": reach}),
     )
 
 
@@ -83,7 +87,6 @@ def build(sapien: Any, n: Any, s: Any) -> Any:
     physx = sapien.physx
     physx.set_scene_config(gravity=n.gravity, **s.scene)
     physx.set_body_config(**s.solver)
-    physx.set_shape_config(**s.shape)
     system = physx.PhysxCpuSystem()
     stage = sapien.Scene([system])
     material = physx.PhysxMaterial(s.friction, s.friction, s.restitution)
@@ -118,7 +121,7 @@ def build(sapien: Any, n: Any, s: Any) -> Any:
         if s.depenetration is not None:
             body.max_depenetration_velocity = s.depenetration
         if s.planar:
-            body.set_locked_motion_axes([False, s.aside, False, True, False, True])
+            body.set_locked_motion_axes([False, True, False, True, False, True])
         entity = sapien.Entity()
         entity.add_component(body)
         entity.pose = sapien.Pose(b.place, b.turn)
@@ -172,13 +175,17 @@ class PhysxWorld:
         n, s = numbers(scene, settings), values(scene, settings, dt_s)
         self._way = settings.floor if scene.frame == "world" else ""
         self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
-        self._weight, self._dt, self._place, self.lag_m = scene.system.gravity, 0.0, 0.0, 0.0
+        self._reflects, self._weight = settings.reflection, scene.system.gravity
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        self._half = n.bodies[0].half
         self._stage, self._system, self._base, self._bodies = build(self._sapien, n, s)
         self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._fault = self._read_back(n, s)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
+        if self._way or self._reflects:
+            self._lead(step)
         if step.dt_s != self._dt:
             self._system.timestep = self._dt = step.dt_s
         x, z = step.pull_x, step.pull_z + self._weight
@@ -186,12 +193,6 @@ class PhysxWorld:
             pull = (x * self._unit, 0.0, z * self._unit)
             for body in self._bodies:
                 body.add_force_torque(pull, (0.0, 0.0, 0.0), "acceleration")
-        if self._way:
-            place = self._sapien.Pose((step.base_x * self._unit, 0.0, -self._sunk))
-            if self._way == "target":
-                self._base.set_kinematic_target(place)
-            else:
-                self._base.entity.pose = place
         self._system.step()
         if self._way:
             self._place = float(self._base.pose.p[0])
@@ -216,13 +217,34 @@ class PhysxWorld:
         """Release the engine's memory."""
         self._stage.clear()
 
+    def _lead(self, step: Step) -> None:
+        """Let the library lead the base to its place, from where its velocity is as wanted."""
+        place = step.base_x * self._unit if self._way else 0.0
+        if self._way == "position":
+            self._base.entity.pose = self._at(place)
+            return
+        if self._reflects:
+            back = returned(step, self._dt)
+            slip = self._slip(step.side) if back else 0.0
+            self._speed = (place - self._place) / step.dt_s - back * slip
+            self._base.entity.pose = self._at(place - self._speed * step.dt_s)
+        self._base.set_kinematic_target(self._at(place))
+
+    def _at(self, x: float) -> Any:
+        return self._sapien.Pose((x, 0.0, -self._sunk))
+
+    def _slip(self, side: float) -> float:
+        """Return the velocity [units/s] at which the corner at a side slides on the base."""
+        _, _, theta, rate = self.state()[0]
+        level = side * self._half[0] * math.sin(theta) + self._half[2] * math.cos(theta)
+        return float(self._bodies[0].linear_velocity[0]) - rate * level - self._speed
+
     def _read_back(self, n: Any, s: Any) -> str:
         config, block = self._system.config, self._bodies[0]
-        shape = block.collision_shapes[0]
-        material = shape.physical_material
+        material = block.collision_shapes[0].physical_material
         pairs = {
             name: (wanted, getattr(place, name))
-            for place, settings in ((config, s.scene), (block, s.solver), (shape, s.shape))
+            for place, settings in ((config, s.scene), (block, s.solver))
             for name, wanted in settings.items()
         }
         for number, (wanted, body) in enumerate(zip(n.bodies, self._bodies, strict=True)):
