@@ -1,6 +1,6 @@
 """PhysX: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 from engines.physx.build import PhysxWorld, script
 from engines.physx.settings import (
@@ -19,6 +19,7 @@ NAIVE = Preset(
     step_s=0.01,
     documented=DOCUMENTED,
     frame="world",
+    misses=(Miss.MIRROR,),
     own={"friction": 0.3},
 )
 
@@ -32,9 +33,10 @@ ENGINE = Engine(
     abilities=tuple(Ability),
     presets=(
         NAIVE,
-        NAIVE.at_rest(),
+        NAIVE.at_rest(Miss.MIRROR),
         NAIVE.recommended(
             *RECOMMENDED,
+            misses=(Miss.MIRROR,),
             step_s=1.0 / 120.0,
             tgs=True,
             iterations=64,

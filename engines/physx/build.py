@@ -134,10 +134,14 @@ def build(sapien: Any, n: Any, s: Any) -> Any:
 
 
 FLOORS = {
-    "target": ("base.set_kinematic_target(sapien.Pose([{x}, 0.0, base.pose.p[2]]))",),
-    "position": ("base.entity.pose = sapien.Pose([{x}, 0.0, base.pose.p[2]])",),
+    "belt": (
+        "base.entity.pose = sapien.Pose([-DT * {v}, 0.0, base.entity_pose.p[2]])",
+        "base.set_kinematic_target(sapien.Pose([0.0, 0.0, base.entity_pose.p[2]]))",
+    ),
+    "target": ("base.set_kinematic_target(sapien.Pose([{x}, 0.0, base.entity_pose.p[2]]))",),
+    "position": ("base.entity.pose = sapien.Pose([{x}, 0.0, base.entity_pose.p[2]])",),
 }
-"""How a script moves a base, to a place x in units of length."""
+"""How a script moves a base, to a place x with velocity v in units of length."""
 
 
 def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
@@ -158,7 +162,7 @@ def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
             "system.step()",
         ),
         pose=(
-            "turn = bodies[0].pose.q",
+            "turn = bodies[0].entity_pose.q",
             "theta = 2.0 * math.atan2(turn[2], turn[0])",
             "rate = float(bodies[0].angular_velocity[1])",
         ),
@@ -194,14 +198,16 @@ class PhysxWorld:
             for body in self._bodies:
                 body.add_force_torque(pull, (0.0, 0.0, 0.0), "acceleration")
         self._system.step()
-        if self._way:
-            self._place = float(self._base.pose.p[0])
+        if self._way == "belt":
+            self._place = step.base_x * self._unit
+        elif self._way:
+            self._place = float(self._base.entity_pose.p[0])
             self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         for number, body in enumerate(self._bodies):
-            pose = body.pose
+            pose = body.entity_pose
             (x, _, z), turn = pose.p.tolist(), pose.q.tolist()
             x, z = (x - self._place) / self._unit, (z + self._sunk) / self._unit
             rate = float(body.angular_velocity[1])
@@ -223,10 +229,13 @@ class PhysxWorld:
         if self._way == "position":
             self._base.entity.pose = self._at(place)
             return
-        if self._reflects:
-            back = returned(step, self._dt)
+        belt = self._way == "belt"
+        if belt or self._reflects:
+            back = returned(step, self._dt) if self._reflects else 0.0
             slip = self._slip(step.side) if back else 0.0
-            self._speed = (place - self._place) / step.dt_s - back * slip
+            pace = step.base_velocity * self._unit if belt else (place - self._place) / step.dt_s
+            place = 0.0 if belt else place
+            self._speed = pace - back * slip
             self._base.entity.pose = self._at(place - self._speed * step.dt_s)
         self._base.set_kinematic_target(self._at(place))
 

@@ -58,8 +58,9 @@ class PhysxSettings(Counted):
         Give the sliding velocity of the corner about which the block turns back to it, by the
         velocity of the base; not in the steps of an impact.
     floor : str
-        How a base that moves is moved: by a "target" for the end of the step, or by "position"
-        alone.
+        How a base that moves is moved: by a "target" for the end of the step; as a "belt" whose
+        targets are where it is, set back before by what it goes in a step, since of a far place
+        less is told apart; or by "position" alone.
     restitution : float
         Coefficient of both; SAPIEN's own is 0.1.
     """
@@ -77,7 +78,7 @@ class PhysxSettings(Counted):
     units: float | None = setting(above=0.0)
     centred: bool = False
     reflection: bool = False
-    floor: str = setting("target", names=("target", "position"))
+    floor: str = setting("target", names=("target", "belt", "position"))
     restitution: float = setting(0.1, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:
@@ -99,7 +100,7 @@ TUNED = PhysxSettings(
     restitution=0.0,
 )
 
-LANDING = replace(TUNED, iterations=MOST, velocity_iterations=MOST, reflection=True)
+LANDING = replace(TUNED, iterations=MOST, velocity_iterations=MOST, reflection=True, floor="belt")
 
 SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
@@ -158,7 +159,7 @@ FACTORS = (
     factor("centred", name="origin"),
     factor("sleeping", level("on", sleeping=True), by_default=False),
     factor("friction", level("0.3, SAPIEN's own", (DEFAULT,), SMOOTH, friction=0.3)),
-    moving_base("target", "position"),
+    moving_base("target", "belt", "position"),
 )
 """What its contact can be set to."""
 

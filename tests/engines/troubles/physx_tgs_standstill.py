@@ -31,7 +31,7 @@ def end(x: float, speed: float, tgs: bool) -> float:
     cube.linear_velocity = [speed, 0, 0]
     for _ in range(round(TIME / DT)):
         system.step()
-    return float(cube.pose.p[0]) - x
+    return float(cube.entity_pose.p[0]) - x
 
 
 least = 0.5 * float(np.spacing(np.float32(10.0))) * ITERATIONS / DT
