@@ -43,7 +43,7 @@ ENGINE = Engine(
             velocity_iterations=4,
             bounce_threshold=0.2,
         ),
-        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(name="fixed", settings=TUNED, step=1e-3),
         Preset(
             name="landing",
             settings=LANDING,

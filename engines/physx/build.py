@@ -72,6 +72,7 @@ def values(scene: Scene, s: PhysxSettings, dt_s: float) -> SimpleNamespace:
         **{"friction": float(s.friction), "restitution": s.restitution},
         **{"dt": dt_s, "damping": s.angular_damping, "depenetration": fastest},
         scene=given({"bounce_threshold": bounce, "enable_tgs": s.tgs}),
+        shape=given({"contact_offset": s.contact_offset}),
         solver=given(
             {
                 "solver_position_iterations": s.iterations,
@@ -87,6 +88,7 @@ def build(sapien: Any, n: Any, s: Any) -> Any:
     physx = sapien.physx
     physx.set_scene_config(gravity=n.gravity, **s.scene)
     physx.set_body_config(**s.solver)
+    physx.set_shape_config(**s.shape)
     system = physx.PhysxCpuSystem()
     stage = sapien.Scene([system])
     material = physx.PhysxMaterial(s.friction, s.friction, s.restitution)
@@ -250,10 +252,11 @@ class PhysxWorld:
 
     def _read_back(self, n: Any, s: Any) -> str:
         config, block = self._system.config, self._bodies[0]
-        material = block.collision_shapes[0].physical_material
+        shape = block.collision_shapes[0]
+        material = shape.physical_material
         pairs = {
             name: (wanted, getattr(place, name))
-            for place, settings in ((config, s.scene), (block, s.solver))
+            for place, settings in ((config, s.scene), (block, s.solver), (shape, s.shape))
             for name, wanted in settings.items()
         }
         for number, (wanted, body) in enumerate(zip(n.bodies, self._bodies, strict=True)):

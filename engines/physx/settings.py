@@ -50,6 +50,9 @@ class PhysxSettings(Counted):
         Part of the angular velocity that is lost in a second; its own is 0.05.
     sleeping : bool or None
         Whether a block that has hardly moved for 0.4 s is no longer simulated; its own is on.
+    contact_offset : float or None
+        Gap [units of length] below which a contact holds, half of it on each side; its own is 0.01.
+        A block that is held before it strikes does so in two steps.
     units : float or None
         Units of length in the height of the block; None counts in metres.
     centred : bool
@@ -75,6 +78,7 @@ class PhysxSettings(Counted):
     depenetration: float | None = setting(above=0.0)
     angular_damping: float | None = setting(least=0.0)
     sleeping: bool | None = None
+    contact_offset: float | None = setting(above=0.0)
     units: float | None = setting(above=0.0)
     centred: bool = False
     reflection: bool = False
@@ -95,28 +99,35 @@ TUNED = PhysxSettings(
     depenetration=1e-6,
     angular_damping=0.0,
     sleeping=False,
+    contact_offset=1e-6,
     units=1.0,
     centred=True,
     restitution=0.0,
 )
 
-LANDING = replace(TUNED, iterations=MOST, velocity_iterations=MOST, reflection=True, floor="belt")
+LANDING = replace(
+    TUNED,
+    iterations=MOST,
+    velocity_iterations=MOST,
+    contact_offset=None,
+    reflection=True,
+    floor="belt",
+)
 
 SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
 
 DOCUMENTED = (
     Source("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
-    Source(
-        "iterations", "10 of position, 1 of velocity, the defaults", f"{SHAPES}: set_body_config"
-    ),
+    Source("iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"),
     Source(
         "solver",
-        "enable_tgs = True, enable_pcm = True, the defaults",
+        "enable_tgs = True, the default",
         f"{SHAPES}: set_scene_config",
     ),
     Source("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
     Source("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
+    Source("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
     Source("restitution", "0.1, the default", "physx.get_default_material()"),
     Source("friction", "0.3, the default; here 1", "physx.get_default_material()"),
     Source("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
@@ -143,6 +154,7 @@ FACTORS = (
         (level("255, 255", iterations=MOST, velocity_iterations=MOST),),
     ),
     factor("depenetration", traps={"fixed": PUSHED}),
+    factor("contact_offset"),
     factor("angular_damping"),
     factor("bounce_threshold", level("0.01 m/s", BOTH, bounce_threshold=0.01)),
     factor("restitution"),
