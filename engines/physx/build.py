@@ -55,7 +55,7 @@ def of_body(scene: Scene, number: int, s: PhysxSettings, radius: float) -> Simpl
     return SimpleNamespace(
         **{"half": counted(half_size(body), unit), "density": body.density / unit**3},
         **{"mass": body.mass, "inertia": tuple(moment * unit**2 for moment in body.inertia)},
-        corners=[counted(corner, unit) for corner in spheres],
+        corners=[SimpleNamespace(at=counted(corner, unit)) for corner in spheres],
         **{"place": (at.x * unit, 0.0, at.z * unit - s.sunk_of(scene)), "turn": turn},
         **{"velocity": (at.velocity_x * unit, 0.0, at.velocity_z * unit), "at_rest": at.at_rest},
         **{"spin": (0.0, at.rate, 0.0), "carried": scene.layout.rests(number)},
@@ -111,7 +111,7 @@ def build(sapien: Any, n: Any, s: Any) -> Any:
         else:
             for corner in b.corners:
                 ball = physx.PhysxCollisionShapeSphere(n.radius, material)
-                ball.local_pose = sapien.Pose(corner)
+                ball.local_pose = sapien.Pose(corner.at)
                 body.attach(ball)
             if b.carried:
                 body.attach(physx.PhysxCollisionShapeBox(b.half, material))

@@ -81,3 +81,13 @@ def test_its_own_settings_are_told_apart_by_what_is_read_back() -> None:
     world.close()
     assert physx.PhysxCpuSystem().config.bounce_threshold == pytest.approx(0.01)
     assert physx.PhysxRigidDynamicComponent().sleep_threshold == 0.0
+
+
+def test_a_script_of_corners_names_each() -> None:
+    """What a script builds is written out: no name of the adapter's is left in it."""
+    asked = ENGINES["physx"].preset("fixed")
+    told = ENGINES["physx"].script
+    assert told is not None
+    lines = "\n".join(told(scene(MOTION), asked.settings, 1e-3).build)
+    assert lines.count("sapien.Pose((-0.") == lines.count("sapien.Pose((0.1") == 1
+    assert "corner" not in lines
