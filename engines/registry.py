@@ -25,6 +25,7 @@ OWN = {
     "rapier": "engines.rapier:ENGINE",
     "drake": "engines.drake:ENGINE",
     "newton": "engines.newton:ENGINE",
+    "physx": "engines.physx:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

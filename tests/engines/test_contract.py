@@ -18,6 +18,7 @@ from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
 from engines.declaration import UNTUNED, Engine, Miss, Precision, Preset, Stepping
 from engines.parts.compiled import FloatArray
+from engines.parts.quiet import imported
 from engines.pybullet.build import BulletWorld
 from engines.run.drive import build, run
 from engines.world import Moment, Pose
@@ -145,19 +146,24 @@ def _pymunk(library: Any) -> dict[str, Any]:
     return {"friction": library.Poly.create_box(library.Body(1.0, 1.0)).friction}
 
 
+def _physx(library: Any) -> dict[str, Any]:
+    return {"friction": library.physx.get_default_material().static_friction}
+
+
 BARE = {
     "pybullet": _bullet,
     "box2d": _box2d,
     "rapier": _rapier,
     "drake": _drake,
     "pymunk": _pymunk,
+    "physx": _physx,
 }
 """What each library makes of a box of which nothing is said."""
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
 def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) -> None:
-    found = BARE[engine](importlib.import_module(HERE[engine].library))
+    found = BARE[engine](imported(HERE[engine].library))
     assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
 
 

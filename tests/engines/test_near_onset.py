@@ -21,6 +21,7 @@ MISSED = {
     Stepping.FIXED: (5e-3, 0.1),
     Stepping.OWN: (5e-4, 2e-2),
     Stepping.LANDING: (5e-4, 1e-3),
+    "physx": (1e-3, 1e-3),  # of a small swing single precision tells less apart
 }
 """By how much of alpha, or of itself, a peak near the onset may be missed; most are small."""
 AWAKE = [(name, use) for name, use in USES if Miss.SLEEP not in HERE[name].preset(use).misses]
@@ -53,7 +54,9 @@ def test_hardly_above_the_onset(
     exact = simulate(block, motion)
     response = run(engine, Scene(system=block, motion=motion, preset=preset, max_steps=MOST))
     assert response.outcome in (Outcome.AT_REST, Outcome.ROCKED), response.message
-    least, part = MISSED["naive" if preset in UNTUNED else HERE[engine].preset(preset).stepping]
+    use = HERE[engine].preset(preset)
+    kind = "naive" if preset in UNTUNED else use.stepping
+    least, part = MISSED[engine if kind is Stepping.LANDING and engine in MISSED else kind]
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=part, abs=least)
 
 
