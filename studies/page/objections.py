@@ -88,7 +88,10 @@ def _of_preset(line: Line) -> str:
 
 def _settings(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
     """Yield the single settings that lower the median error most without more wrong outcomes."""
-    (without,) = _rows(lines[(lines["engine"] == engine) & (lines["factor"] == "")])
+    plain = _rows(lines[(lines["engine"] == engine) & (lines["factor"] == "")])
+    if not plain:
+        return
+    (without,) = plain
     varied = changed(lines, engine, DEFAULT)
     better = varied[
         (varied["failed"] + varied["wrong"] <= without["failed"] + without["wrong"])
