@@ -113,9 +113,9 @@ def cells(
     return shown
 
 
-def dot(name: str, marker: str, colour: ColorType = "#555555", **look: Any) -> Line2D:
+def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:
     """Return what stands in a key for a marker."""
-    return Line2D([], [], linestyle="none", marker=marker, color=colour, label=name, **look)
+    return Line2D([], [], linestyle="none", marker=marker, color=color, label=name, **look)
 
 
 def preset_dots(presets: Sequence[str] | Mapping[str, Any]) -> list[Line2D]:

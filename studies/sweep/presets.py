@@ -67,9 +67,9 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     times.set_xlabel("run time of a case  [ms]", fontsize=10)
     times.grid(axis="x", alpha=0.25)
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
-    words = [f"{told(name).short} by up to {most[name]}" for name in (presets[0], presets[-1])]
+    words = [f"by up to {most[name]} {told(name).short}" for name in (presets[0], presets[-1])]
     cases = int(table["cases"].max())
-    drawing.suptitle(f"In {cases} cases peaks are off {' and with '.join(words)}", fontsize=12)
+    drawing.suptitle(f"In {cases} cases peaks are off {', '.join(words)}", fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
 
@@ -111,9 +111,9 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
     error_scale(bar.ax.yaxis, LEAST, MOST, 1)
     bar.ax.set_title("error", fontsize=9)
     median = {name: part(groups[name]["error"].abs().median()) for name in presets}
-    words = [f"{told(name).short} {median[name]}" for name in (presets[0], presets[-1])]
+    words = [f"{median[name]} {told(name).short}" for name in (presets[0], presets[-1])]
     number = rows["figure"].iloc[0]
-    drawing.suptitle(f"Figure {number}: the median error is {', with '.join(words)}", fontsize=12)
+    drawing.suptitle(f"Figure {number}: half of the errors are below {', '.join(words)}", fontsize=12)
     key(drawing, [dot(WORDS[kind], look, "#d00000", markersize=5) for kind, look in MARKERS.items()]
         + [dot("both overturn, as they should", "s", STRIP, markersize=8)])  # fmt: skip
     return drawing
@@ -129,7 +129,7 @@ def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
     axes.set_facecolor(STRIP)
     shown = cells(axes, table.reindex(index=sources, columns=frequencies), LEAST, MOST)
     for kind, look in MARKERS.items():
-        wrong = part[mine["wrong"] == kind]
+        wrong = mine[mine["wrong"] == kind]
         x = np.searchsorted(frequencies, wrong["omega_over_p"])
         y = [sources.index(source) for source in wrong["source"]]
         axes.plot(x, y, look, color="#d00000", markersize=2.8)
