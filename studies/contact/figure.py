@@ -40,10 +40,10 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         _one_engine(axes, ordered)
         axes.set_ylim(most + 0.5, -0.6)
         axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
-        axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center", color="#555555",
-                  transform=axes.get_yaxis_transform())  # fmt: skip
+        axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center",
+                  color="#555555", transform=axes.get_yaxis_transform())  # fmt: skip
     for axes in grid[-2:]:
-        axes.set_xlabel("relative error of the peak, median to largest", fontsize=10)
+        axes.set_xlabel("error of the peak, median to largest", fontsize=10)
     changes = int((lines["factor"] != "").sum())
     harmful = int(lines.loc[lines["factor"] != "", "worse"].sum())
     drawing.suptitle(
@@ -53,7 +53,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     )
     marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
                                                      markerfacecolor="none")]  # fmt: skip
-    key(drawing, [*preset_dots(lines["preset"].unique()), *marks], 7, handletextpad=0.1)
+    key(drawing, [*preset_dots(lines["preset"]), *marks], 7, handletextpad=0.1)
     return drawing
 
 

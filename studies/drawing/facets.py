@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -118,7 +118,7 @@ def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Li
     return Line2D([], [], linestyle="none", marker=marker, color=color, label=name, **look)
 
 
-def preset_dots(presets: Sequence[str] | Mapping[str, Any]) -> list[Line2D]:
+def preset_dots(presets: Iterable[str]) -> list[Line2D]:
     """Return what stands in a key for presets, in their order."""
     return [dot(told(name).short, "o", told(name).colour) for name in in_order(presets)]
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from studies.drawing.styles import LOWEST, Style, line_of, style_of
+from studies.drawing.styles import LOWEST, Style, line_of, name_of, style_of
 from studies.kit.drafts import draft
 
 OVERTURNED = "overturned"
@@ -157,7 +157,7 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
 
 def _handle(source: str) -> Line2D:
     style = style_of(source)
-    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=source)
+    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name_of(source))
     handle.set(linestyle=line_of(source), marker=style.marker, fillstyle=style.fill)
     return handle
 

@@ -50,6 +50,13 @@ def engine_in(method: str) -> tuple[str, str]:
     return (engine, preset) if engine in ENGINES else ("", "")
 
 
+def called(method: str) -> str:
+    """Return how a method is called beside others: an engine by its title, with its preset."""
+    engine, varied = engine_in(method)
+    preset, comma, dial = varied.partition(", ")
+    return f"{title_of(engine)}, {told(preset).short}{comma}{dial}" if engine else method
+
+
 def style_of(method: str) -> Style:
     """Return the style of a method: of an engine that of its preset; grey for what is unknown."""
     engine, varied = engine_in(method)
@@ -153,8 +160,7 @@ def _names(lines: pd.DataFrame) -> Sequence[Name]:
     names = []
     for method, line in lines.groupby("method", sort=False):
         preset, _, dial = engine_in(str(method))[1].partition(", ")
-        shown = line["error"].fillna(WRONG)
-        best = line.assign(error=shown).loc[shown.idxmin()]
+        best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
         words = dial or (told(preset).short if preset else str(method))
         names.append(Name(words, best["wall_s"], best["error"], style_of(str(method)).colour))
     return names

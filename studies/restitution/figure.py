@@ -76,9 +76,10 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
         The columns of restitution.csv.
     shown : Shown
     """
-    table, off = lines(rows, CORNER)["off"], lines(rows, shown.measure)
-    ways = dict(zip(zip(off["engine"], off["way"], strict=True), table, strict=True))
-    drawn = [way for way, most in ways.items() if KEPT < most < IGNORED or math.isinf(most)]
+    corner, off = lines(rows, CORNER)["off"], lines(rows, shown.measure)
+    heard = (corner < IGNORED) | (corner == math.inf)
+    partly = off[heard & ((corner > KEPT) | (off["off"] > KEPT))]
+    drawn = list(zip(partly["engine"], partly["way"], strict=True))
     across = min(ACROSS, max(len(drawn), 1))
     down = math.ceil(len(drawn) / across)
     upper = 1.1 + 0.24 * len(off)
@@ -101,12 +102,14 @@ def _matrix(drawing: Figure | SubFigure, axes: Axes, off: pd.DataFrame) -> None:
     """Paint how far off each way is at most as it is asked, and with one thing varied."""
     values = off[list(VARIATIONS)].to_numpy(float)
     shown = cells(axes, np.where(np.isinf(values), 1.0, values), LEAST, 1.0, [*VARIATIONS.values()])
-    names = off["engine"].map(title_of) + ": " + off["way"]
+    names = (
+        off["engine"].map(title_of) + ": " + off["way"].str.replace("^and ", "… and ", regex=True)
+    )
     axes.set_yticks(range(len(off)), names, fontsize=9)
     for (row, column), value in np.ndenumerate(values):
         words = "breaks" if math.isinf(value) else "0" if value < LEAST else f"{value:.2g}"
         axes.text(column, row, words, ha="center", va="center", fontsize=8.5,
-                  color="white" if value > 0.1 else "black")  # fmt: skip
+                  color="white" if value > 0.06 else "black")  # fmt: skip
     drawing.colorbar(shown, ax=axes, label="largest deviation", aspect=30, pad=0.02)
 
 

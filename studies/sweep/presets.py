@@ -102,8 +102,8 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
             axes.set_yticks([])
         names = [title_of(engine_of(source)) for source in sources]
         line[0].set_yticks(range(len(names)), names, fontsize=8.5)
-        words = f"{told(preset).short}: {part((group['wrong'] != '').mean())} of outcomes wrong"
-        line[0].set_title(words.replace(": 0 ", ": none "), color=told(preset).colour, loc="left",
+        share = f"{told(preset).short}: {part((group['wrong'] != '').mean())} of outcomes wrong"
+        line[0].set_title(share.replace(": 0 ", ": none "), color=told(preset).colour, loc="left",
                           fontsize=9.5, fontweight="bold")  # fmt: skip
     for axes, aspect in zip(grid[-1], aspects, strict=True):
         axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
@@ -113,7 +113,9 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
     median = {name: part(groups[name]["error"].abs().median()) for name in presets}
     words = [f"{median[name]} {told(name).short}" for name in (presets[0], presets[-1])]
     number = rows["figure"].iloc[0]
-    drawing.suptitle(f"Figure {number}: half of the errors are below {', '.join(words)}", fontsize=12)
+    drawing.suptitle(
+        f"Figure {number}: half of the errors are below {', '.join(words)}", fontsize=12
+    )
     key(drawing, [dot(WORDS[kind], look, "#d00000", markersize=5) for kind, look in MARKERS.items()]
         + [dot("both overturn, as they should", "s", STRIP, markersize=8)])  # fmt: skip
     return drawing

@@ -75,4 +75,6 @@ def _title(bands: list[tuple[tuple[float, float], pd.DataFrame]]) -> str:
     least, most = (part(cases["size"].max()) for cases in (calm, wild))
     if calm is wild:
         return f"Peaks are off by up to {least}"
-    return f"Errors grow with the sensitivity S: up to {least} below {low:g}, {most} from {high:g} on"
+    return (
+        f"Errors grow with the sensitivity S: up to {least} below {low:g}, {most} from {high:g} on"
+    )
