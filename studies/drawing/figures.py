@@ -184,7 +184,9 @@ def save(drawing: Figure, path: Path) -> None:
         canvas.draw()
         # a palette of its own makes a picture a third as large
         whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        few = whole.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        few = whole.quantize(
+            COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE
+        )
         few.save(file, "png", optimize=True, dpi=(DPI, DPI))
 
 
