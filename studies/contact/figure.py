@@ -53,7 +53,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     )
     marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
                                                      markerfacecolor="none")]  # fmt: skip
-    key(drawing, [*preset_dots(lines["preset"]), *marks], 7, handletextpad=0.1)
+    key(drawing, [*preset_dots(lines["preset"]), *marks], 4)
     return drawing
 
 
