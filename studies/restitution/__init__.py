@@ -19,10 +19,11 @@ findings.txt; a minute.""",
     ),
     captions={
         "corners": (
-            "How far the speed upwards of a corner that strikes the base, over that of its approach, "
-            "is at most from the coefficient of restitution that was asked for, a row for each way: "
-            '"and" adds to the one before. Below, what comes out of those neither kept nor ignored; '
-            "the band is wherever in a step the impact falls; crosses are strikes that broke."
+            "How far the speed upwards of a corner that strikes the base, over that of its "
+            "approach, is at most from the coefficient of restitution that was asked for, a row "
+            'for each way: "and" adds to the one before. Below, what comes out of those neither '
+            "kept nor ignored; the band is wherever in a step the impact falls; crosses are "
+            "strikes that broke."
         ),
         "rates": (
             "The angular rate of a block after an impact of its corner over that before, against "

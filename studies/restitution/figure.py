@@ -84,12 +84,11 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     down = math.ceil(len(drawn) / across)
     upper = 1.1 + 0.24 * len(off)
     drawing = Figure(figsize=(9.4, upper + 2.2 * down + 0.9 * (down > 0)), layout="constrained")
-    if not drawn:
-        _matrix(drawing, drawing.subplots(), off)
-    else:
-        above, below = drawing.subfigures(2, 1, height_ratios=(upper, 2.2 * down + 0.5))
-        _matrix(above, above.subplots(), off)
-        _partly(below, down, across, rows, drawn, shown)
+    parts = (upper, 2.2 * down + 0.5) if drawn else (upper,)
+    halves = drawing.subfigures(len(parts), 1, height_ratios=parts, squeeze=False)[:, 0]
+    _matrix(halves[0], halves[0].subplots(), off)
+    if drawn:
+        _partly(halves[1], down, across, rows, drawn, shown)
     kept = int((off["off_over_all"] <= MOST).sum())
     drawing.suptitle(
         f"{shown.label}: {kept} of {len(off)} ways keep it within {MOST:g} whatever is varied",
