@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.advise.evidence import in_words
 from studies.drawing.labels import Name, around, beyond
-from studies.drawing.styles import engine_style
+from studies.drawing.styles import engine_style, title_of
 from studies.measures.presets import told
 from studies.measures.words import listed, per_cent
 
@@ -99,7 +99,7 @@ def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Nam
         for step, before, error, time in zip(steps, ["", *steps], errors, times, strict=False)
         if step not in (before, steps[-1])
     ]
-    name = f"{engine} {preset}, {steps[-1]}"
+    name = f"{title_of(engine)}, {told(preset).short}, {steps[-1]}"
     return Name(name, float(errors[-1]), float(times[-1]), style.colour), marks
 
 

@@ -25,9 +25,8 @@ takes some four minutes on one core, --quick half a minute.""",
     captions={
         "contact": (
             "Error of the peak, median to largest, of each preset of an engine, and with one "
-            "setting of its contact changed or one help of landing left out: the ten that matter "
-            "most, of each preset in turn, the others in one line, and beside them how far the "
-            "impact is from Housner's."
+            "setting of its contact changed or one help of landing left out: the six that matter "
+            "most, of each preset in turn, the others in one line."
         ),
     },
 )

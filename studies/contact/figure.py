@@ -1,4 +1,4 @@
-"""The largest error of each contact variant, a panel for each engine."""
+"""The largest error with each change of a contact that matters, a panel for each engine."""
 
 from __future__ import annotations
 
@@ -7,21 +7,23 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
+from engines.parts.factors import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
+from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
+from studies.drawing.styles import title_of
 from studies.measures.presets import in_order, told
-from studies.measures.words import part
+from studies.measures.words import capital, part
 
-MATTER = 10
+MATTER = 6
 """How many variants of an engine are drawn one by one."""
-ROW, HEAD, FOOT = 0.148, 0.3, 1.15
-"""Heights [in] of a line, of what is above a panel, and of the key."""
-LOWEST, BROKEN, HIGHEST = 1e-6, 2.0, 4.0
-"""Errors below are drawn at the first; failed variants and wrong outcomes at the second."""
+LOWEST, EDGE, BROKEN, HIGHEST = 1e-6, 2.5, 6.0, 15.0
+"""Errors below are drawn at the first; failed variants and wrong outcomes in the strip."""
+LEVELS = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
+"""Level of a factor -> what it is called beside a row."""
 
 
 def draw_contact(lines: pd.DataFrame) -> Figure:
-    """Draw the largest error of the peak of the variants that matter most, and count the others.
+    """Draw the error of the peak of the variants that matter most, and count the others.
 
     Parameters
     ----------
@@ -30,69 +32,70 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     """
     engines = list(lines["engine"].unique())
     shown = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
-    heights = [HEAD + ROW * (len(ordered) + 1) for ordered, _ in shown]
-    drawing = Figure(figsize=(8.6, FOOT + sum(heights)), layout="constrained")
-    panels = drawing.subplots(len(engines), 1, squeeze=False, sharex=True, height_ratios=heights)
-    for axes, engine, (ordered, others) in zip(panels[:, 0], engines, shown, strict=True):
-        _one_engine(axes, ordered, others)
-        axes.set_title(engine, fontsize=10, pad=3.0)
-    panels[-1, 0].set_xlabel("relative error  [–]", fontsize=9)
+    most = max(len(ordered) for ordered, _ in shown)
+    drawing, grid = panels(len(engines), 2, (4.9, 0.6 + 0.2 * most), 0.9, sharex=True)
+    grid[0].set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST))
+    error_scale(grid[0].xaxis, LOWEST, 1.0)
+    for axes, engine, (ordered, others) in zip(grid, engines, shown, strict=True):
+        _one_engine(axes, ordered)
+        axes.set_ylim(most + 0.5, -0.6)
+        axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
+        axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center",
+                  color="#555555", transform=axes.get_yaxis_transform())  # fmt: skip
+    for axes in grid[-2:]:
+        axes.set_xlabel("error of the peak, median to largest", fontsize=10)
+    changes = int((lines["factor"] != "").sum())
+    harmful = int(lines.loc[lines["factor"] != "", "worse"].sum())
     drawing.suptitle(
-        f"{MATTER} changes to each engine, those of each preset that matter most, from the "
-        "smallest error down",
-        fontsize=10,
+        f"Of {changes} changes of a contact, one at a time, {harmful} break a case; "
+        f"the {MATTER} that matter most for each engine",
+        fontsize=12,
     )
-    handles = _handles(set(lines["preset"]))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
+                                                     markerfacecolor="none")]  # fmt: skip
+    key(drawing, [*preset_dots(lines["preset"]), *marks], 4)
     return drawing
 
 
-def _one_engine(axes: Axes, ordered: pd.DataFrame, others: pd.DataFrame) -> None:
-    axes.set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST), ylim=(len(ordered) + 0.5, -0.7))
-    axes.axvspan(1.0, HIGHEST, color="#eeeeee", zorder=-1)
-    for place, (_, line) in enumerate(ordered.iterrows()):
-        _one_variant(axes, place, line)
-    for preset in ordered["preset"].unique():
-        _baseline(axes, ordered, preset)
-    axes.set_yticks(range(len(ordered)), [_label(line) for _, line in ordered.iterrows()])
-    for text, (_, line) in zip(axes.get_yticklabels(), ordered.iterrows(), strict=True):
-        text.set(fontsize=8, color=told(str(line["preset"])).colour)
-        if not line["factor"]:
-            text.set_fontweight("bold")
-    axes.axhline(len(ordered) - 0.5, color="#999999", linewidth=0.8)
-    axes.text(0.7 * LOWEST, len(ordered), _summed(others), fontsize=8, style="italic", va="center",
-              color="#555555")  # fmt: skip
-    axes.grid(axis="x", alpha=0.25)
+def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
+    """Draw a row for each preset as it is, in bold, and for each change of it under that."""
+    rows(axes, [_label(line) for line in ordered.to_dict("records")])
+    strip_beyond(axes, EDGE, "", along="x")
+    for place, (text, line) in enumerate(
+        zip(axes.get_yticklabels(), ordered.to_dict("records"), strict=True)
+    ):
+        colour = told(str(line["preset"])).colour
+        text.set(color=colour, fontweight="normal" if line["factor"] else "bold")
+        median, error = (max(float(line[name]), LOWEST) for name in ("median_error", "max_error"))
+        axes.plot([median, error], [place, place], color=colour, linewidth=2.0, alpha=0.5)
+        axes.plot(error, place, "o", color=colour, markersize=4.5 if line["factor"] else 7)
+        if line["failed"]:
+            axes.plot(BROKEN, place, "X", color="#000000", markersize=6)
+        elif line["wrong"]:
+            axes.plot(BROKEN, place, "s", color="#000000", fillstyle="none", markersize=5.5)
 
 
 def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return an engine's presets with the variants that matter, and the other variants.
 
     Of each preset in turn the one that breaks most cases, or else moves a peak or an impact most;
-    they stand by preset, from the most accurate in peak and impact to the failed.
+    they stand by preset, from the most accurate to the failed.
     """
     broken = lines["worse"] | lines["max_error"].isna()
     lines = lines.assign(
         broken=broken,
         lost=(lines["failed"] + lines["wrong"]).where(broken, 0),
         matter=lines[["moved", "ratio_moved"]].max(axis=1).fillna(0.0),
+        first=-lines["preset"].map(in_order(lines["preset"]).index),
+        own=lines["factor"] != "",
     )
-    varied = lines[lines["factor"] != ""].sort_values(
+    varied = lines[lines["own"]].sort_values(
         ["broken", "lost", "matter"], ascending=False, kind="stable"
     )
     turn = varied.groupby("preset").cumcount().sort_values(kind="stable")
     varied = varied.loc[turn.index]
-    drawn = pd.concat([lines[lines["factor"] == ""], varied.head(MATTER)])
-    return _by_error(drawn), varied.iloc[MATTER:]
-
-
-def _by_error(lines: pd.DataFrame) -> pd.DataFrame:
-    keyed = lines.assign(
-        first=-lines["preset"].map(in_order(lines["preset"]).index),
-        own=lines["factor"] != "",
-        worst=lines["max_error"].clip(lower=(lines["ratio_over_eta"] - 1.0).abs()),
-    )
-    return keyed.sort_values(["first", "own", "broken", "worst"])
+    drawn = pd.concat([lines[~lines["own"]], varied.head(MATTER)])
+    return drawn.sort_values(["first", "own", "broken", "max_error"]), varied.iloc[MATTER:]
 
 
 def _summed(others: pd.DataFrame) -> str:
@@ -104,51 +107,13 @@ def _summed(others: pd.DataFrame) -> str:
     if len(kept):
         moved = part(float(kept["moved"].max()))
         words.append(f"{len(kept) if lost else 'they'} move a peak by {moved} at most")
-    return f"{len(others)} others matter less: {', '.join(words)}"
+    return f"{len(others)} others: {', '.join(words)}"
 
 
-def _one_variant(axes: Axes, place: int, line: pd.Series[Any]) -> None:
-    colour = told(str(line["preset"])).colour
-    error = max(float(line["max_error"]), LOWEST)
-    if line["max_error"] == line["max_error"]:
-        median = max(float(line["median_error"]), LOWEST)
-        axes.plot([median, error], [place, place], color=colour, linewidth=1.4, alpha=0.5)
-        axes.plot(error, place, "o", color=colour, markersize=4.5 if line["factor"] else 7)
-    if line["ratio_over_eta"] == line["ratio_over_eta"]:
-        off = min(max(abs(float(line["ratio_over_eta"]) - 1.0), LOWEST), 1.0)
-        axes.plot(off, place, "D", color="#444444", markerfacecolor="none", markersize=3.6)
-    if line["failed"]:
-        axes.plot(BROKEN, place, "X", color="#000000", markersize=6)
-    elif line["wrong"]:
-        axes.plot(BROKEN, place, "s", color="#000000", markerfacecolor="none", markersize=5.5)
-
-
-def _baseline(axes: Axes, ordered: pd.DataFrame, preset: str) -> None:
-    own = (ordered["preset"] == preset).to_numpy()
-    base = ordered[own & (ordered["factor"] == "").to_numpy()]["max_error"]
-    if base.empty:
-        return
-    places = own.nonzero()[0]
-    axes.plot([base.iloc[0]] * 2, [places[0] - 0.5, places[-1] + 0.5], color=told(preset).colour,
-              linewidth=1.0, linestyle="--", zorder=0)  # fmt: skip
-    axes.axhline(places[0] - 0.5, color="#999999", linewidth=0.8)
-
-
-def _label(line: pd.Series[Any]) -> str:
-    name = f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
-    return f"{name}  [trap]" if line["trap"] else name
-
-
-def _handles(presets: set[str]) -> list[Line2D]:
-    plain: dict[str, Any] = {"linestyle": "none", "marker": "o"}
-    return [
-        *(Line2D([], [], color=told(name).colour, label=told(name).varied, **plain)
-          for name in reversed(in_order(presets))),
-        Line2D([], [], color="#666666", linestyle="--", label="the preset as it is"),
-        Line2D([], [], color="#666666", marker="o", label="peak, median to largest error"),
-        Line2D([], [], color="#444444", linestyle="none", marker="D", markersize=4,
-               markerfacecolor="none", label="velocity ratio against Housner's η, median"),
-        Line2D([], [], color="#000000", linestyle="none", marker="X", label="failed"),
-        Line2D([], [], color="#000000", linestyle="none", marker="s", markerfacecolor="none",
-               label="wrong outcome"),
-    ]  # fmt: skip
+def _label(line: dict[Any, Any]) -> str:
+    """Return a preset or a change of it in words."""
+    first, comma, rest = str(line["level"]).partition(", ")
+    level = LEVELS.get(first, first) + comma + rest
+    if not line["factor"]:
+        return capital(told(str(line["preset"])).short)
+    return f"without {level}" if line["factor"] == LEFT_OUT else f"{line['factor']}: {level}"

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from studies.defaults.claims import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of
 from studies.measures.words import part
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
@@ -100,7 +101,7 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
-    name = engine_of(str(rows["source"].iloc[0]))
+    name = title_of(engine_of(str(rows["source"].iloc[0])))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
 
 

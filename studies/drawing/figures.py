@@ -7,17 +7,22 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from PIL import Image
 
-from studies.drawing.styles import LOWEST, Style, line_of, style_of
+from studies.drawing.styles import LOWEST, Style, line_of, name_of, style_of
 from studies.kit.drafts import draft
 
 OVERTURNED = "overturned"
 DPI = 130
 """Points of a picture to the inch."""
+COLOURS = 256
+"""Of a picture, the nearest to those that it was drawn in."""
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
@@ -152,7 +157,7 @@ def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = Fal
 
 def _handle(source: str) -> Line2D:
     style = style_of(source)
-    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=source)
+    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name_of(source))
     handle.set(linestyle=line_of(source), marker=style.marker, fillstyle=style.fill)
     return handle
 
@@ -172,7 +177,17 @@ def save(drawing: Figure, path: Path) -> None:
     drawing.set_dpi(DPI)
     lay_out(drawing)
     with draft(path) as file:
-        drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
+        if path.suffix != ".png":
+            drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
+            return
+        canvas = FigureCanvasAgg(drawing)
+        canvas.draw()
+        # a palette of its own makes a picture a third as large
+        whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        few = whole.quantize(
+            COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE
+        )
+        few.save(file, "png", optimize=True, dpi=(DPI, DPI))
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:

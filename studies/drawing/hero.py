@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from studies.drawing.block import GROUND, INK, SOFT, outline
-from studies.drawing.styles import style_of
+from studies.drawing.styles import style_of, title_of
 from studies.measures.presets import engine_of, is_engine, preset_of, told
 
 MAGNIFIED = 2.5
@@ -61,7 +61,7 @@ def _title(line: pd.Series[Any]) -> str:
     source = str(line["source"])
     if not is_engine(source):
         return "Housner's linearization" if source == "housner" else source
-    return f"{engine_of(source)}, {told(preset_of(source)).short}"
+    return f"{title_of(engine_of(source))}, {told(preset_of(source)).short}"
 
 
 def _verdict(line: pd.Series[Any]) -> str:
@@ -114,7 +114,11 @@ def _look(source: str) -> dict[str, Any]:
     if source == "exact":
         return {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
     if colon:
-        return {"color": style.colour, "linewidth": 1.6, "label": f"{engine}, as documented"}
+        return {
+            "color": style.colour,
+            "linewidth": 1.6,
+            "label": f"{title_of(engine)}, as documented",
+        }
     if style.marker:
         return {
             "color": style.colour,
@@ -123,6 +127,6 @@ def _look(source: str) -> dict[str, Any]:
             "markersize": 5.0,
             "markerfacecolor": "none",
             "markevery": (0 if style.marker == "o" else 8, 16),
-            "label": f"{engine}, landing steps",
+            "label": f"{title_of(engine)}, landing steps",
         }
     return {"color": style.colour, "linestyle": "--", "linewidth": 1.8, "label": "Housner"}

@@ -15,6 +15,7 @@ from matplotlib.typing import ColorType
 from textalloc import allocate
 
 from analytic.motion import FloatArray
+from studies.drawing.figures import lay_out
 
 LINE_HEIGHT = 1.25
 """Distance of two names over the size of their letters."""
@@ -118,7 +119,7 @@ def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """
     if not names:
         return
-    cast(Figure, axes.figure).draw_without_rendering()  # now the axes are where they will be
+    lay_out(cast(Figure, axes.figure))  # now the axes are where they will be
     lines = [line.get_transform().transform(np.array(line.get_xydata())) for line in axes.lines]
     words = [text.get_window_extent().corners() for text in axes.texts]
     taken = [axes.transData.inverted().transform(line) for line in (*lines, *words) if len(line)]

@@ -83,6 +83,17 @@ def preset_style(preset: str) -> Style:
     return Style(told(preset).colour, marker="o", fill=told(preset).fill)
 
 
+def title_of(engine: str) -> str:
+    """Return an engine's name as its makers spell it; that of any other source as it is."""
+    return ENGINES[engine].title if engine in ENGINES else engine
+
+
+def name_of(source: str) -> str:
+    """Return how a source is called in a picture: an engine by its title, with its preset."""
+    engine, colon, preset = source.partition(":")
+    return title_of(engine) + (f", {told(preset).short}" if colon else "")
+
+
 def style_of(source: str) -> Style:
     """Return the style of a source; one without a style of its own is grey."""
     plain, _, preset = source.partition(":")

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
-from studies.drawing.styles import line_of, style_of
+from studies.drawing.styles import line_of, name_of, style_of
 from studies.measures.presets import in_words, is_engine, preset_of
 
 LEAST, BEYOND = 1e-2, 3.0
@@ -41,7 +41,7 @@ def draw_singles(rows: pd.DataFrame) -> Figure:
                 axes.set_title(kind, fontsize=11)
                 looks = [style_of(source).colour for source in sources]
                 for number, (source, colour) in enumerate(zip(sources, looks, strict=True)):
-                    axes.text(0.04, 0.93 - 0.06 * number, source, color=colour, fontsize=8,
+                    axes.text(0.04, 0.93 - 0.06 * number, name_of(source), color=colour, fontsize=8,
                               transform=axes.transAxes)  # fmt: skip
         line[0].set_ylabel(f"{_name(size)}\npeak by the source  |θ|/θcr  [–]")
     for axes in grid[-1]:
@@ -148,7 +148,7 @@ def _ends(curves: pd.DataFrame, stripes: pd.DataFrame) -> list[Name]:
     for source in stripes["source"].unique():
         curve = curves[curves["source"] == source]
         level = float(np.interp(even, curve["intensity"], curve["probability"]))
-        names.append(Name(str(source), float(even), level, style_of(str(source)).colour))
+        names.append(Name(name_of(str(source)), float(even), level, style_of(str(source)).colour))
     return names
 
 
@@ -165,5 +165,5 @@ def _capacities(axes: Axes, agreement: pd.DataFrame, sources: Sequence[str]) -> 
         axes.plot(line["capacity_ratio"], place, **style.points(6.0))
     axes.axvline(1.0, color="#999999", linewidth=0.8, zorder=0)
     axes.set(ylim=(len(sources) - 0.4, -0.6), xlabel="capacity / exact  [–]")
-    axes.set_yticks(range(len(sources)), sources, fontsize=8)
+    axes.set_yticks(range(len(sources)), [*map(name_of, sources)], fontsize=8)
     axes.grid(axis="x", alpha=0.25)

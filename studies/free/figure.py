@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
-from studies.drawing.styles import LOWEST, line_of, style_of
+from studies.drawing.styles import LOWEST, line_of, name_of, style_of
 
 
 def draw_free(rows: pd.DataFrame) -> Figure:
@@ -31,7 +31,9 @@ def draw_free(rows: pd.DataFrame) -> Figure:
             worst = part[column].abs().groupby(part["tilt"]).max().clip(lower=LOWEST)
             look = {**style.points(), "linestyle": line_of(str(source)), "linewidth": style.width}
             axes.plot(worst.index, worst, **look)
-            ends.append(Name(str(source), worst.index[-1], float(worst.iloc[-1]), style.colour))
+            ends.append(
+                Name(name_of(str(source)), worst.index[-1], float(worst.iloc[-1]), style.colour)
+            )
         axes.set(yscale="log")
         axes.set_title(title, fontsize=10)
         axes.set_xlabel("released from  θ0/α  [–]")

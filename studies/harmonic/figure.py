@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analytic.response import Outcome
-from studies.drawing.styles import style_of
+from studies.drawing.styles import name_of, style_of
 
 LABELS = {
     "frequency": "frequency of the shaking  ω/p  [–]",
@@ -53,7 +53,7 @@ def _orbits(axes: Axes, rocked: pd.DataFrame) -> None:
 def _engines(axes: Axes, engines: pd.DataFrame) -> None:
     for source, rows in engines.groupby("source", sort=False) if len(engines) else ():
         style = style_of(str(source)).points(7.0)
-        label = f"{source}, from\nthe exact orbit"
+        label = f"{name_of(str(source))}, from\nthe exact orbit"
         axes.plot(rows["x"], rows["larger_ratio"], **style, label=label, zorder=4)
 
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.styles import style_of
+from studies.drawing.styles import name_of, style_of
 from studies.measures.differences import scientific
 
 WIDEST = 12.0
@@ -58,7 +58,7 @@ def draw_literature(table: pd.DataFrame) -> Figure:
     looks = ({**style_of(name).points(6.0), "fillstyle": "full"} for name in sources)
     handles = [
         Line2D([], [], **{**look, "marker": style_of(name).marker or "D"},
-               label=NAMES.get(name, name))
+               label=NAMES.get(name, name_of(name)))
         for name, look in zip(sources, looks, strict=True)
     ]  # fmt: skip
     drawing.legend(handles=handles, loc="outside lower center", fontsize=9, ncols=5,

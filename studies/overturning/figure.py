@@ -16,7 +16,7 @@ from scipy.ndimage import distance_transform_edt
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.drawing.styles import style_of
+from studies.drawing.styles import name_of, style_of
 from studies.measures.differences import conditioning_of
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
 from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
@@ -128,11 +128,11 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
             codes = _cell_codes(parts[source])
             wrong = f"{off[source]} of {len(parts[source])} cells"
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
-        axes.set_title(f"{source}: {wrong} wrong", fontsize=10)
+        axes.set_title(f"{name_of(source)}: {wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + across >= len(drawn), left=False)
     for axes in panels[len(drawn) :]:
         axes.set_visible(False)
-    alike = [str(name) for name in parts if not off[name]]
+    alike = [name_of(str(name)) for name in parts if not off[name]]
     words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
     drawing.supylabel(AMPLITUDE, fontsize=10)
     title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * across)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.styles import LOWEST, style_of
+from studies.drawing.styles import LOWEST, style_of, title_of
 
 
 def draw_scenes(scenes: pd.DataFrame) -> Figure:
@@ -29,7 +29,7 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
         factor = taken / taken.iloc[0]
         costs.hlines(places, 1.0, factor, color=look["color"], linewidth=1.2)
         costs.plot(factor, places, **look)
-        errors.plot(rows["error"].abs().clip(lower=LOWEST), places, **look, label=engine)
+        errors.plot(rows["error"].abs().clip(lower=LOWEST), places, **look, label=title_of(engine))
     costs.set_yticks(range(len(names)), names)
     costs.invert_yaxis()
     costs.set(xscale="log", xlabel="run time over the scene as it is  [–]")

@@ -1,25 +1,28 @@
-"""Work-precision diagrams: error against run time, a line for each method."""
+"""Work-precision diagrams: error against run time, a panel for each engine, one for all else."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from engines import ENGINES
-from studies.drawing.labels import Name, around, beside, beyond
-from studies.drawing.styles import LOWEST, Style, engine_style
-from studies.measures.presets import told
+from studies.drawing.facets import error_scale, strip_beyond
+from studies.drawing.labels import Name, around
+from studies.drawing.styles import LOWEST, Style, title_of
+from studies.measures.presets import in_order, told
+from studies.measures.words import capital, duration, out_of, per_cent
+from studies.precision.choices import EXACT, cheapest_below, exact_cost, joint
 
 STYLES = {
-    "Taylor series": Style("#000000", "-", "o", 2.2),
+    EXACT: Style("#000000", "-", "o", 2.2),
     "SciPy RK45": Style("#999999", "-", "s"),
     "SciPy DOP853": Style("#777777", "--", "D"),
-    "SciPy Radau": Style("#bbbbbb", "-.", "v"),
+    "SciPy Radau": Style("#aaaaaa", "-.", "v"),
     "SciPy LSODA": Style("#555555", ":", "^"),
     "RK4": Style("#56B4E9", "-", "o"),
     "RK4, contact to 1e-6": Style("#56B4E9", "--", "x"),
@@ -28,130 +31,139 @@ STYLES = {
     "modified, closed form": Style("#0072B2", "", "*"),
     "onset-matched, closed form": Style("#CC79A7", "", "*"),
 }
+OTHERS = "Models, and solvers of ordinary differential equations"
+LEAST = 1e-10
+"""End of the scale of errors of engines."""
+PALE = "#dcdcdc"
+"""Of the other methods behind those that a panel is about."""
+ACROSS = 4
+"""Panels of engines in a row."""
+TARGET = 1e-3
+"""The error that the title tells the price of."""
+WRONG, EDGE, TOP = 10.0, 3.0, 60.0
+"""Where methods are drawn that fail or get an outcome wrong, and the strip around that."""
 
-AIMS = (1e-4, 1e-2)
-"""Errors between which most applications are content: shaded."""
-MANY = 12
-"""More lines of engines than these are named by engine, and told apart by what follows."""
-PRESETS_SAID = (
-    "engines: full lines land on impacts or choose their own steps,\n"
-    "dashed fixed steps, dotted defaults"
-)
-ROOM = 60.0
-"""Factor of the time that the names of the closed forms take, and words that no marker is under."""
-WRONG = 10.0
-"""Where methods that fail or get outcomes wrong are drawn."""
+
+def engine_in(method: str) -> tuple[str, str]:
+    """Return the engine of a method and its preset; two empty words for all other methods."""
+    engine, _, preset = method.partition(" ")
+    return (engine, preset) if engine in ENGINES else ("", "")
+
+
+def called(method: str) -> str:
+    """Return how a method is called beside others: an engine by its title, with its preset."""
+    engine, varied = engine_in(method)
+    preset, comma, dial = varied.partition(", ")
+    return f"{title_of(engine)}, {told(preset).short}{comma}{dial}" if engine else method
 
 
 def style_of(method: str) -> Style:
-    """Return the style of a method; engines by their colours, others grey."""
-    engine, _, varied = method.partition(" ")
-    if method in STYLES or engine not in ENGINES:
+    """Return the style of a method: of an engine that of its preset; grey for what is unknown."""
+    engine, varied = engine_in(method)
+    if not engine:
         return STYLES.get(method, Style("#777777", "-", "."))
     preset, _, dial = varied.partition(", ")
-    look = engine_style(engine, preset)
-    if dial:
-        return Style(look.colour, "-.", "+", 0.8)
-    line = told(preset).line
-    width = 2.0 if line == "-" else 1.4
-    return Style(look.colour, line, look.marker, width, look.fill)
+    colour = told(preset).colour
+    return Style(colour, ":", "+", 0.9) if dial else Style(colour, "-", "o", 1.6, "full")
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:
-    """Draw the median error of the peak against the run time of a case, a panel for each set.
+    """Draw the largest error of the peak against the run time of a case.
 
     Parameters
     ----------
     table : DataFrame
         The columns of work-precision.csv.
     """
-    drawing = Figure(figsize=(8.8, 12.0), layout="constrained")
-    sets = list(table["set"].unique())
-    panels = list(drawing.subplots(len(sets), 1, sharex=True, sharey=True, squeeze=False).flat)
-    for axes, kind in zip(panels, sets, strict=True):
-        _one_set(axes, table[table["set"] == kind])
-        axes.set_title(f"{kind} cases")
-        axes.set_ylabel("median relative error of the peak  [–]")
-    panels[-1].set_xlabel("run time of a case, set-up apart  [s]")
-    panels[-1].set_xlim(left=panels[-1].get_xlim()[0] / ROOM)
-    drawing.draw_without_rendering()  # names stand where the panels come to lie
-    _name_methods(panels, table)
+    lines = placed(table)
+    engine = lines["method"].map(lambda method: engine_in(method)[0])
+    engines = [name for name in engine.unique() if name]
+    down = -(-len(engines) // ACROSS)
+    drawing = Figure(figsize=(10.4, 4.1 + 2.4 * down), layout="constrained")
+    grid = drawing.add_gridspec(1 + down, ACROSS, height_ratios=[1.4, *[1.0] * down])
+    panels = [drawing.add_subplot(grid[0, :])]
+    for place in range(len(engines)):
+        shared = {"sharex": panels[0], "sharey": panels[1] if place else None}
+        axes = drawing.add_subplot(grid[1 + place // ACROSS, place % ACROSS], **shared)
+        axes.tick_params(labelleft=place % ACROSS == 0, labelbottom=place + ACROSS >= len(engines))
+        panels.append(axes)
+    for place, (axes, name) in enumerate(zip(panels, ["", *engines], strict=True)):
+        low = LEAST if name else LOWEST / 3.0
+        if place < 2:  # the others share its scale
+            axes.set(xscale="log", yscale="log", ylim=(low, TOP))
+            error_scale(axes.yaxis, low, 1.0, 2 if name else 4)
+        _panel(axes, lines[engine == name], lines[engine != name])
+        strip_beyond(axes, EDGE, "" if name else f"failed or wrong in one of {_cases(table)} cases")
+        axes.set_title(title_of(name) or OTHERS, fontsize=10.5, fontweight="bold")
+    drawing.supxlabel("run time of a case, set-up apart  [s]", fontsize=10)
+    drawing.supylabel("median relative error of the peak, of the harder set", fontsize=10)
+    drawing.suptitle(message(table), fontsize=12)
+    for axes, name in zip(panels, ["", *engines], strict=True):
+        around(axes, _names(lines[engine == name]), 8.0)
     return drawing
 
 
-def _name_methods(panels: Sequence[Axes], table: pd.DataFrame) -> None:
-    """Write the engines at the right of the last panel, all other methods into the first."""
-    is_engine = table["method"].str.partition(" ")[0].isin(list(ENGINES))
-    finite = np.isfinite(table["median_error"])
-    sets = table["set"].unique()
-    others = table[finite & ~is_engine & (table["set"] == sets[0])]
-    first = table[finite & (table["set"] == sets[0])]
-    names = [_end(*group) for group in others.groupby("method", sort=False)]
-    closed = [name for name in names if style_of(name.text).marker == "*"]
-    beyond(panels[0], closed, -1)
-    around(panels[0], [name for name in names if name not in closed])
-    _name_the_front(panels[0], pareto(first))
-    engines = table[finite & is_engine & (table["set"] == sets[-1])]
-    ends = [_end(*group) for group in engines.groupby("method", sort=False)]
-    if len(ends) > MANY:
-        # the best preset of each stands for all of them, which share its colour and marker
-        best = {end.text.partition(" ")[0]: end for end in ends if "," not in end.text}
-        ends = [replace(end, text=engine) for engine, end in best.items()]
-        panels[-1].text(0.32, 0.03, PRESETS_SAID, transform=panels[-1].transAxes, fontsize=8)
-    beside(panels[-1], ends)
+def _cases(table: pd.DataFrame) -> int:
+    return int(table.groupby("set")["cases"].max().sum())
 
 
-def _name_the_front(axes: Axes, front: pd.DataFrame) -> None:
-    middle = front.iloc[len(front) // 2]
-    spot = (middle["wall_s"], max(middle["median_error"], LOWEST))
-    axes.annotate("nothing is faster\nand more accurate", spot, (0.3, 0.12), fontsize=7.5,
-                  textcoords="axes fraction", color="#8a6d00",
-                  arrowprops={"arrowstyle": "-", "color": "#c9a800", "linewidth": 0.8})  # fmt: skip
+def placed(table: pd.DataFrame) -> pd.DataFrame:
+    """Return both sets of a setting as one line, with its place on the scale of errors.
+
+    Its error is the larger of the medians; "wrong" says whether a case failed or fell wrongly.
+    """
+    medians = table.groupby(["method", "value"], sort=False)["median_error"].max()
+    lines = joint(table).assign(error=medians.to_numpy())
+    lines = lines.assign(wrong=(lines["failed"] > 0) | ~np.isfinite(lines["max_error"]))
+    lines["error"] = lines["error"].where(np.isfinite(lines["error"])).clip(lower=LOWEST)
+    # a case that was given up before it was timed has no place on the scale
+    return lines[lines["wall_s"] > 0.0]
 
 
-def _end(method: object, line: pd.DataFrame) -> Name:
-    """Return the name of a method where its line ends, at its longest run."""
-    last = line.sort_values("wall_s").iloc[-1]
-    error = max(float(last["median_error"]), LOWEST)
-    return Name(str(method), float(last["wall_s"]), error, style_of(str(method)).colour)
+def message(table: pd.DataFrame) -> str:
+    """Say how many engines keep an error at best and as they come, and at which price."""
+    best: dict[str, list[float]] = {}
+    for method, line in joint(table).groupby("method", sort=False):
+        engine, preset = engine_in(str(method))
+        if engine and "," not in preset:
+            kept = cheapest_below(line, TARGET)
+            best.setdefault(preset, []).append(np.inf if kept is None else kept["wall_s"])
+    exact = f"the exact solution takes {duration(exact_cost(table))} a case"
+    counts = {name: np.isfinite(best[name]).sum() for name in reversed(in_order(best))}
+    ends = list(dict.fromkeys([*list(counts)[:1], *list(counts)[-1:]]))
+    words = [f"{told(name).short} in {out_of(counts[name], len(best[name]))}" for name in ends]
+    if not words:
+        return capital(exact)
+    cheapest = min(min(times) for times in best.values())
+    price = f"from {duration(cheapest)} a case; " if np.isfinite(cheapest) else ""
+    kept_in = f"An error below {per_cent(TARGET)} in all {_cases(table)} cases"
+    return f"{kept_in}: {', '.join(words)} engines;\n{price}{exact}"
 
 
-def _one_set(axes: Axes, table: pd.DataFrame) -> None:
-    axes.set(xscale="log", yscale="log", ylim=(LOWEST / 3.0, 30.0))
-    front = pareto(table)
-    axes.plot(
-        front["wall_s"],
-        front["median_error"].clip(lower=LOWEST),
-        color="#FFD54A",
-        linewidth=7,
-        alpha=0.6,
-        solid_capstyle="round",
-        zorder=0,
-    )
-    for name, line in table.groupby("method", sort=False):
+def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> None:
+    """Draw some methods, and all others pale behind them."""
+    behind = [line[["wall_s", "error"]].to_numpy() for _, line in others.groupby("method")]
+    axes.add_collection(LineCollection(behind, colors=PALE, linewidths=0.8, zorder=0))
+    for name, line in mine.groupby("method", sort=False):
         style = style_of(str(name))
-        look = style.points(9.0 if style.marker == "*" else 4.5)
-        whole = line[np.isfinite(line["median_error"])]
-        axes.plot(
-            whole["wall_s"],
-            whole["median_error"].clip(lower=LOWEST),
-            **{**look, "linestyle": style.line or "none", "linewidth": style.width},
-        )
-        # a case that was given up before it was timed has no place on the scale
-        broken = line[~np.isfinite(line["median_error"]) & (line["wall_s"] > 0.0)]
-        axes.plot(
-            broken["wall_s"],
-            np.full(len(broken), WRONG),
-            **{**look, "marker": "X", "fillstyle": "full"},
-        )
-    axes.axhspan(*AIMS, color="#e8f1e4", zorder=-1)
-    axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
-    for level, words in ((AIMS[0], "1e-4"), (AIMS[1], "1 %")):
-        axes.text(0.985, level, words, transform=axes.get_yaxis_transform(), fontsize=7.5,
-                  color="#5b7a4d", ha="right", va="center")  # fmt: skip
-    axes.text(0.01, 0.985, "failed or wrong", ha="left", va="top", fontsize=8,
-              color="#666666", transform=axes.transAxes)  # fmt: skip
-    axes.grid(alpha=0.25)
+        size = 9.0 if style.marker == "*" else 3.2
+        look = {**style.points(size), "linestyle": style.line or "none", "linewidth": style.width}
+        axes.plot(line["wall_s"], line["error"], **look)
+        lost = line[line["wrong"]]
+        broken = {**style.points(4.0), "marker": "x", "markeredgewidth": 1.2}
+        axes.plot(lost["wall_s"], [WRONG] * len(lost), **broken)
+    axes.grid(alpha=0.2)
+
+
+def _names(lines: pd.DataFrame) -> Sequence[Name]:
+    """Return the name of each method at its smallest error."""
+    names = []
+    for method, line in lines.groupby("method", sort=False):
+        preset, _, dial = engine_in(str(method))[1].partition(", ")
+        best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
+        words = dial or (told(preset).short if preset else str(method))
+        names.append(Name(words, best["wall_s"], best["error"], style_of(str(method)).colour))
+    return names
 
 
 def pareto(table: pd.DataFrame) -> pd.DataFrame:

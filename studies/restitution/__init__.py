@@ -19,9 +19,10 @@ findings.txt; a minute.""",
     ),
     captions={
         "corners": (
-            "The speed upwards of a corner that strikes the base, over that of its approach, "
-            'against the coefficient of restitution that was asked for, a panel for each way: "and"'
-            " adds to the one before. The band is wherever in a step the impact falls; crosses are "
+            "How far the speed upwards of a corner that strikes the base, over that of its "
+            "approach, is at most from the coefficient of restitution that was asked for, a row "
+            'for each way: "and" adds to the one before. Below, what comes out of those neither '
+            "kept nor ignored; the band is wherever in a step the impact falls; crosses are "
             "strikes that broke."
         ),
         "rates": (

@@ -3,21 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
+import numpy as np
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
-from studies.drawing.styles import engine_style
-from studies.restitution.strikes import BASE, CORNER, RATE, Measure
+from studies.drawing.facets import cells
+from studies.drawing.styles import engine_style, title_of
+from studies.restitution.strikes import BASE, CORNER, RATE, Measure, lines
 
-ACROSS = 4
+ACROSS = 3
 """Panels in a row."""
-LETTERS = 30
+LETTERS = 36
 """In a line of a panel's title."""
+KEPT, IGNORED, MOST = 0.05, 0.99, 0.2
+"""A coefficient that is off by less is kept, by more not heard; what the title counts."""
+LEAST = 1e-3
+"""Deviations below have the lightest colour."""
+VARIATIONS = {
+    "off": "as it is",
+    "off_p_dt": "other steps",
+    "off_rate_over_alpha_p": "other rates",
+    "off_height_m": "other heights",
+    "off_aspect": "other H/B",
+}
+"""Column of deviations -> what is varied."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +56,9 @@ class Shown:
 
 SHOWN = {
     "corners": Shown(
-        measure=CORNER, label="speed of the corner after over before", low=-0.05, top=1.35
+        measure=CORNER, label="Speed of the corner, after over before", low=-0.05, top=1.35
     ),
-    "rates": Shown(measure=RATE, label="angular rate after over before", low=-0.75, top=1.15),
+    "rates": Shown(measure=RATE, label="Angular rate, after over before", low=-0.75, top=1.15),
 }
 """Name of a picture -> what it shows."""
 
@@ -53,7 +68,7 @@ VARIED = {"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":
 
 
 def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
-    """Draw what is found against what is wanted, a panel for each way to ask for it.
+    """Draw the largest deviation of each way to ask, and what comes out where it is partly kept.
 
     Parameters
     ----------
@@ -61,22 +76,64 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
         The columns of restitution.csv.
     shown : Shown
     """
-    ways = list(rows.groupby(["engine", "way"], sort=False))
-    down = math.ceil(len(ways) / ACROSS)
-    drawing = Figure(figsize=(2.2 * ACROSS, 2.2 * down + 0.8), layout="constrained")
-    grid = drawing.subplots(down, ACROSS, sharex=True, sharey=True, squeeze=False)
+    corner, off = lines(rows, CORNER)["off"], lines(rows, shown.measure)
+    heard = (corner < IGNORED) | (corner == math.inf)
+    partly = off[heard & ((corner > KEPT) | (off["off"] > KEPT))]
+    drawn = list(zip(partly["engine"], partly["way"], strict=True))
+    across = min(ACROSS, max(len(drawn), 1))
+    down = math.ceil(len(drawn) / across)
+    upper = 1.1 + 0.24 * len(off)
+    drawing = Figure(figsize=(9.4, upper + 2.2 * down + 0.9 * (down > 0)), layout="constrained")
+    parts = (upper, 2.2 * down + 0.5) if drawn else (upper,)
+    halves = drawing.subfigures(len(parts), 1, height_ratios=parts, squeeze=False)[:, 0]
+    _matrix(halves[0], halves[0].subplots(), off)
+    if drawn:
+        _partly(halves[1], down, across, rows, drawn, shown)
+    kept = int((off["off_over_all"] <= MOST).sum())
+    drawing.suptitle(
+        f"{shown.label}: {kept} of {len(off)} ways keep it within {MOST:g} whatever is varied",
+        fontsize=12,
+    )
+    return drawing
+
+
+def _matrix(drawing: Figure | SubFigure, axes: Axes, off: pd.DataFrame) -> None:
+    """Paint how far off each way is at most as it is asked, and with one thing varied."""
+    values = off[list(VARIATIONS)].to_numpy(float)
+    shown = cells(axes, np.where(np.isinf(values), 1.0, values), LEAST, 1.0, [*VARIATIONS.values()])
+    names = (
+        off["engine"].map(title_of) + ": " + off["way"].str.replace("^and ", "… and ", regex=True)
+    )
+    axes.set_yticks(range(len(off)), names, fontsize=9)
+    for (row, column), value in np.ndenumerate(values):
+        words = "breaks" if math.isinf(value) else "0" if value < LEAST else f"{value:.2g}"
+        axes.text(column, row, words, ha="center", va="center", fontsize=8.5,
+                  color="white" if value > 0.06 else "black")  # fmt: skip
+    drawing.colorbar(shown, ax=axes, label="largest deviation", aspect=30, pad=0.02)
+
+
+def _partly(
+    drawing: Figure | SubFigure,
+    down: int,
+    across: int,
+    rows: pd.DataFrame,
+    ways: Sequence[tuple[str, str]],
+    shown: Shown,
+) -> None:
+    """Draw a panel for each way whose coefficient is neither kept nor ignored."""
+    grid = drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False)
     for axes in grid.flat[len(ways) :]:
-        axes.set_axis_off()
-    for axes, ((engine, way), group) in zip(grid.flat, ways, strict=False):
-        _panel(axes, group, shown, engine_style(str(engine), "").colour)
-        axes.set_title("\n".join(wrap(f"{engine}: {way}", LETTERS)), fontsize=8)
-        axes.tick_params(labelbottom=True, labelsize=8)
+        axes.remove()
+    for place, (axes, (engine, way)) in enumerate(zip(grid.flat, ways, strict=False)):
+        mine = rows[(rows["engine"] == engine) & (rows["way"] == way)]
+        _panel(axes, mine, shown, engine_style(engine, "").colour)
+        axes.set_title("\n".join(wrap(f"{title_of(engine)}: {way}", LETTERS)), fontsize=9.5)
+        axes.tick_params(labelbottom=place + across >= len(ways))
     handles, labels = grid.flat[0].get_legend_handles_labels()
-    across = {"ncols": len(labels), "fontsize": 8, "frameon": False}
-    drawing.legend(handles, labels, loc="outside upper center", **across)
+    drawing.legend(handles, labels, loc="outside upper center", ncols=len(labels), fontsize=8.5,
+                   frameon=False)  # fmt: skip
     drawing.supylabel(shown.label, fontsize=9)
     drawing.supxlabel("coefficient of restitution that is wanted", fontsize=9)
-    return drawing
 
 
 def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:

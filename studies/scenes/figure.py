@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engines import ENGINES
+from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of, in_order, preset_of, told
 
 LOWEST = 1e-7
@@ -79,7 +79,7 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
         axes.plot(100.0 * lines[column], range(len(lines)), marker, color=colour, label=label,
                   markersize=8, markerfacecolor=colour if marker == "o" else "none")  # fmt: skip
     pairs = zip(lines["engine"].astype(str), lines["floor"], strict=True)
-    names = [f"{ENGINES[engine].title}: {floor}" for engine, floor in pairs]
+    names = [f"{title_of(engine)}: {floor}" for engine, floor in pairs]
     axes.set_yticks(range(len(lines)), names)
     axes.set(ylim=(len(lines) - 0.5, -0.5), xlim=(-8.0, 108.0))
     axes.set_xlabel("way over which the floor carries the block, of its own  [%]")
@@ -102,7 +102,7 @@ def _rows(lines: pd.DataFrame, title: str) -> tuple[Figure, Axes, dict[str, floa
         + apart * (presets.index(preset_of(source)) - 0.5 * (len(presets) - 1))
         for source in lines["source"]
     }
-    axes.set_yticks(range(len(engines)), [ENGINES[name].title for name in engines])
+    axes.set_yticks(range(len(engines)), [title_of(name) for name in engines])
     axes.set(xscale="log", ylim=(len(engines) - 0.5, -0.5))
     axes.grid(axis="x", alpha=0.25)
     for preset in presets:

@@ -11,7 +11,7 @@ from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, Style
 from studies.measures.words import listed
 from studies.precision.choices import engines_of, joint
-from studies.precision.figure import style_of
+from studies.precision.figure import called, style_of
 
 BACKGROUND = "#b5b5b5"
 """Colour of the published engines."""
@@ -38,7 +38,7 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
     failed = "failed, or a wrong outcome"
     if untimed := sorted(set(mine["method"]) - set(_timed(mine)["method"])):
-        failed += f"; without a run time: {listed(untimed)}"
+        failed += f"; without a run time: {listed([*map(called, untimed)])}"
     axes.text(0.01, 0.985, failed, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
     axes.set_xlabel("run time of a case, set-up apart  [s]")
     counts = dict.fromkeys(f"{lines['cases'].max()}" for lines in (mine, others) if len(lines))
@@ -65,4 +65,4 @@ def _line(axes: Axes, name: str, line: pd.DataFrame, style: Style) -> Name:
     look = {**style.points(), "linestyle": style.line or "none", "linewidth": style.width}
     axes.plot(line["wall_s"], error, **look)
     last = int(np.argmax(line["wall_s"]))
-    return Name(name, float(line["wall_s"].iloc[last]), float(error.iloc[last]), colour)
+    return Name(called(name), float(line["wall_s"].iloc[last]), float(error.iloc[last]), colour)

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from studies.drawing.styles import name_of
 from studies.measures.verdicts import ACCEPTED, Verdict
 
 
@@ -116,9 +117,7 @@ def _exponent(error: float) -> str:
 
 def _label_methods(axes: Axes, sources: list[str]) -> None:
     axes.xaxis.tick_top()
-    labels = [
-        source.replace(":", "\n").replace("average-acc", "average-\nacc") for source in sources
-    ]
+    labels = [name_of(source).replace("average-acc", "average-\nacc") for source in sources]
     turned = 70 if len(sources) > MANY else 40
     axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8)
     for label in axes.get_xticklabels():

@@ -57,9 +57,9 @@ once: a run that was interrupted goes on where it stopped when the same command 
     ),
     captions={
         "overview": (
-            "Error against run time: for each engine and preset a bar from the median to the "
-            "largest error of the peak over all cases; in brackets how many outcomes are wrong: "
-            "the fall, at rest for rocked, no answer."
+            "Error and run time: for each engine and preset a bar from the median to the largest "
+            "error of the peak over all cases, with how many outcomes are wrong, and beside it "
+            "the run time of a case."
         ),
         "figure-6": (
             "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
@@ -83,27 +83,27 @@ once: a run that was interrupted goes on where it stopped when the same command 
         ),
         "presets-6": (
             "Relative error of the largest rotation over the frequency of the half-sine pulses of "
-            "figure 6, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
-            "dash), no answer (a cross)."
+            "figure 6 as colour, a strip for each engine and preset, a column for each H/B; marked "
+            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
+            "answer (a cross)."
         ),
         "presets-7": (
             "Relative error of the largest rotation over the frequency of the half-sine pulses of "
-            "figure 7, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
-            "dash), no answer (a cross)."
+            "figure 7 as colour, a strip for each engine and preset, a column for each H/B; marked "
+            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
+            "answer (a cross)."
         ),
         "presets-8": (
             "Relative error of the largest rotation over the frequency of the full-sine pulses of "
-            "figure 8, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
-            "dash), no answer (a cross)."
+            "figure 8 as colour, a strip for each engine and preset, a column for each H/B; marked "
+            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
+            "answer (a cross)."
         ),
         "presets-9": (
             "Relative error of the largest rotation over the frequency of the full-sine pulses of "
-            "figure 9, a row for each preset, a column for each H/B; in the grey bands the "
-            "outcomes that each engine gets wrong: the fall (a square), at rest for rocked (a "
-            "dash), no answer (a cross)."
+            "figure 9 as colour, a strip for each engine and preset, a column for each H/B; marked "
+            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
+            "answer (a cross)."
         ),
     },
 )

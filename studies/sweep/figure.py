@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside, breadth
-from studies.drawing.styles import Style, line_of, style_of
+from studies.drawing.styles import Style, line_of, name_of, style_of
 
 OVERTURNED = "overturned"
 TOP, ROW = 1.2, 0.085
@@ -41,7 +41,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(WIDTH, HEIGHT))
     grid = drawing.subplots(
         2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0),
-        gridspec_kw=_places(len(panels), breadth(sources)),
+        gridspec_kw=_places(len(panels), breadth([*map(name_of, sources)])),
     )  # fmt: skip
     for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
         _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
@@ -158,7 +158,12 @@ def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequ
     """Write the sources beside their lines: in the band above, and at the end of their errors."""
     colours = {source: style_of(source).colour for source in sources}
     size = 7.5 if len(sources) < 9 else 6.0
-    beside(upper, [Name(s, 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size)
+    beside(
+        upper, [Name(name_of(s), 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size
+    )
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
     last = known.groupby("source", sort=False)[["x", "error"]].last()
-    beside(lower, [Name(str(s), x, error, colours[str(s)]) for s, x, error in last.itertuples()])
+    beside(
+        lower,
+        [Name(name_of(str(s)), x, error, colours[str(s)]) for s, x, error in last.itertuples()],
+    )

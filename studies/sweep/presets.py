@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-import math
-import re
-from textwrap import fill
+from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from engines import ENGINES
 from engines.declaration import AT_REST
-from studies.drawing.labels import Name, around
-from studies.drawing.styles import preset_style, style_of
-from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
-from studies.measures.words import capital, per_cent
+from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
+from studies.drawing.styles import title_of
+from studies.measures.presets import engine_of, in_order, is_engine, preset_of, told
+from studies.measures.words import part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
-LEAST, MOST = 1e-8, 1e1
-"""Ends of the scale of errors along the frequency."""
-LETTERS = 26
-"""In a line beside a panel."""
-ROW = 0.045
-"""Height of a row of wrong outcomes over that of a panel."""
+LEAST, MOST = 1e-6, 1.0
+"""Ends of the colours of errors along the frequency."""
 MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
-"""Kind of a wrong outcome -> its mark in that row."""
+"""Kind of a wrong outcome -> its mark in a strip."""
+ROW = 0.125
+"""Height of a preset in a row of an engine [in]."""
+APART = 0.76
+"""Part of a row over which its presets are spread."""
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:
-    """Draw error against run time: a bar from the median to the largest error, for each source.
+    """Draw error and run time beside each other: engines as rows, presets as dots.
 
     Parameters
     ----------
@@ -38,46 +35,50 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         From `studies.sweep.claims.preset_table`.
     """
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
-    drawing = Figure(figsize=(8.6, 5.6), layout="constrained")
-    axes = drawing.subplots()
-    axes.set(xscale="log", yscale="log")
-    names = []
-    for _, line in table.iterrows():
-        style = preset_style(str(line["preset"]))
-        ends = [(line["ms"], line["median"]), (line["ms"], line["max"])]
-        axes.plot(*zip(*ends, strict=True), color=style.colour, linewidth=1.6, alpha=0.45)
-        axes.plot(*ends[1], **style.points(7.0))
-        axes.plot(*ends[0], "_", color=style.colour, markersize=8)
-        title = ENGINES[str(line["engine"])].title
-        counts = " + ".join(f"{line[kind]:.0f}" for kind in KINDS)
-        lost = re.sub(r"( \+ 0)+$", "", counts) if any(line[list(KINDS)]) else ""
-        words = f"{title} ({lost})" if lost else title
-        names.append(Name(words, *ends[1], style.colour))
-    axes.margins(x=0.12, y=0.08)
-    axes.set_xlabel("run time of a case  [ms]")
-    axes.set_ylabel("error of the largest rotation: median (bar) to largest (dot)")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter(_mark)
-    axes.set_title(f"{int(table['cases'].max())} cases: errors by engine and by how it is used;\n"
-                   f"in brackets how many outcomes are wrong: {' + '.join(WORDS.values())}",
-                   fontsize=11)  # fmt: skip
-    axes.grid(alpha=0.25)
-    around(axes, names, 9.5)
-    handles = [
-        Line2D([], [], **preset_style(name).points(7.0), label=in_words(name))
-        for name in in_order(table["preset"])
-    ]
-    drawing.legend(handles=handles, loc="outside upper center", ncols=2, frameon=False, fontsize=9)
+    engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
+    size = (8.6, 1.9 + ROW * len(presets) * len(engines))
+    drawing = Figure(figsize=size, layout="constrained")
+    errors, times = drawing.subplots(1, 2, sharey=True, width_ratios=(1.7, 1.0))
+    for line in table.to_dict("records"):
+        place = presets.index(str(line["preset"])) - 0.5 * (len(presets) - 1)
+        y = engines.index(str(line["engine"])) + APART * place / len(presets)
+        colour = told(str(line["preset"])).colour
+        errors.plot([line["median"], line["max"]], [y, y], color=colour, lw=2.4, alpha=0.45)
+        errors.plot(line["median"], y, "|", color=colour, markersize=7)
+        errors.plot(line["max"], y, "o", color=colour, markersize=5.5)
+        times.plot(line["ms"], y, "o", color=colour, markersize=5.5)
+        if lost := sum(line[kind] for kind in KINDS):
+            errors.annotate(f"{lost:.0f} wrong", (line["max"], y), (6, 0), color=colour,
+                            textcoords="offset points", fontsize=8.5, va="center")  # fmt: skip
+    rows(errors, [title_of(name) for name in engines], 11.0)
+    for axes in (errors, times):
+        axes.set(xscale="log")
+        axes.tick_params(axis="x", labelsize=10)
+        for place in range(1, len(engines)):
+            axes.axhline(place - 0.5, color="#cccccc", linewidth=0.8)
+        axes.grid(axis="y", visible=False)
+        axes.tick_params(axis="y", length=0)
+        axes.spines[["top", "right", "left"]].set_visible(False)
+    low, high = errors.get_xlim()
+    errors.set_xlim(low, 8.0 * high)  # for the words
+    error_scale(errors.xaxis, low, max(high, 1.0))
+    errors.set_xlabel("error of the largest rotation:\nmedian (bar) to largest (dot)", fontsize=10)
+    times.xaxis.set_major_formatter("{x:g}")
+    times.set_xlabel("run time of a case  [ms]", fontsize=10)
+    times.grid(axis="x", alpha=0.25)
+    most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
+    words = [f"by up to {most[name]} {told(name).short}" for name in (presets[0], presets[-1])]
+    cases = int(table["cases"].max())
+    drawing.suptitle(f"In {cases} cases peaks are off {', '.join(words)}", fontsize=12)
+    key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
 
 
-def _mark(value: float, _: float) -> str:
-    """Return a relative error as a mark along an axis: in per cent, as a power of ten below."""
-    return per_cent(value) if value >= 1e-4 else f"$10^{{{round(math.log10(value))}}}$"
-
-
 def draw_by_preset(rows: pd.DataFrame) -> Figure:
-    """Draw the errors of one of figures 6 to 9: a row for each preset, a column for each H/B.
+    """Draw the errors of one of figures 6 to 9 along the frequency as colours.
+
+    A strip for each engine and preset, a column for each H/B; of widths that similarity makes alike
+    a cell holds the largest error, and every mark.
 
     Parameters
     ----------
@@ -85,59 +86,58 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         Of one figure, from `studies.measures.differences.with_reference`.
     """
     rows = rows[rows["source"].map(is_engine)]
-    rows = rows.assign(preset=rows["source"].map(preset_of))
+    rows = rows.assign(preset=rows["source"].map(preset_of), wrong=wrong_in(rows))
     aspects, presets = sorted(rows["aspect"].unique()), in_order(rows["preset"])
-    engines = list(dict.fromkeys(map(engine_of, rows["source"])))
-    drawing = Figure(figsize=(9.0, 2.4 * len(presets) + 1.2), layout="constrained")
-    grid = drawing.subplots(len(presets), len(aspects), sharex=True, sharey=True, squeeze=False)
-    for line, preset in zip(grid, presets, strict=True):
+    groups = {preset: rows[rows["preset"] == preset] for preset in presets}
+    counts = [group["source"].nunique() for group in groups.values()]
+    size = (9.4, 1.7 + 0.2 * sum(counts) + 0.28 * len(counts))
+    drawing = Figure(figsize=size, layout="constrained")
+    grid = drawing.subplots(
+        len(presets), len(aspects), squeeze=False, sharex="col", height_ratios=counts
+    )
+    for line, (preset, group) in zip(grid, groups.items(), strict=True):
+        sources = list(group["source"].unique())
         for axes, aspect in zip(line, aspects, strict=True):
-            mine = rows[(rows["preset"] == preset) & (rows["aspect"] == aspect)]
-            _panel(axes, mine, engines)
-        line[0].set_ylabel(f"{_broken(in_words(preset))}\nrelative error  [–]", fontsize=8.5)
-    for axes, aspect in zip(grid[0], aspects, strict=True):
-        axes.set_title(f"H/B = {aspect:g}", fontsize=10)
-    for axes in grid[-1]:
-        axes.set_xlabel("frequency  ω/p  [–]")
-    first, *others = (f"B = {width_m:g} m" for width_m in sorted(rows["width_m"].unique()))
-    pale = f" (pale: {', '.join(others)})" if others else ""
-    title = f"errors of the peak, {first}{pale}; in the grey band wrong outcomes"
-    drawing.suptitle(f"Figure {rows['figure'].iloc[0]}: {title}", fontsize=11)
-    handles = [Line2D([], [], **style_of(name).points(5.0), label=name) for name in engines]
-    handles += [
-        Line2D(
-            [], [], color="#555555", linestyle="", marker=mark, markersize=4.0, label=WORDS[kind]
-        )
-        for kind, mark in MARKERS.items()
-    ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+            shown = _strips(axes, group[group["aspect"] == aspect], sources)
+            axes.set_yticks([])
+        names = [title_of(engine_of(source)) for source in sources]
+        line[0].set_yticks(range(len(names)), names, fontsize=8.5)
+        share = f"{told(preset).short}: {part((group['wrong'] != '').mean())} of outcomes wrong"
+        line[0].set_title(share.replace(": 0 ", ": none "), color=told(preset).colour, loc="left",
+                          fontsize=9.5, fontweight="bold")  # fmt: skip
+    for axes, aspect in zip(grid[-1], aspects, strict=True):
+        axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
+    bar = drawing.colorbar(shown, ax=grid, extend="both", aspect=40, pad=0.015)
+    error_scale(bar.ax.yaxis, LEAST, MOST, 1)
+    bar.ax.set_title("error", fontsize=9)
+    median = {name: part(groups[name]["error"].abs().median()) for name in presets}
+    words = [f"{median[name]} {told(name).short}" for name in (presets[0], presets[-1])]
+    number = rows["figure"].iloc[0]
+    drawing.suptitle(
+        f"Figure {number}: half of the errors are below {', '.join(words)}", fontsize=12
+    )
+    key(drawing, [dot(WORDS[kind], look, "#d00000", markersize=5) for kind, look in MARKERS.items()]
+        + [dot("both overturn, as they should", "s", STRIP, markersize=8)])  # fmt: skip
     return drawing
 
 
-def _broken(words: str) -> str:
-    """Return what a preset is in lines that are no longer than a panel is high."""
-    return fill(capital(words), LETTERS)
-
-
-def _panel(axes: Axes, rows: pd.DataFrame, engines: list[str]) -> None:
-    """Draw the errors of some engines, and above them where their outcomes are wrong."""
-    top = 1.0 + ROW * (len(engines) + 1)
-    reach = (MOST / LEAST) ** top * LEAST
-    axes.set(yscale="log", ylim=(LEAST, reach), xlim=(0.0, 4.1))
-    axes.axhspan(MOST, reach, color="#eeeeee", zorder=0)
-    narrowest = rows["width_m"].min()
-    for (source, width_m), points in rows.groupby(["source", "width_m"], sort=False):
-        look = {**style_of(str(source)).points(3.0), "linestyle": "-", "linewidth": 0.7}
-        pale = width_m != narrowest
-        known = points[points["error"].notna()].sort_values("omega_over_p")
-        error = known["error"].abs().clip(LEAST, MOST)
-        axes.plot(known["omega_over_p"], error, **look, alpha=0.3 if pale else 1.0)
-        row = engines.index(engine_of(str(source)))
-        level = (MOST / LEAST) ** (1.0 + ROW * (row + 1)) * LEAST
-        wrong = wrong_in(points)
-        for kind, mark in MARKERS.items():
-            x = points.loc[wrong == kind, "omega_over_p"]
-            axes.plot(x, [level] * len(x), mark, color=look["color"], markersize=2.6)
-    axes.set_yticks([1e-8, 1e-6, 1e-4, 1e-2, 1.0])
-    axes.set_yticks([], minor=True)
-    axes.grid(alpha=0.25)
+def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
+    """Draw a strip for each source: its errors as colours, and marks where it is wrong."""
+    size = mine["error"].abs()
+    table = mine.assign(size=size).pivot_table(
+        index="source", columns="omega_over_p", values="size", aggfunc="max", dropna=False
+    )
+    frequencies = sorted(mine["omega_over_p"].unique())
+    axes.set_facecolor(STRIP)
+    shown = cells(axes, table.reindex(index=sources, columns=frequencies), LEAST, MOST)
+    for kind, look in MARKERS.items():
+        wrong = mine[mine["wrong"] == kind]
+        x = np.searchsorted(frequencies, wrong["omega_over_p"])
+        y = [sources.index(source) for source in wrong["source"]]
+        axes.plot(x, y, look, color="#d00000", markersize=2.8)
+    ticks = [k for k, value in enumerate(frequencies) if abs(value - round(value)) < 1e-9]
+    axes.set_xticks(ticks, [f"{frequencies[k]:g}" for k in ticks], fontsize=9)
+    axes.set_yticks(np.arange(0.5, len(sources) - 1), minor=True)
+    axes.grid(axis="y", which="minor", color="white", linewidth=1.2)
+    axes.tick_params(which="minor", length=0)
+    return shown

@@ -15,8 +15,8 @@ tables of `rocking contact`, `rocking precision` and `rocking restitution`.""",
     products=("symptoms.csv", "symptoms.png", "findings.txt"),
     captions={
         "symptoms": (
-            "What users of an engine see, a panel for each symptom, its size for each engine on a "
-            "logarithmic scale: as documented, with the one setting that helps most, "
+            "What users of an engine see, a panel for each symptom, a row for each engine, "
+            "its size on a logarithmic scale: as documented, with the one setting that helps most, "
             "with all of a contact tuned at equal steps, and with steps that land on impacts."
         ),
     },

@@ -2,36 +2,48 @@
 
 from __future__ import annotations
 
+from textwrap import fill
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from studies.drawing.styles import engine_style
-from studies.measures.words import listed
-from studies.symptoms.seen import HULL
+from studies.drawing.facets import dot, error_scale, key, panels, rows, strip_beyond
+from studies.drawing.styles import title_of
+from studies.measures.presets import told
+from studies.measures.words import capital
 
-STAGES = {"before": "as seen", "after": "one setting", "tuned": "tuned", "landing": "landing"}
+STAGES: dict[str, tuple[str, dict[str, Any]]] = {
+    "before": ("as documented", {"marker": "o", "color": told("naive").colour}),
+    "after": (
+        "with the one setting that helps most",
+        {"marker": "D", "color": "#000000", "fillstyle": "none", "markersize": 9.0},
+    ),
+    "tuned": ("contact tuned, fixed step", {"marker": "s", "color": told("fixed").colour}),
+    "landing": ("steps that land on impacts", {"marker": "^", "color": told("landing").colour}),
+}
+"""Column -> what it is called, and how it is drawn."""
 MEASURES = {
-    "max_error": "largest error of a peak  [–]",
-    "newton_e": "|e| of an impact  [–]",
-    "slip_widths": "slide of the pivot over B  [–]",
-    "sink_widths": "depth of a corner over B  [–]",
-    "energy_growth": "rise of energy  [–]",
-    "off_over_all": "off by  [–]",
+    "max_error": "largest error of a peak",
+    "newton_e": "|e| of an impact",
+    "slip_widths": "slide of the pivot over B",
+    "sink_widths": "depth of a corner over B",
+    "energy_growth": "rise of energy",
+    "off_over_all": "largest deviation from e",
 }
 """Column -> what it is called at an axis."""
-WHY = {HULL: "adapters with a hull"}
-"""Symptom -> why only some engines are asked."""
-FLOOR = 1e-12
+FLOOR = 1e-8
 """Sizes below are drawn here."""
-BROKEN = 10.0
-"""Where settings with cases that fail are drawn."""
+EDGE, BROKEN, END = 5.0, 20.0, 80.0
+"""Where settings with cases that fail are drawn, and the strip around that."""
+LETTERS = 40
+"""In a line of a title."""
 
 
 def draw_symptoms(lines: pd.DataFrame) -> Figure:
-    """Draw the size of each symptom by default, with one setting and with all, by engine.
+    """Draw the size of each symptom: engines as rows, by default and with what mends it as dots.
 
     Parameters
     ----------
@@ -40,56 +52,42 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
     """
     groups = list(lines.groupby("symptom", sort=False))
     engines = list(lines["engine"].unique())
-    columns = 3
-    rows = -(-len(groups) // columns)
-    drawing = Figure(figsize=(9.6, 2.6 * rows + 0.5), layout="constrained")
-    panels = drawing.subplots(rows, columns, sharex=True, squeeze=False).ravel()
-    for axes, (symptom, group) in zip(panels, groups, strict=False):
-        _panel(axes, group)
-        asked = list(group["engine"].unique())
-        why = WHY.get(str(symptom), "asked")
-        only = "" if len(asked) > len(engines) // 2 else f" ({why}: {listed(asked)})"
-        axes.set_title(_broken(f"{symptom}{only}"), fontsize=10)
-        axes.set_ylabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=8.5)
-    handles = [
-        Line2D([], [], **{**engine_style(name, "").points(6.0), "linestyle": "-"}, label=name)
-        for name in engines
-    ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=8, frameon=False)
-    for axes in panels[len(groups) :]:
-        axes.set_axis_off()
+    drawing, grid = panels(
+        len(groups), 3, (3.5, 0.95 + 0.22 * len(engines)), 1.0, sharex=True, sharey=True
+    )
+    grid[0].set(xscale="log", xlim=(0.3 * FLOOR, END))
+    error_scale(grid[0].xaxis, FLOOR, 1.0)
+    for axes, (symptom, group) in zip(grid, groups, strict=True):
+        _panel(axes, group, engines)
+        axes.set_title(fill(capital(str(symptom)), LETTERS), fontsize=10, fontweight="bold", pad=16)
+        axes.set_xlabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=9)
+        axes.tick_params(labelbottom=True)
+        strip_beyond(axes, EDGE, "fails", along="x")
+    drawing.suptitle(_title(lines), fontsize=12)
+    key(drawing, [dot(name, **look) for name, look in STAGES.values()], 4)
     return drawing
 
 
-def _broken(words: str, width: int = 36) -> str:
-    """Return a title in lines that fit above a panel."""
-    lines = [""]
-    for word in words.split():
-        lines[-1:] = (
-            [f"{lines[-1]} {word}".strip()] if len(lines[-1]) < width - 8 else [lines[-1], word]
-        )
-    return "\n".join(lines)
+def _title(lines: pd.DataFrame) -> str:
+    """Say how often one setting mends what is seen, and by how much in the middle."""
+    mended = lines[lines["after"].notna()]
+    factor = (mended["before"] / mended["after"]).abs().median()
+    return (
+        f"One setting helps in {len(mended)} of {len(lines)} pairs of engine and symptom, "
+        f"most often by more than a factor of {max(factor, 1.0):.0f}"
+    )
 
 
-def _panel(axes: Axes, group: pd.DataFrame) -> None:
-    places = np.arange(len(STAGES))
+def _panel(axes: Axes, group: pd.DataFrame, engines: list[str]) -> None:
+    rows(axes, [title_of(name) for name in engines])
     for row in group.to_dict("records"):
-        style = engine_style(str(row["engine"]), "")
         sizes = np.abs([float(row[name]) for name in STAGES])
-        sizes = np.where(np.isinf(sizes), BROKEN, np.maximum(sizes, FLOOR))
-        shown = np.isfinite(sizes)
-        axes.plot(
-            places[shown],
-            sizes[shown],
-            color=style.colour,
-            marker=style.marker,
-            fillstyle=style.fill,
-            linewidth=1.2,
-        )
-    axes.set(yscale="log", xlim=(-0.3, len(STAGES) - 0.7))
-    axes.set_xticks(places, list(STAGES.values()), fontsize=9)
-    if axes.get_ylim()[1] >= BROKEN:
-        axes.set_ylim(top=10.0 * BROKEN)
-        axes.axhline(BROKEN, color="#999999", linewidth=0.6)
-        axes.annotate("cases fail", (1.0, BROKEN), fontsize=8, color="#555555", va="bottom")
-    axes.grid(alpha=0.25)
+        places = np.where(np.isinf(sizes), BROKEN, np.maximum(sizes, FLOOR))
+        y = engines.index(str(row["engine"]))
+        shown = places[np.isfinite(places)]
+        axes.plot([shown.min(), shown.max()], [y, y], color="#bbbbbb", linewidth=1.2)
+        for place, (_, look) in zip(places, STAGES.values(), strict=True):
+            axes.plot(place, y, **{"markersize": 5.5, **look})
+    for engine in set(engines) - set(group["engine"]):
+        axes.text(2.0 * FLOOR, engines.index(engine), "not asked", fontsize=7.5, color="#888888",
+                  va="center")  # fmt: skip

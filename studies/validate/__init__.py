@@ -36,8 +36,8 @@ provenance.json; resumable.""",
     ),
     captions={
         "validate": (
-            "Error of each random case over S, how far small errors of the pulse or of the impacts "
-            "move its peak, and the line through the largest error over S of each engine."
+            "Errors of random cases in bands of S, how far small errors of the pulse or of the "
+            "impacts move a peak: for each engine the middle half, the median, and the ends."
         ),
     },
 )

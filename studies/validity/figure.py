@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from studies.drawing.styles import style_of
+from studies.drawing.styles import name_of, style_of
 
 SYMBOLS = {
     "held": "•",
@@ -84,8 +84,9 @@ def _panels(count: int, height: float) -> tuple[Figure, list[Axes]]:
 def _whose(sources: list[str]) -> str:
     """Say whose symbols stand where."""
     if len(sources) == 1:
-        return f"symbols: {sources[0]}"
-    return f"black symbols: all alike; where they differ, from the left {', '.join(sources)}"
+        return f"symbols: {name_of(sources[0])}"
+    names = ", ".join(map(name_of, sources))
+    return f"black symbols: all alike; where they differ, from the left {names}"
 
 
 def draw_friction(beside: pd.DataFrame) -> Figure:
@@ -107,7 +108,9 @@ def draw_friction(beside: pd.DataFrame) -> Figure:
     for axes in panels[::ACROSS]:
         axes.set_ylabel("slide of the pivot over B  [–]")
     drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
-    handles = [Line2D([], [], **style_of(name).points(6.0), label=name) for name in sources]
+    handles = [
+        Line2D([], [], **style_of(name).points(6.0), label=name_of(name)) for name in sources
+    ]
     drawing.legend(handles=handles, loc="outside lower center", ncols=len(sources), frameon=False)
     return drawing
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.drawing.styles import preset_style
+from studies.drawing.styles import preset_style, title_of
 from studies.measures.presets import in_words, told
 from studies.versions.tables import CHANGED
 
@@ -39,7 +39,7 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     for axes, engine in zip(panels, engines, strict=False):
         mine = lines[lines["engine"] == engine]
         _panel(axes, mine, changes[changes["engine"] == engine])
-        axes.set_title(str(engine), fontsize=10)
+        axes.set_title(title_of(str(engine)), fontsize=10)
     panels[0].set_ylim(FLOOR, 3.0 * max(1.0, lines["max_error"].max()))
     for axes in panels[len(engines) :]:
         axes.set_axis_off()

@@ -130,7 +130,7 @@ def test_a_map_shows_every_case_of_a_width(exact):
     drawing = draw_maps(rows)
     image = drawing.axes[0].get_images()[0].get_array()
     assert image.size == (rows["source"] == "mujoco:naive").sum()
-    assert drawing.axes[0].get_title() == "mujoco: 100 % right"
+    assert drawing.axes[0].get_title() == "MuJoCo: 100 % right"
 
 
 def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):

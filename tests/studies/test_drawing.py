@@ -8,10 +8,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from engines import ENGINES
 from studies.__main__ import run
+from studies.catalogue import STUDIES
 from studies.contact.figure import MATTER, draw_contact
+from studies.drawing.figures import lay_out
 from studies.drawing.labels import Name, around, spread
 from studies.drawing.styles import (
     ENGINE_COLOURS,
@@ -19,10 +22,12 @@ from studies.drawing.styles import (
     STYLES,
     look_at,
     preset_style,
+    title_of,
 )
 from studies.linearizations.figure import ONSETS
 from studies.measures.presets import PRESETS, in_order, told
 from studies.overturning.figure import DIFFERENCE_COLOURS
+from studies.precision.figure import draw_precision, engine_in
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
@@ -109,7 +114,7 @@ def test_a_preset_of_another_package_is_told_of_by_its_name():
     drawn = draw_contact(lines)
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     asked = ("gentle", "fixed", "recommended", "naive")
-    assert words[:4] == [told(name).varied for name in asked]
+    assert words[:4] == [told(name).short for name in reversed(asked)]
     assert in_order(["gentle", "landing", "naive"]) == ["naive", "gentle", "landing"]
 
 
@@ -158,8 +163,8 @@ def test_a_contact_of_an_engine_with_steps_of_its_own_is_drawn():
     mine = lines[(lines["engine"] == "dart") & (lines["preset"] == "landing")]
     drawn = draw_contact(mine.assign(engine="drake", preset="error-controlled"))
     told = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert "one help of the engine's own steps" in told
-    assert "one help of landing left out" not in told
+    assert PRESETS["error-controlled"].short in told
+    assert PRESETS["landing"].short not in told
     colours = {label.get_color() for label in drawn.axes[0].get_yticklabels()}
     assert colours == {PRESETS["error-controlled"].colour}
 
@@ -169,21 +174,22 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
         PUBLISHED / "contact" / "variants.csv", keep_default_na=False, na_values="nan"
     )
     drawn = draw_contact(lines)
-    axes = next(panel for panel in drawn.axes if panel.get_title() == "mujoco")
+    axes = next(panel for panel in drawn.axes if panel.get_title("left") == "MuJoCo")
     words = [label.get_text() for label in axes.get_yticklabels()]
     mine = lines[(lines["engine"] == "mujoco") & (lines["factor"] != "")]
     assert len(words) == MATTER + lines.loc[lines["engine"] == "mujoco", "preset"].nunique()
-    (rest,) = [text.get_text() for text in axes.texts if "matter less" in text.get_text()]
+    (rest,) = [text.get_text() for text in axes.texts if "others" in text.get_text()]
     assert rest.startswith(f"{len(mine) - MATTER} others")
     broken = mine[mine["failed"] == mine["cases"]]
-    assert all(any(level in word for word in words) for level in broken["level"])
+    for _, group in broken.groupby("preset"):  # of each preset one that breaks every case
+        assert any(word.startswith(f"{name}: ") for word in words for name in group["factor"])
     turns = [sum(label.get_color() == preset.colour for label in axes.get_yticklabels())
              for preset in PRESETS.values()]  # fmt: skip
     assert sorted(turn for turn in turns if turn) == [
         1,
-        4,
-        4,
-        5,
+        3,
+        3,
+        3,
     ]  # each preset, and in turn its own
     width, height = drawn.get_size_inches()
     assert height < width * lines["engine"].nunique() / 3.0
@@ -195,3 +201,56 @@ def test_published_results_without_their_largest_table_are_drawn_again(study, tm
     (folder / f"{study}.png").unlink()
     assert run(["redraw", str(folder)]) == 0
     assert (folder / f"{study}.png").stat().st_size > 10_000
+
+
+def words_of(drawing):
+    """Return the words written in a figure as it is laid out, with their boxes."""
+    lay_out(drawing)
+    drawing.draw_without_rendering()
+    unseen = [
+        label
+        for axes in drawing.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for tick in axis.get_major_ticks() + axis.get_minor_ticks()
+        if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
+        for label in (tick.label1, tick.label2)
+    ]
+    texts = [
+        text
+        for text in drawing.findobj(Text)
+        if text.get_visible() and text.get_text() and text not in unseen
+    ]
+    return [(text.get_text(), text.get_window_extent()) for text in texts]
+
+
+@pytest.mark.parametrize("study", ["precision", "contact", "symptoms", "validate", "restitution"])
+def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
+    drawn = next(each for each in STUDIES if each.name == study).load().pictures(PUBLISHED / study)
+    for drawing in drawn.values():
+        found = words_of(drawing)
+        titles = [title_of(name) for name in ENGINES]
+        asked = [title for title in titles if any(title in words for words, _ in found)]
+        assert len(asked) >= 6
+        assert not [name for name in ENGINES if any(words == name for words, _ in found)
+                    and name not in titles]  # fmt: skip
+        width, height = drawing.canvas.get_width_height()
+        clipped = [
+            words for words, box in found
+            if box.width and (box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1
+                              or box.y1 > height + 1)
+        ]  # fmt: skip
+        assert clipped == []
+
+
+def test_precision_has_a_panel_for_each_engine_in_which_its_presets_are_named():
+    table = pd.read_csv(PUBLISHED / "precision" / "work-precision.csv")
+    drawing = draw_precision(table)
+    panels = {axes.get_title(): axes for axes in drawing.axes}
+    for name in table["method"].map(lambda method: engine_in(method)[0]).unique():
+        if not name:
+            continue
+        mine = [method for method in table["method"].unique() if engine_in(method)[0] == name]
+        named = [text.get_text() for text in panels[title_of(name)].texts]
+        presets = [engine_in(method)[1] for method in mine]
+        assert {told(preset).short for preset in presets if "," not in preset} <= set(named)
+    assert len(drawing.axes) == 1 + sum(title_of(name) in panels for name in ENGINES)
