@@ -128,7 +128,7 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
             codes = _cell_codes(parts[source])
             wrong = f"{off[source]} of {len(parts[source])} cells"
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
-        axes.set_title(f"{name_of(source)}: {wrong} wrong", fontsize=10)
+        axes.set_title(f"{name_of(source)}:\n{wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + across >= len(drawn), left=False)
     for axes in panels[len(drawn) :]:
         axes.set_visible(False)
