@@ -11,6 +11,7 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Help, Preset, Stepping
 from engines.registry import OWN
+from engines.troubles import TROUBLES
 from studies.contact.claims import frames, prices, rules
 from studies.contact.report import read as read_variants
 from studies.measures.presets import preset_of
@@ -97,3 +98,16 @@ def random_fixed(published: Path) -> str:
         if preset_of(str(source)) == "fixed" and not rows["agrees"].all()
     ]
     return listed(words) if words else ""
+
+
+def troubles() -> str:
+    """Return what goes wrong in each engine, by which mechanism, and the script that shows it."""
+    rows = [
+        (ENGINES[each.engine].title, each.title, each.kind, each.mechanism, _script(each.script))
+        for each in sorted(TROUBLES, key=lambda each: list(ENGINES).index(each.engine))
+    ]
+    return table(("engine", "what happens", "kind", "mechanism", "script"), rows)
+
+
+def _script(name: str) -> str:
+    return f"[{name}](../../engines/troubles/{name})"

@@ -89,6 +89,7 @@ def pages(root: Path) -> dict[Path, str]:
         "frames": engine_facts.frames_of_engines(published),
         "objections": objections(published, lines),
         "slippery": slippery(),
+        "troubles": engine_facts.troubles(),
         "rules": engine_facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
         "random_fixed": engine_facts.random_fixed(published),

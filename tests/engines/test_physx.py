@@ -1,7 +1,5 @@
 """PhysX: how near single precision comes, and the traps that it sets without a word."""
 
-import runpy
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from engines.run.drive import LAG, build, run
 pytestmark = pytest.mark.skipif("physx" not in HERE, reason="sapien is not installed")
 
 MOTION = pulse(1.3, 3.0, 2)
-STANDSTILL = Path(__file__).parent / "troubles" / "physx_tgs_standstill.py"
 
 
 def rocked(preset: str = "fixed", **options: Any) -> Response:
@@ -36,14 +33,6 @@ def test_some_of_the_sweep(preset: str, median: float, largest: float) -> None:
     errors = errors_of_sweep("physx", every=48, preset=preset)
     assert np.median(errors) < median
     assert max(errors) < largest
-
-
-def test_what_a_body_of_tgs_loses_is_half_of_an_ulp_in_each_iteration() -> None:
-    imported("sapien")
-    end = runpy.run_path(str(STANDSTILL))["end"]
-    assert end(10.0, 0.05, True) == 0.0
-    assert end(10.0, 0.05, False) == pytest.approx(0.05, rel=0.05)
-    assert end(0.0, 0.05, True) == pytest.approx(0.05, rel=0.01)
 
 
 def test_a_depth_that_is_corrected_at_once_is_noise() -> None:

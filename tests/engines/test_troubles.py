@@ -1,0 +1,44 @@
+"""The smallest scripts of what goes wrong: each still does in the pinned version, by itself."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from uses import HERE
+
+import engines
+from engines.troubles import TROUBLES, Trouble
+
+FOLDER = Path(engines.__file__).parent / "troubles"
+INSTALLED = [trouble for trouble in TROUBLES if trouble.engine in HERE]
+
+
+def test_every_script_is_told_of() -> None:
+    found = {path.name for path in FOLDER.glob("*_*.py") if path.name != "__init__.py"}
+    assert {trouble.script for trouble in TROUBLES} == found
+    assert all(trouble.title and trouble.mechanism and trouble.kind for trouble in TROUBLES)
+
+
+@pytest.mark.parametrize("trouble", TROUBLES, ids=lambda trouble: trouble.script)
+def test_a_script_needs_its_engine_alone(trouble: Trouble) -> None:
+    text = (FOLDER / trouble.script).read_text()
+    assert len(text.splitlines()) <= 40
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add(str(node.module).partition(".")[0])
+    library = {trouble.library.partition(".")[0], f"{trouble.library.partition('.')[0]}_data"}
+    assert names - set(sys.stdlib_module_names) - {"numpy"} <= library
+
+
+@pytest.mark.parametrize("trouble", INSTALLED, ids=lambda trouble: trouble.script)
+def test_the_trouble_is_still_there(trouble: Trouble, tmp_path: Path) -> None:
+    """In a process and a folder of its own, where this project is not to be found."""
+    asked = [sys.executable, "-I", str(FOLDER / trouble.script)]
+    done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "expected" in done.stdout and "found" in done.stdout
