@@ -3,14 +3,16 @@
 import csv
 import json
 import re
+import shlex
 import shutil
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from studies.__main__ import run
+from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
+from studies.kit.app import make_app
 from studies.kit.tables import read_table
 from studies.measures.glossary import COLUMNS, GROUPS
 from studies.page import facts, hero, readme
@@ -217,3 +219,28 @@ def test_the_first_picture_is_of_the_case_that_it_names():
 def test_a_folder_without_tables_is_refused(tmp_path, capsys):
     assert run(["readme", "--root", str(tmp_path)]) == 2
     assert "--root" in capsys.readouterr().err
+
+
+def commands():
+    """Return the commands that the README prints, in their order."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
+    return [line for block in blocks for line in block.splitlines() if line.startswith("rocking ")]
+
+
+QUICK = ("symptoms", "advise", "export", "blocks", "compare")
+
+
+@pytest.mark.parametrize("command", commands())
+def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch, capsys):
+    """What takes a second is run; of the rest every argument is taken."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "CABINETS.csv").write_text("name,width,height\nA,0.5,1.5\n")
+    (tmp_path / "FILE").write_text("time,acceleration [g]\n0,0\n0.5,0.4\n1,-0.4\n1.5,0\n")
+    _, *arguments = shlex.split(command)
+    if arguments[0] in QUICK:
+        assert run(arguments) == 0
+        assert capsys.readouterr().out
+    else:
+        taken, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
+        assert taken.__module__.startswith("studies.") and bound.arguments and not ignored
