@@ -336,10 +336,10 @@ def lasts(*records: Mapping[str, Any]) -> str:
 
 
 def glossary() -> list[tuple[str, str]]:
-    """Return every column's name, unit and meaning: a heading and a table for each group."""
-    heads = ("column", "unit", "meaning")
+    """Return every column's name, type, unit and meaning: a heading and a table for each group."""
+    heads = ("column", "type", "unit", "meaning")
     return [
-        (name, table(heads, [(f"`{key}`", *column) for key, column in columns.items()]))
+        (name, table(heads, [(f"`{key}`", *column.told) for key, column in columns.items()]))
         for name, columns in GROUPS.items()
     ]
 

@@ -13,6 +13,7 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.digests import check, seal
 from studies.kit.journal import PROVENANCE
+from studies.measures.glossary import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
 from studies.page.objections import objections, slippery
@@ -96,7 +97,7 @@ def pages(root: Path) -> dict[Path, str]:
         "glossary": facts.glossary(),
         "minutes": facts.minutes,
     }
-    return {
+    return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
         path: environment.get_template(name).render(known)
         for path, name in (
             (root / "README.md", "readme.md.jinja"),
