@@ -317,7 +317,7 @@ def column_of(table: str, name: str) -> Column:
 def dictionary(published: Path) -> pd.DataFrame:
     """Return a line for each column of every published table: its type, unit and meaning."""
     lines = [
-        (f"{path.parent.name}/{path.name}", name, *column_of(table, name).told)
+        (f"{path.parent.name}/{path.name}", name, *column_of(table, str(name)).told)
         for path in sorted(published.glob("*/*.csv*"))
         for table in [f"{path.parent.name}/{path.name.partition('.')[0]}"]
         for name in pd.read_csv(path, nrows=0)

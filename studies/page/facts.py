@@ -20,7 +20,6 @@ from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED, scientific
-from studies.measures.glossary import GROUPS
 from studies.measures.posed import Posed, posed
 from studies.measures.presets import in_order, in_words
 from studies.measures.presets import told as as_told
@@ -333,15 +332,6 @@ def lasts(*records: Mapping[str, Any]) -> str:
     times = {run["first"]: f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
     return f"{first} the first time, when its functions are compiled, and for {later} later"
-
-
-def glossary() -> list[tuple[str, str]]:
-    """Return every column's name, type, unit and meaning: a heading and a table for each group."""
-    heads = ("column", "type", "unit", "meaning")
-    return [
-        (name, table(heads, [(f"`{key}`", *column.told) for key, column in columns.items()]))
-        for name, columns in GROUPS.items()
-    ]
 
 
 def ninth(root: Path) -> str:

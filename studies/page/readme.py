@@ -94,7 +94,6 @@ def pages(root: Path) -> dict[Path, str]:
         "rules": engine_facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
         "random_fixed": engine_facts.random_fixed(published),
-        "glossary": facts.glossary(),
         "minutes": facts.minutes,
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
