@@ -234,7 +234,7 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     out = tmp_path / "advice"
     assert run(["advise", "--engines", *CORE, "--out", str(out)]) == 0
     assert capsys.readouterr().out == (out / "findings.txt").read_text()
-    assert (out / "advice.png").stat().st_size > 20_000
+    assert (out / "advice.png").stat().st_size > 7_000
     assert study.headline(out).startswith("Errors are kept cheapest: 10 % ")
     assert Path(out / "provenance.json").is_file()
 

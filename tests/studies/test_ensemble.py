@@ -288,7 +288,7 @@ def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys):
         assert len(pd.read_csv(tmp_path / f"{name}.csv")) > 1
     (tmp_path / "ensemble.png").unlink()
     assert run(["redraw", str(tmp_path)]) == 0
-    assert (tmp_path / "ensemble.png").stat().st_size > 20_000
+    assert (tmp_path / "ensemble.png").stat().st_size > 7_000
 
 
 def test_records_of_the_users_own(tmp_path, capsys):

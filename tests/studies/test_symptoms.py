@@ -250,7 +250,7 @@ def test_the_page_is_written_drawn_and_told(tmp_path, capsys):
     assert "asked in bullet3 #1204" in text
     assert "alone takes the largest error from" in study.headline(tmp_path)
     assert "mujoco: 1.2e-02 with the library's defaults; 1.0e-04 with reference: as in" in text
-    assert (tmp_path / "symptoms.png").stat().st_size > 20_000
+    assert (tmp_path / "symptoms.png").stat().st_size > 7_000
 
 
 def test_refusals(capsys):
