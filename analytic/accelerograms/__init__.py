@@ -3,18 +3,22 @@
 A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
 """
 
-from collections.abc import Sequence
+import re
 from pathlib import Path
 
 from analytic.accelerograms.asc import read as read_asc
 from analytic.accelerograms.at2 import read as read_at2
-from analytic.accelerograms.foreign import refuse
 from analytic.accelerograms.table import read as read_table
 from analytic.accelerograms.text import lines_of
 from analytic.accelerograms.units import UNITS, Sampled
 
-OTHER_SUFFIXES = (".vt2", ".dt2")
-"""Of PEER's files of velocity and of displacement."""
+FOREIGN = {
+    "COSMOS": r".*\(Format v[\d.]+ with \d+ text lines",
+    "SMC": r"[12] (UN)?CORRECTED ACCELEROGRAM|\*\s*$",
+    "CSMIP": r"(UN)?CORRECTED ACCELEROGRAM|RESPONSE AND FOURIER",
+    "K-NET": r"Origin Time\s+\d",
+}
+"""Format that is not read -> how its first line begins."""
 
 
 def read(path: Path, units: str | None) -> Sampled:
@@ -27,14 +31,17 @@ def read(path: Path, units: str | None) -> Sampled:
     """
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")
-    if path.suffix.lower() in OTHER_SUFFIXES:
+    if path.suffix.lower() in (".vt2", ".dt2"):
         raise ValueError("it must be a file of acceleration, as AT2 files are")
-    return _read(lines_of(path), units)
-
-
-def _read(lines: Sequence[str], units: str | None) -> Sampled:
-    for reader in (read_asc, read_at2):
-        if sampled := reader(lines, units):
-            return sampled
-    refuse(lines)
+    lines = lines_of(path)
+    if sampled := read_asc(lines, units) or read_at2(lines, units):
+        return sampled
+    first = next((line.strip() for line in lines if line.strip()), "")
+    for name, begins in FOREIGN.items():
+        if re.match(begins, first, re.IGNORECASE):
+            raise ValueError(
+                f"it is a {name} file, which is not read; it must be a PEER AT2 or an ESM ASC file,"
+                " or a table of two columns, time [s] and acceleration, made from it, for instance"
+                " with gmprocess"
+            )
     return read_table(lines, units)

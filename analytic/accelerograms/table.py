@@ -1,24 +1,25 @@
-"""Tables of two columns, time and acceleration, with or without a line of their names."""
+"""Tables of two columns, time [s] and acceleration, with or without a line of their names."""
 
-import itertools
 import re
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
 
-from analytic.accelerograms.columns import read_header
-from analytic.accelerograms.text import MOST_SAMPLES, is_number, number, too_long
-from analytic.accelerograms.units import Line, Sampled, converted
+import numpy as np
+
+from analytic.accelerograms.text import is_number, number, shown
+from analytic.accelerograms.units import Sampled, check_quantity, converted, unit_of
+from analytic.motion import FloatArray
 
 UNEVEN = 0.03
 """Part of a step by which a printed time may miss its place: what four decimals do to 256 Hz."""
 
+TIME = re.compile(r"\b(?:t|time)(?![a-z])", re.IGNORECASE)
+ACCELERATION = re.compile(r"\bag?(?![a-z])|acc", re.IGNORECASE)
+FIELD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?")
+"""A name without blanks, but for one before the bracket of its unit."""
 
-class Sample(NamedTuple):
-    """A line of numbers: where it is in the file, and what it says in the file's units."""
-
-    line: int
-    time: float
-    acceleration: float
+TIME_UNIT = re.compile(r"(?:[(\[_/]|\bin\b)\s*([^\W_]+)")
+SECONDS = ("s", "sec", "secs", "second", "seconds")
+SHORTER = re.compile(r"(?<![\w/])(?:ms|msecs?|milliseconds?|[µμ]s)\b", re.IGNORECASE)
 
 
 def read(lines: Sequence[str], units: str | None) -> Sampled:
@@ -32,82 +33,88 @@ def read(lines: Sequence[str], units: str | None) -> Sampled:
     """
     begin = next((at for at, line in enumerate(lines) if _is_row(line)), len(lines))
     separator = next((mark for mark in ";," if mark in "".join(lines[begin : begin + 1])), None)
-    rows = _rows(lines, begin, separator)
+    numbered = list(enumerate(lines, start=1))
+    beside = {at: line for at, line in numbered if at <= begin or line.lstrip()[:1] in ("#", "%")}
+    at = [n for n, line in numbered if n not in beside and line.strip()]
+    rows = np.array([_row(lines[n - 1], separator, n) for n in at])
     if len(rows) < 2:
         raise ValueError(f"it has {len(rows)} rows of numbers; it must have two or more")
-    numbered = enumerate(lines, start=1)
-    beside = [Line(at, text) for at, text in numbered if at <= begin or _is_remark(text)]
-    header = read_header(beside, separator, units)
-    if not header.named:
-        _check_order(rows)
-        _check_commas([lines[row.line - 1] for row in rows], separator)
-    dt = _step([(row.line, header.second * row.time) for row in rows])
-    return Sampled(dt, converted([row.acceleration for row in rows], header.unit))
-
-
-def _is_remark(line: str) -> bool:
-    return line.lstrip()[:1] in ("#", "%")
+    if not _check_names(beside, separator):
+        check_quantity(beside)
+        _check_numbers(rows, [lines[n - 1] for n in at], separator)
+    samples = converted(rows[:, 1], unit_of(beside, units))
+    return Sampled(_step(rows[:, 0], at), samples)
 
 
 def _is_row(line: str) -> bool:
     return is_number(re.split(r"[\s,;]", line.strip(), maxsplit=1)[0])
 
 
-def _rows(lines: Sequence[str], begin: int, separator: str | None) -> list[Sample]:
-    rows: list[Sample] = []
-    for at, line in enumerate(lines[begin:], start=begin + 1):
-        text = line.strip().rstrip(",;")
-        if not text or _is_remark(text):
-            continue
-        words = text.split(separator)
-        if len(words) != 2:
-            columns = f"line {at} has {len(words)} columns"
-            raise ValueError(f"{columns}; it must have two, time and acceleration")
-        rows.append(Sample(at, number(words[0].strip(), at), number(words[1].strip(), at)))
-        if len(rows) > MOST_SAMPLES:
-            raise too_long(MOST_SAMPLES, "more than ")
-    return rows
+def _row(line: str, separator: str | None, at: int) -> tuple[float, float]:
+    words = line.strip().rstrip(",;").split(separator)
+    if len(words) != 2:
+        raise ValueError(
+            f"line {at} has {len(words)} columns; it must have two, time and acceleration"
+        )
+    return number(words[0].strip(), at), number(words[1].strip(), at)
 
 
-def _check_commas(rows: Iterable[str], separator: str | None) -> None:
-    """Raise ValueError if every row may be one number with a decimal comma."""
-    if separator == "," and not any(re.search(r"[.eE]|,[ \t]+\S", row) for row in rows):
+def _check_names(beside: Mapping[int, str], separator: str | None) -> bool:
+    """Return whether a line names the columns; ValueError if not as time [s] and acceleration."""
+    named = False
+    for at, line in beside.items():
+        plain = line.strip("#% \t")
+        mark = next((mark for mark in (separator, ",", ";", "\t") if mark and mark in plain), None)
+        names = plain.rstrip(",;").split(mark) if mark else FIELD.findall(plain)
+        heads = mark is not None and mark == separator and plain == line.strip()
+        if len(names) == 2 and (heads or any(map(TIME.search, names))):
+            named = True
+            time, other = (name.strip(' "') for name in names)
+            if not TIME.search(time) or TIME.search(other) or not ACCELERATION.search(other):
+                where = f"line {at}: its columns are {shown(time)} and {shown(other)}"
+                raise ValueError(f"{where}; they must be time and acceleration, in this order")
+            unit = TIME_UNIT.search(time)
+            if unit and unit[1].lower() not in SECONDS:
+                raise ValueError(f"line {at}: its times are in {shown(unit[1])}; they must be in s")
+        if found := SHORTER.search(line):
+            raise ValueError(f"line {at} speaks of {found[0]}; its times must be in s")
+    return named
+
+
+def _check_numbers(rows: FloatArray, lines: Iterable[str], separator: str | None) -> None:
+    """Raise ValueError if every row may be one number with a decimal comma, or columns swapped."""
+    if separator == "," and not any(re.search(r"[.eE]|,[ \t]+\S", line) for line in lines):
         raise ValueError(
             "its commas may be decimal ones; it must have decimal points, semicolons or blanks "
             "between the columns, or a line of their names"
         )
+    if len(rows) > 2:
+        try:
+            _step(rows[:, 1], range(len(rows)))
+        except ValueError:
+            return
+        raise ValueError(
+            "both columns increase in equal steps; a line above must name them, as in t (s), a (g)"
+        )
 
 
-def _check_order(rows: Sequence[Sample]) -> None:
-    """Raise ValueError if the second column may be the times, too."""
-    if len(rows) < 3:
-        return
-    try:
-        _step([(row.line, row.acceleration) for row in rows])
-    except ValueError:
-        return
-    raise ValueError(
-        "both columns increase in equal steps; a line above must name them, as in t (s), a (g)"
-    )
-
-
-def _step(times: Sequence[tuple[int, float]]) -> float:
+def _step(times: FloatArray, lines: Sequence[int]) -> float:
     """Return the step [s] of equally spaced times, each with its line."""
-    steps = sorted(after - before for (_, before), (_, after) in itertools.pairwise(times))
-    usual = steps[len(steps) // 2]
-    for (_, before), (line, time) in itertools.pairwise(times):
-        ratio = (time - before) / usual if usual > 0.0 else 0.0
-        if ratio <= 0.0:
-            raise ValueError(f"line {line}: the time {time:g} s must be later than {before:g} s")
-        if ratio > 1.5:
-            raise ValueError(
-                f"line {line}: a gap from {before:g} to {time:g} s; steps must all be {usual:g} s"
-            )
-    dt = (times[-1][1] - times[0][1]) / (len(times) - 1)
-    for place, (line, time) in enumerate(times):
-        if abs(time - times[0][1] - place * dt) > UNEVEN * dt:
-            raise ValueError(
-                f"line {line}: the time {time:g} s is not a whole number of steps of {dt:g} s "
-                "after the first; steps must be equal"
-            )
+    with np.errstate(over="ignore"):
+        steps = np.diff(times)
+    usual = float(np.median(steps))
+    for at in np.flatnonzero((steps <= 0.0) | (steps > 1.5 * usual))[:1]:
+        before, time = times[at], times[at + 1]
+        if steps[at] <= 0.0 or usual <= 0.0:
+            problem = f"the time {time:g} s must be later than {before:g} s"
+        else:
+            problem = f"a gap from {before:g} to {time:g} s; steps must all be {usual:g} s"
+        raise ValueError(f"line {lines[int(at) + 1]}: {problem}")
+    dt = float(times[-1] - times[0]) / (len(times) - 1)
+    missed = np.abs(times - times[0] - np.arange(len(times)) * dt) > UNEVEN * dt
+    for place in np.flatnonzero(missed)[:1]:
+        raise ValueError(
+            f"line {lines[int(place)]}: the time {times[place]:g} s is not a whole number of steps "
+            f"of {dt:g} s after the first; steps must be equal"
+        )
     return dt

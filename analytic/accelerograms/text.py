@@ -4,7 +4,6 @@ import math
 import re
 import reprlib
 import stat
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -21,19 +20,14 @@ BYTES_PRINTED = 16
 MOST_BYTES = 4 * BYTES_PRINTED * MOST_SAMPLES
 """Largest file that is read; the factor is for two columns of 17 digits."""
 
-NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 """A number as programs print it; Python itself also takes 1_000, Arabic digits and NaN."""
 
+PLAIN = re.compile(NUMBER, re.ASCII)
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
-
-KINDS: tuple[tuple[Callable[[int], bool], str], ...] = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a named pipe"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-    (stat.S_ISSOCK, "a socket"),
-)
+KINDS = {"d": "a folder", "p": "a named pipe", "s": "a socket"}
+"""How the mode of what is no regular file begins -> what it is, if not a device."""
 
 
 def lines_of(path: Path) -> list[str]:
@@ -44,16 +38,27 @@ def lines_of(path: Path) -> list[str]:
     ValueError
         If it is no file that can be read, too large for a record, or holds bytes that are no text.
     """
-    return _text(_content(path)).split("\n")
+    content = _content(path).removeprefix(b"\xef\xbb\xbf")
+    content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        problem = f"the byte 0x{content[error.start]:02x} is not text in UTF-8"
+        raise ValueError(f"line {line}: {problem}") from error
+    if found := CONTROL.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise ValueError(f"line {line}: {found[0]!r} is not text")
+    return text.split("\n")
 
 
 def _content(path: Path) -> bytes:
     """Return the bytes of a regular file of bearable size; nothing else is opened."""
     try:
         found = path.stat()
-        for is_kind, kind in KINDS:
-            if is_kind(found.st_mode):
-                raise ValueError(f"it is {kind}")
+        if not stat.S_ISREG(found.st_mode):
+            kind = KINDS.get(stat.filemode(found.st_mode)[0], "a device")
+            raise ValueError(f"it is {kind}")
         with path.open("rb") as file:
             content = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
@@ -66,20 +71,6 @@ def _content(path: Path) -> bytes:
     if words > 2 * MOST_SAMPLES + 10_000:
         raise too_long(words // 2, "at least ")
     return content
-
-
-def _text(content: bytes) -> str:
-    content = content.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    try:
-        text = content.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        problem = f"the byte 0x{content[error.start]:02x} is not text in UTF-8"
-        raise ValueError(f"line {line}: {problem}") from error
-    if found := CONTROL.search(text):
-        line = text.count("\n", 0, found.start()) + 1
-        raise ValueError(f"line {line}: {found[0]!r} is not text")
-    return text
 
 
 def too_long(count: int, about: str = "") -> ValueError:
@@ -98,7 +89,7 @@ def shown(word: str) -> str:
 
 def is_number(word: str) -> bool:
     """Whether a word is a number, or one that is not finite."""
-    return bool(NUMBER.fullmatch(word) or NOT_FINITE.fullmatch(word))
+    return bool(PLAIN.fullmatch(word) or NOT_FINITE.fullmatch(word))
 
 
 def number(word: str, line: int) -> float:
@@ -109,9 +100,19 @@ def number(word: str, line: int) -> float:
     ValueError
         If it is no finite number in plain digits.
     """
-    if NUMBER.fullmatch(word) and math.isfinite(value := float(word)):
+    if PLAIN.fullmatch(word) and math.isfinite(value := float(word)):
         return value
     if is_number(word):
         raise ValueError(f"line {line}: {shown(word)[1:-1]} must be a finite number")
     comma = " with a decimal point" if "," in word else ""
     raise ValueError(f"line {line}: {shown(word)} must be a number{comma}")
+
+
+def whole(name: str, line: int, word: str) -> int:
+    """Return the number of samples that a line of a header says; ValueError if it is none."""
+    if not (word.isascii() and word.isdecimal()):
+        raise ValueError(f"line {line}: {name} is {shown(word)}; it must be whole")
+    count = int(word[:12])
+    if count > MOST_SAMPLES:
+        raise too_long(count)
+    return count

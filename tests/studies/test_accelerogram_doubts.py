@@ -45,10 +45,10 @@ DOUBTS = [
         "line 4 speaks of vel",
     ),
     ("units of velocity", at2("ACCELERATION TIME SERIES IN UNITS OF CM/S"), "g", "'cm/s'"),
-    ("a column of velocity", f"t (s), v (m/s)\n{ROWS.replace(' ', ',')}", "g", "'v'"),
+    ("a column of velocity", f"t (s), v (m/s)\n{ROWS.replace(' ', ',')}", "g", "'v (m/s)'"),
     ("a column of velocity, blanks", f"Time Velocity\n{ROWS}", "g", "'Velocity'"),
     ("a remark of velocity", f"# velocity of the ground\n{ROWS}", "g", "speaks of velocity"),
-    ("a column in m/s", f"t [s], x [m/s]\n{ROWS.replace(' ', ',')}", "g", "'m/s'"),
+    ("a column in m/s", f"t [s], x [m/s]\n{ROWS.replace(' ', ',')}", "g", "'x [m/s]'"),
     ("mg and g", at2("ACCELERATION IN UNITS OF MG"), "g", "states mg; --units must not be g"),
     ("mm/s2 and m/s2", at2("ACCELERATION IN MM/S2"), "m/s2", "mm/s2; --units must not be m/s2"),
     ("mg in a table", f"t (s)  a (mg)\n{ROWS}", "g", "states mg; --units must not be g"),
@@ -91,12 +91,19 @@ DOUBTS = [
         None,
         "line 1: its times are in 'min'",
     ),
+    ("times in ms", f"t_ms,acc_g\n{ROWS.replace(' ', ',')}", None, "its times are in 'ms'"),
+    ("times in msec", f"# Time [msec], a [g]\n{ROWS}", None, "its times are in 'msec'"),
     ("a unit of time in a remark", f"# ms\n{ROWS}", "g", "line 1 speaks of ms"),
     ("a step in ms", GOOD.replace("SEC,", "MSEC,"), None, "line 4: the step is in MSEC"),
-    ("swapped names", f"a (g), t (s)\n{ROWS.replace(' ', ',')}", None, "'a' and 't'; they must be"),
+    (
+        "swapped names",
+        f"a (g), t (s)\n{ROWS.replace(' ', ',')}",
+        None,
+        "'a (g)' and 't (s)'; they mu",
+    ),
     ("swapped names, blanks", f"acc time\n{ROWS}", "g", "'acc' and 'time'; they must be time and"),
     ("swapped numbers", "0.1 0.00\n0.2 0.01\n0.3 0.02\n", "g", "both columns increase in equal"),
-    ("counted rows", f"sample,a (g)\n{ROWS.replace(' ', ',')}", None, "'sample' and 'a'"),
+    ("counted rows", f"sample,a (g)\n{ROWS.replace(' ', ',')}", None, "'sample' and 'a (g)'"),
     (
         "two counts",
         AT2["said twice"].replace("7 points", "8 points"),
@@ -255,10 +262,9 @@ def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])
-def test_samples_are_counted_as_they_are_read(form, tmp_path, capsys, monkeypatch):
-    for module in ("at2", "table"):
-        monkeypatch.setattr(f"analytic.accelerograms.{module}.MOST_SAMPLES", 6)
+def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("analytic.accelerograms.units.MOST_SAMPLES", 6)
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])
-    assert "it holds more than 6 samples" in refused(path, capsys)
+    assert "it holds 7 samples" in refused(path, capsys)
