@@ -81,8 +81,8 @@ def drivers(published: Path) -> dict[str, str]:
 
 
 def published_engines(published: Path) -> list[str]:
-    """Return the names of the engines that the published tables know."""
-    known = set(settings(published, list(ENGINES))["engine"])
+    """Return the names of the engines that were taken along their steps."""
+    known = set(along_steps(published, list(ENGINES))["engine"])
     return [name for name in ENGINES if name in known]
 
 

@@ -223,8 +223,10 @@ def test_report_of_a_small_table(small_table, tmp_path: Path):
     table = pd.read_csv(tmp_path / "variants.csv", keep_default_na=False, na_values=["nan"])
     assert len(table) == len(chosen)
     landing = table[table["preset"] == "landing"]
-    # steps that land on impacts come within 1e-3; the naive presets are off by more
-    assert (landing["max_error"] < 1e-3).all()
+    # steps that land on impacts come within 1e-3, or what the engine scatters by; the naive
+    # presets are off by more
+    scatter = landing["engine"].map(lambda name: ENGINES[name].scatter)
+    assert (landing["max_error"] < scatter.clip(lower=1e-3)).all()
     assert (table[table["preset"] == DEFAULT]["max_error"] > 1e-3).all()
     assert "one zero makes it the default" in text
     exact = simulate(CASE.block, CASE.motion).peak_ratio

@@ -37,7 +37,7 @@ def ladder(method):
 def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(engine, dt):
     p_dt = dt * BLOCK.p
     kept = kept_errors(PUBLISHED, [engine], BLOCK, dt)
-    assert list(kept["preset"]) == ["naive", "fixed"]
+    assert list(kept["preset"]) == ["naive", "recommended", "fixed"]
     for _, line in kept.iterrows():
         known = ladder(f"{engine} {line['preset']}")
         coarser = min(value for _, value, _ in known if value >= p_dt)
@@ -51,7 +51,7 @@ def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(en
 
 def test_a_published_step_is_its_own_and_none_is_as_coarse_as_a_long_one():
     exactly = kept_errors(PUBLISHED, ["mujoco"], BLOCK, 0.01 / BLOCK.p)
-    assert exactly["coarser"].tolist() == [0.01, 0.01]
+    assert exactly["coarser"].tolist() == [0.01, 0.01, 0.01]
     long = kept_errors(PUBLISHED, ["mujoco"], BLOCK, 0.9)
     assert long[["coarser", *SETS]].isna().all(axis=None)
 
@@ -62,7 +62,7 @@ def test_settings_are_formulas_of_the_step_and_their_values(engine, capsys):
     assert run(["advise", "--dt", str(dt), "--engine", engine, "--friction", "0.7"]) == 0
     text = capsys.readouterr().out
     parts = re.split(r"\n\n(?=[^\n]*DT = 0\.0037 s)", text)[1:]
-    assert len(parts) == 2
+    assert len(parts) == 3
     for part in parts:
         assert "0.7" in part
         head, *lines = part.split("\n\n")[0].splitlines()
