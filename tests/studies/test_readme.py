@@ -4,6 +4,7 @@ import json
 import re
 import shlex
 import shutil
+import tomllib
 from pathlib import Path
 
 import pandas as pd
@@ -166,7 +167,8 @@ def test_the_engine_of_the_readme_is_the_one_that_is_scored():
 
 
 def test_every_link_of_a_page_leads_somewhere():
-    for path in (ROOT / "README.md", ROOT / "studies" / "GUIDE.md", *PUBLISHED.glob("*.md")):
+    guides = [ROOT / "README.md", ROOT / "studies" / "GUIDE.md", ROOT / ".github/CONTRIBUTING.md"]
+    for path in (*guides, *PUBLISHED.glob("*.md")):
         text = path.read_text(encoding="utf-8")
         targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
         targets += re.findall(r'src="([^"]+)"', text)
@@ -232,3 +234,22 @@ def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch
     else:
         taken, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
         assert taken.__module__.startswith("studies.") and bound.arguments and not ignored
+
+
+def test_the_project_s_files_name_what_there_is():
+    """Forms and the workflow can be read, and the citation and the changes are of this version."""
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    folder = ROOT / ".github"
+    assert f"## {version}\n" in (folder / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"\nversion: {version}\n" in (folder / "CITATION.cff").read_text(encoding="utf-8")
+    assert "run: .ci/run" in (folder / "workflows" / "ci.yml").read_text(encoding="utf-8")
+
+
+def test_the_changes_tell_the_published_outcomes():
+    """How many outcomes of 960 are right as documented, after the change."""
+    text = (ROOT / ".github" / "CHANGELOG.md").read_text(encoding="utf-8")
+    told = dict(re.findall(r"(\w+)\s+\d{3},\s+(\d{3})[;.]", text))
+    lines = pd.read_csv(PUBLISHED / "presets" / "summary.csv").query("figure == 'all'")
+    right = lines.set_index("source")["agree"]
+    found = {title: int(right[f"{title.lower()}:naive"]) for title in told}
+    assert len(told) == 8 and {title: int(count) for title, count in told.items()} == found
