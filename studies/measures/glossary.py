@@ -1,5 +1,7 @@
 """What every column of every table means, once; tables of it are made for readers from here."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import pandas as pd

@@ -3,14 +3,14 @@
 import functools
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic import simulate
-from analytic.kernels.law import FloatArray
 from studies.cases.paper import SWEEPS, sweep_cases
 
 
 @functools.cache
-def needed() -> FloatArray:
+def needed() -> NDArray[np.float64]:
     """Return the friction that the exact solution needs in each of the paper's cases."""
     return np.array([simulate(c.block, c.motion).friction_needed for c in sweep_cases(SWEEPS)])
 

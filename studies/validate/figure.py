@@ -37,7 +37,8 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
     each = (9.4 / len(bands), 0.9 + 0.32 * len(sources))
     drawing, grid = panels(len(bands), len(bands), each, 1.1, sharex=True, sharey=True)
     low = sizes["size"].clip(lower=LOWEST).min() if len(sizes) else 1e-8
-    grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * max(sizes["size"].max(), 1.0, low)))
+    high = max(sizes["size"].max(), 1.0) if len(sizes) else 1.0
+    grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * high))
     error_scale(grid[0].xaxis, *grid[0].get_xlim())
     for axes, ((start, end), cases) in zip(grid, bands.items(), strict=True):
         _boxes(axes, cases, sources)

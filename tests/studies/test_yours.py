@@ -165,7 +165,7 @@ def test_side_by_side_refuses_what_cannot_be(options, problem):
 def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
     """It has no guard by which other processes could be started from it."""
     guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
-    (code,) = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
+    code, _ = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
     script = tmp_path / "mine.py"
     script.write_text(code + "print(table['peak_ratio'].tolist())\n")
     root = str(Path(studies.__file__).parents[1])
