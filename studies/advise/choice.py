@@ -12,12 +12,13 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import AT_REST, Preset
+from engines.declaration import Preset
 from studies.advise.evidence import declared_value, extremes, in_words, settings
 from studies.advise.tried import COUNTS, counted, random_runs
 from studies.kit.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import with_every_finer
+from studies.measures.presets import uses_of
 from studies.measures.words import out_of, part
 
 TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
@@ -64,9 +65,7 @@ def advice(
 def _of_engine(
     published: Path, known: pd.DataFrame, engine: str, target: float, block: RigidBlock
 ) -> Iterator[Row]:
-    for preset in ENGINES[engine].presets:
-        if preset.name == AT_REST:  # the frame of what is documented, varied
-            continue
+    for preset in uses_of(engine):
         mine = known[known["preset"] == preset.name]
         best = cheapest(mine, target)
         yield {

@@ -12,12 +12,13 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import AT_REST, Preset, Stepping
+from engines.declaration import Preset, Stepping
 from studies.advise.evidence import LADDER
 from studies.advise.words import literal
 from studies.kit.journal import Row
 from studies.kit.tables import left_aligned
 from studies.measures.formulas import by_step
+from studies.measures.presets import uses_of
 from studies.measures.words import listed, part
 
 SETS = ("typical", "near overturning")
@@ -68,7 +69,7 @@ def _kept(lines: pd.DataFrame, engine: str, preset: Preset, p_dt: float) -> Row:
 
 
 def _equal(engine: str) -> list[Preset]:
-    return [use for use in _uses(engine) if use.stepping is Stepping.FIXED]
+    return [use for use in uses_of(engine) if use.stepping is Stepping.FIXED]
 
 
 def reverse_text(
@@ -88,7 +89,7 @@ def reverse_text(
             "published at": [_at(line) for _, line in lines.iterrows()],
         }
     )
-    without = [name for name in lines["engine"].unique() if len(_equal(name)) < len(_uses(name))]
+    without = [name for name in lines["engine"].unique() if len(_equal(name)) < len(uses_of(name))]
     note = (
         f"\nThe other presets of {listed(without)} have no one step: they land on impacts, or "
         "choose their own."
@@ -97,10 +98,6 @@ def reverse_text(
     )
     parts = [_written(line, block, dt_s, friction) for _, line in lines.iterrows()]
     return "\n\n".join([f"{head}\n{left_aligned(shown.astype(str))}{note}", *parts])
-
-
-def _uses(engine: str) -> list[Preset]:
-    return [use for use in ENGINES[engine].presets if use.name != AT_REST]
 
 
 def _said(error: float) -> str:

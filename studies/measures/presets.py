@@ -4,7 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from engines.declaration import AT_REST, RECOMMENDED
+from engines import ENGINES
+from engines.declaration import AT_REST, RECOMMENDED, Preset
 from studies.sources.registry import resolve
 
 Fill = Literal["none", "left", "bottom", "full"]
@@ -106,6 +107,11 @@ def preset_of(source: str) -> str:
 def engine_of(source: str) -> str:
     """Return the engine that a source is a preset of; any other source is its own."""
     return source.partition(":")[0]
+
+
+def uses_of(engine: str) -> list[Preset]:
+    """Return an engine's presets, without the varied frame of what is documented."""
+    return [use for use in ENGINES[engine].presets if use.name != AT_REST]
 
 
 def in_words(preset: str) -> str:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from engines import ENGINES
-from engines.declaration import AT_REST, Preset
+from engines.declaration import Preset
+from studies.measures.presets import uses_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,12 +95,7 @@ OF_NO_ENGINE = {
 
 def methods_of(engines: Iterable[str]) -> dict[str, Method]:
     """Return every method by its name, with the presets of some engines."""
-    uses = [
-        (engine, preset)
-        for engine in engines
-        for preset in ENGINES[engine].presets
-        if preset.name != AT_REST  # a variant of what is documented
-    ]
+    uses = [(engine, preset) for engine in engines for preset in uses_of(engine)]
     return {
         **OF_NO_ENGINE,
         **{f"{engine} {preset.name}": _of_preset(engine, preset) for engine, preset in uses},
