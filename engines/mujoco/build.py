@@ -4,15 +4,9 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from engines.mujoco.contact import (
-    Hold,
-    arrays_of,
-    begin_hold,
-    notice_step,
-    prepare_step,
-    read_now,
-)
+from engines.mujoco.contact import notice_step, prepare_step, read_now
 from engines.mujoco.fast import drive, memory_of, obstacle
+from engines.mujoco.hold import Hold, arrays_of, begin_hold
 from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
 from engines.mujoco.models import given_back, taken
 from engines.mujoco.settings import (

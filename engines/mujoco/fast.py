@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.contact import Arrays, Forces, Hold, notice, prepare, read
+from engines.mujoco.contact import notice, prepare, read
+from engines.mujoco.hold import Arrays, Forces, Hold
 from engines.parts.compiled import (
     SWITCHED_OFF,
     CFunction,
