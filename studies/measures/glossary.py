@@ -284,36 +284,18 @@ BY_TABLE = {
 }
 """Study and table -> the columns that mean something else there."""
 
-GROUPS = {
-    "Cases": CASES,
-    "Answers": ANSWERS,
-    "Beside the exact solution": REFERENCE,
-    "Summaries": SUMMARIES,
-    "Estimates": ESTIMATES,
-    "Symptoms": SYMPTOMS,
-    "Restitution": RESTITUTION,
-    "Versions": VERSIONS,
-    "Advice": ADVICE,
-    "Methods and settings": METHODS,
-    "Maps": MAPS,
-    "Statistics": STATISTICS,
-    "Printed numbers": PRINTS,
-    "Steady states": STEADY,
-    "Of one table": {
-        f"{table}: {name}": column
-        for table, columns in BY_TABLE.items()
-        for name, column in columns.items()
-    },
-}
-"""Heading -> the columns under it."""
+PARTS = (
+    *(CASES, ANSWERS, REFERENCE, SUMMARIES, ESTIMATES, SYMPTOMS, RESTITUTION, VERSIONS, ADVICE),
+    *(METHODS, MAPS, STATISTICS, PRINTS, STEADY),
+)
 
-COLUMNS = {name: column for group in GROUPS.values() for name, column in group.items()}
-"""Name -> unit and meaning."""
+COLUMNS = {name: column for part in PARTS for name, column in part.items()}
+"""Name -> unit and meaning, but for what means something else in one table."""
 
 
 def column_of(table: str, name: str) -> Column:
     """Return what a column of a table, called as its study's folder and file, means there."""
-    return COLUMNS.get(f"{table}: {name}") or COLUMNS[name]
+    return BY_TABLE.get(table, {}).get(name) or COLUMNS[name]
 
 
 def dictionary(published: Path) -> pd.DataFrame:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from studies.measures.glossary import BY_TABLE, COLUMNS, GROUPS
+from studies.measures.glossary import BY_TABLE, COLUMNS, PARTS
 
 ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / "studies" / "published"
@@ -70,7 +70,7 @@ def test_a_number_is_called_whole_only_where_no_table_says_otherwise():
 
 
 def test_what_a_column_means_in_one_table_is_a_column_of_it_and_means_another_thing():
-    assert sum(map(len, GROUPS.values())) == len(COLUMNS)
+    assert sum(map(len, PARTS)) == len(COLUMNS)
     stems = {path.relative_to(PUBLISHED).as_posix().partition(".")[0]: path for path in TABLES}
     for table, columns in BY_TABLE.items():
         assert columns.keys() <= set(as_written(stems[table])[0]), table
