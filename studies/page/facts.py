@@ -323,11 +323,17 @@ def lasts(*records: Mapping[str, Any]) -> str:
     Raises
     ------
     ValueError
-        If the records are of different commands, machines or versions.
+        If the records are of different commands, machines or versions; of an engine that one does
+        not know, neither asked.
     """
-    same = ("study", "version", "engines", "machine", "settings")
-    if len({json.dumps([record[name] for name in same]) for record in records}) > 1:
-        raise ValueError(f"the provenances of two runs differ in one of {', '.join(same)}")
+    same = ("study", "version", "machine", "settings")
+    known = sorted(set.intersection(*(set(record["engines"]) for record in records)))
+    told = [
+        [*(record[name] for name in same), *(record["engines"][engine] for engine in known)]
+        for record in records
+    ]
+    if any(one != told[0] for one in told):
+        raise ValueError(f"the provenances of two runs differ in engines or {', '.join(same)}")
     runs = [run for record in records for run in provenance.whole_runs(record)]
     times = {run["first"]: f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))

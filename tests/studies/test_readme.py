@@ -135,14 +135,19 @@ def runs_of(*runs, commit="a", **record):
 
 def test_the_first_run_and_a_later_one_are_timed_apart():
     """One that goes on where another stopped is neither."""
-    later = runs_of((False, 9, 9, 21.4), (False, 9, 2, 3.0))
-    first = runs_of((True, 9, 9, 80.9))
+    versions = {"mujoco": "1.0"}
+    later = runs_of((False, 9, 9, 21.4), (False, 9, 2, 3.0), engines=versions)
+    first = runs_of((True, 9, 9, 80.9), engines=versions)
     both = "81 s the first time, when its functions are compiled, and for 21 s later"
     assert facts.lasts(later, first) == both == facts.lasts(first, later)
     unknown = "a time that was not measured"
     assert facts.lasts(later) == both.replace("81 s", unknown)
     assert facts.lasts(first) == both.replace("21 s", unknown)
     assert facts.lasts({**later, "runs": [{"duration_s": 5.0}]}).count(unknown) == 2
+    ninth = {**later, "engines": {**versions, "a ninth": "1.0"}}
+    assert facts.lasts(ninth, first) == both  # which neither asked
+    with pytest.raises(ValueError, match="the provenances of two runs differ"):
+        facts.lasts(later, {**first, "engines": {"mujoco": "2.0"}})
     with pytest.raises(ValueError, match="the provenances of two runs differ"):
         facts.lasts(later, runs_of((True, 9, 9, 80.9), machine={"cpu": "another"}))
 
