@@ -16,7 +16,7 @@ from engines.declaration import Preset, Stepping
 from studies.advise.evidence import LADDER
 from studies.advise.words import literal
 from studies.kit.journal import Row
-from studies.kit.tables import left_aligned
+from studies.kit.tables import in_columns
 from studies.measures.formulas import by_step
 from studies.measures.presets import uses_of
 from studies.measures.words import listed, part
@@ -97,7 +97,7 @@ def reverse_text(
         else ""
     )
     parts = [_written(line, block, dt_s, friction) for _, line in lines.iterrows()]
-    return "\n\n".join([f"{head}\n{left_aligned(shown.astype(str))}{note}", *parts])
+    return "\n\n".join([f"{head}\n{in_columns(shown.astype(str))}{note}", *parts])
 
 
 def _said(error: float) -> str:

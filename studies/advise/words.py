@@ -16,7 +16,7 @@ from engines.declaration import Engine, Preset
 from engines.parts.settings import given
 from studies.advise.choice import random_text
 from studies.advise.evidence import in_words, options_at
-from studies.kit.tables import left_aligned
+from studies.kit.tables import in_columns
 from studies.measures.costs import LOOPS, cost_text
 from studies.measures.words import duration, listed, part, per_cent
 
@@ -88,7 +88,7 @@ def advice_text(lines: pd.DataFrame) -> str:
             "": lines["message"].where(lines["message"] != "", lines["cheapest"].map(_mark)),
         }
     )
-    return left_aligned(shown.astype(str))
+    return in_columns(shown.astype(str))
 
 
 def _mark(cheapest: bool) -> str:

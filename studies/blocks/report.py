@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader
 from studies.blocks import strength
 from studies.blocks.ranking import command_of, counted, doubts, first_words, ranked
 from studies.kit import provenance
-from studies.kit.tables import left_aligned
+from studies.kit.tables import in_columns
 from studies.measures.words import capital, listed
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def table_text(rows: pd.DataFrame) -> str:
     more = len(lines) - SHOWN
     head = "Factors on a record that lift and overturn each block, and outcomes with θmax/θcr:"
     return "\n".join(
-        [head, left_aligned(table), *([f"and {more} more in blocks.csv"] if more > 0 else [])]
+        [head, in_columns(table), *([f"and {more} more in blocks.csv"] if more > 0 else [])]
     )
 
 

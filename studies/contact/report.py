@@ -14,7 +14,7 @@ from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
 from studies.cases.variants import preset_values
 from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import left_aligned, read_table, write_table
+from studies.kit.tables import in_columns, read_table, write_table
 from studies.measures.differences import scientific, with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
@@ -123,7 +123,7 @@ def variants_text(lines: pd.DataFrame) -> str:
             "why": lines["message"].where(lines["failed"] > 0, lines["trap"]),
         }
     )
-    return left_aligned(shown.astype(str))
+    return in_columns(shown.astype(str))
 
 
 def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
@@ -181,4 +181,4 @@ def recommendation_text(lines: pd.DataFrame) -> str:
             "becomes": table["alone"],
         }
     )
-    return left_aligned(shown.astype(str))
+    return in_columns(shown.astype(str))

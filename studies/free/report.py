@@ -6,35 +6,24 @@ from pathlib import Path
 
 import pandas as pd
 
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.free.errors import IMPACTS
 from studies.measures.differences import scientific
 
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's free.csv; write and return the text."""
-    return keep(folder, pictures(folder), f"{table_text(read(folder))}\n\n{headline(folder)}")
+    rows = read(folder)
+    tables = {
+        f"Largest relative error of the time between impacts and of the next rotation, and drift "
+        f"over up to {IMPACTS} impacts [1/p]": errors(rows, ["source", "tilt"]).reset_index()
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path) -> pd.DataFrame:
     """Read a free.csv back."""
     return pd.read_csv(folder / "free.csv", dtype={"message": str}).fillna({"message": ""})
-
-
-def table_text(rows: pd.DataFrame) -> str:
-    """Return, for each source and tilt, the largest errors over the aspect ratios."""
-    lines = errors(rows, ["source", "tilt"])
-    both = lines["period_error"].map(scientific) + " " + lines["decay_error"].map(scientific)
-    tables = {
-        "Largest relative error of the time between impacts and of the next rotation:": both,
-        f"Largest drift over up to {IMPACTS} impacts [1/p]:": lines["drift_p"].map(scientific),
-    }
-    order = list(rows["source"].unique())
-    return "\n\n".join(
-        f"{head}\n"
-        f"{cells.unstack('tilt').rename_axis(index=None, columns='θ0/α').loc[order].to_string()}"
-        for head, cells in tables.items()
-    )
 
 
 def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:

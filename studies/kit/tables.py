@@ -1,12 +1,19 @@
-"""Tables as text."""
+"""Tables as files and as text."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pandas as pd
 
 from studies.kit.provenance import write_text
+
+SMALL = 1e-2
+"""Numbers below are shown as powers of ten."""
+
+SHOWN = 60
+"""Rows of a table that are shown as text; its CSV has all."""
 
 
 def write_table(path: Path, table: pd.DataFrame) -> None:
@@ -27,10 +34,26 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
 
 
-def left_aligned(table: pd.DataFrame) -> str:
-    """Return a table of words."""
-    width = {name: max(len(str(name)), int(table[name].str.len().max())) for name in table}
-    lines = [{name: str(name) for name in table}, *table.to_dict("records")]
-    return "\n".join(
-        "  ".join(str(line[name]).ljust(width[name]) for name in table).rstrip() for line in lines
-    )
+def figure(value: object) -> str:
+    """Return a value as a reader sees it: a number in three digits, a dash for none."""
+    if not isinstance(value, float):
+        return str(value)
+    if math.isnan(value):
+        return "-"
+    return f"{value:.1e}" if 0.0 < abs(value) < SMALL else f"{value:.3g}"
+
+
+def in_columns(table: pd.DataFrame) -> str:
+    """Return a table as aligned text, words to the left and numbers to the right."""
+    numeric = [pd.api.types.is_numeric_dtype(kind) for kind in table.dtypes]
+    rows = [list(map(str, table.columns)), *table.head(SHOWN).map(figure).to_numpy().tolist()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(
+            word.rjust(width) if right else word.ljust(width)
+            for word, width, right in zip(row, widths, numeric, strict=True)
+        ).rstrip()
+        for row in rows
+    ]
+    more = len(table) - SHOWN
+    return "\n".join([*lines, *([f"and {more} more rows"] if more > 0 else [])])

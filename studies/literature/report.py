@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import left_aligned, read_table, write_table
+from studies.kit.tables import in_columns, read_table, write_table
 from studies.literature.problems import Problem, Restitution
 from studies.literature.readings import NAMED
 from studies.measures.words import out_of
@@ -108,7 +108,7 @@ def table_text(table: pd.DataFrame) -> str:
                 "why not": "" if mine["agrees"] == "True" else first["why"],
             }
         )
-    return left_aligned(pd.DataFrame(lines).astype(str))
+    return in_columns(pd.DataFrame(lines).astype(str))
 
 
 def _digits(value: float) -> str:

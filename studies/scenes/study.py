@@ -12,7 +12,7 @@ import pandas as pd
 from analytic import simulate
 from analytic.response import Outcome, Response
 from engines.run.drive import LAG
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Place, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -222,9 +222,8 @@ TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
-    tables = [read_table(folder / f"{name}.csv") for name in TABLES]
-    shown = [table.to_string(index=False, float_format="%.3g") for table in tables]
-    return keep(folder, pictures(folder), "\n\n".join([*shown, headline(folder)]))
+    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:

@@ -14,7 +14,7 @@ from studies.advise.evidence import LADDER
 from studies.drawing.kept import Pictures, keep
 from studies.kit import provenance
 from studies.kit.digests import check
-from studies.kit.tables import read_table
+from studies.kit.tables import in_columns, read_table
 from studies.measures.costs import cost_text
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
 from studies.measures.posed import posed
@@ -22,7 +22,8 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
-from studies.stability.report import failures_text, verdicts_text
+from studies.stability.findings import failures
+from studies.stability.report import verdicts
 
 WIDTH = 99
 """Of the page, in letters."""
@@ -40,9 +41,9 @@ def report(folder: Path) -> str:
             "Along the step, on typical cases and near overturning together:\n" + along_text(along),
             "The cheapest setting below an error on all of these, and the published one:\n"
             + places_text(along),
-            "Verdicts on extreme cases:\n" + verdicts_text(extremes),
+            "Verdicts on extreme cases:\n" + in_columns(verdicts(extremes)),
             "Of these failures, and the first setting that avoids each:\n"
-            + failures_text(extremes),
+            + in_columns(failures(extremes)[["case", "source", "reason", "remedy"]]),
             help_text(engine),
         ]
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from studies.kit.tables import left_aligned
+from studies.kit.tables import in_columns
 from studies.measures.differences import scientific
 from studies.measures.words import listed, out_of, part
 from studies.versions.tables import CHANGED
@@ -34,7 +34,7 @@ def releases_text(lines: pd.DataFrame) -> str:
         "Errors of the peak are relative to the exact one, over cases that both survive; moved is\n"
         "the largest relative difference of a peak from that in the release before:"
     )
-    return f"{head}\n{left_aligned(shown.astype(str))}"
+    return f"{head}\n{in_columns(shown.astype(str))}"
 
 
 def _right(line: pd.Series[float]) -> str:
