@@ -13,7 +13,7 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.digests import check, seal
 from studies.kit.journal import PROVENANCE
-from studies.measures.glossary import dictionary
+from studies.measures.columns import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
 from studies.page.objections import objections, slippery

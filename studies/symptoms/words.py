@@ -8,8 +8,8 @@ from typing import Any
 
 import pandas as pd
 
+from studies.measures.columns import column_of
 from studies.measures.differences import scientific
-from studies.measures.glossary import COLUMNS
 from studies.measures.words import listed, part
 from studies.symptoms.patch import BLOCK, named
 
@@ -48,7 +48,7 @@ def page(lines: pd.DataFrame) -> str:
 
 
 def _measure(column: str) -> str:
-    return COLUMNS[column].meaning.partition(";")[0].replace("|", "∣")
+    return column_of("", column)[-1].partition(";")[0].replace("|", "∣")
 
 
 def _line(row: Mapping[Any, Any]) -> str:
