@@ -109,6 +109,12 @@ class RigidBlock(Upright):
     ValueError
         If a dimension or gravity is not positive and finite, or the restitution is outside [0, 1];
         also if a dimension, gravity or alpha is not of a size whose square floating point holds.
+
+    Examples
+    --------
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> round(block.alpha, 4), round(block.p, 4), block.restitution
+    (0.3218, 3.0507, 0.85)
     """
 
     restitution: float = math.nan
@@ -138,5 +144,10 @@ def housner_restitution(alpha: float) -> float:
     """Velocity ratio of an ideally inelastic impact, 1 - 3/2 sin(alpha)^2 (Housner 1963).
 
     Not clipped: it is negative where sin(alpha)^2 > 2/3.
+
+    Examples
+    --------
+    >>> round(housner_restitution(0.25), 4)
+    0.9082
     """
     return 1.0 - 1.5 * math.sin(alpha) ** 2

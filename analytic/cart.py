@@ -30,6 +30,13 @@ class CartBlock(Upright):
     ValueError
         If the ratio is not between 0 and 1, the stiffness negative or not finite, or a number not
         what `RigidBlock` takes.
+
+    Examples
+    --------
+    >>> block = CartBlock(width=0.5, height=1.5, mass_ratio=0.1)
+    >>> pulse = SinePulse.in_g(0.5, omega=9.0)
+    >>> float(round(simulate(block, pulse).peak_ratio, 4))
+    0.1082
     """
 
     mass_ratio: float

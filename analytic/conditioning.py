@@ -69,6 +69,12 @@ def condition_numbers(
     """Return the condition numbers of the peaks that `peak_ratios` returns.
 
     Parameters and errors are those of `peak_ratios`; the arrays have the broadcast shape.
+
+    Examples
+    --------
+    >>> kappa, kappa_eta = condition_numbers(0.32, [0.4, 0.5], 2.0, 2)
+    >>> kappa.round(3)
+    array([26.363,    nan])
     """
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     exactly = accuracy(TOLERANCE)
@@ -91,6 +97,13 @@ def conditioning(
     """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta.
 
     The start, as for `simulate`, is the same for all scales.
+
+    Examples
+    --------
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+    >>> [round(kappa, 3) for kappa in conditioning(block, pulse)]
+    [26.603, 1.823]
     """
     law = find_model(model).law(block.alpha, block.restitution)
     begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
@@ -116,6 +129,11 @@ def sensitivities(
         The largest abs(peak/peak_0 - 1)/abs(move) in the broadcast shape, over the `MOVES` of a_p
         and of eta, which stays at most 1; inf where a move changes the outcome, 0 where the block
         overturns or stays at rest with all of them, nan where a solution fails.
+
+    Examples
+    --------
+    >>> sensitivities(0.32, [0.4, 0.5], 2.0, 2).round(2)
+    array([26.39,  0.  ])
     """
     eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution)
 
@@ -134,7 +152,15 @@ def sensitivity(
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
 ) -> float:
-    """Return what `sensitivities` does, of one peak; the start is the same for all moves."""
+    """Return what `sensitivities` does, of one peak; the start is the same for all moves.
+
+    Examples
+    --------
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+    >>> round(sensitivity(block, pulse), 2)
+    26.62
+    """
     return float(_largest_move(scaled(block, motion, model, start)))
 
 

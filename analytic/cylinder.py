@@ -49,6 +49,12 @@ class RollingCylinder:
     ------
     ValueError
         If a number is not positive and finite, or no steady rolling has that tilt.
+
+    Examples
+    --------
+    >>> cylinder = RollingCylinder(radius=0.3, height=1.0, tilt=0.2)
+    >>> round(cylinder.precession, 4), round(cylinder.spin, 4)
+    (10.4033, -6.7512)
     """
 
     radius: float

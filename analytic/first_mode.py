@@ -26,6 +26,11 @@ def rocking_friction(amplitude_g: float, aspect: float) -> float:
         a, above 1/lambda [g].
     aspect : float
         lambda = H/B.
+
+    Examples
+    --------
+    >>> round(rocking_friction(0.4, aspect=3.0), 4)
+    0.3498
     """
     needed = amplitude_g * (4.0 + aspect * aspect) + 3.0 * aspect
     return needed / (1.0 + aspect * (4.0 * aspect + 3.0 * amplitude_g))
@@ -47,6 +52,11 @@ def first_mode(amplitude_g: float, friction: float, aspect: float) -> FirstMode:
     ------
     ValueError
         If the amplitude is not finite, or friction or aspect not positive and finite.
+
+    Examples
+    --------
+    >>> first_mode(0.4, friction=0.3, aspect=3.0).value
+    'slide'
     """
     a, mu = abs(finite("amplitude_g", amplitude_g)), positive("friction", friction)
     slender = 1.0 / positive("aspect", aspect)

@@ -38,6 +38,12 @@ class RockingFrame(Upright):
     References
     ----------
     Makris and Vassiliou (2013), Earthquake Engineering and Structural Dynamics 42; EQUATIONS.md.
+
+    Examples
+    --------
+    >>> frame = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
+    >>> round(frame.p, 4), round(frame.restitution, 4)
+    (2.5783, 0.8071)
     """
 
     columns: int = 2
@@ -79,6 +85,11 @@ def frame_restitution(alpha: float, load: float) -> float:
     """Velocity ratio of an ideally inelastic impact of a frame, at the bases and tops at once.
 
     [1 - 3/2 sin(alpha)^2 + 3 gamma cos(2 alpha)]/(1 + 3 gamma); not clipped, as Housner's.
+
+    Examples
+    --------
+    >>> frame_restitution(0.25, load=0.0) == housner_restitution(0.25)
+    True
     """
     kept = 1.0 - 1.5 * math.sin(alpha) ** 2 + 3.0 * load * math.cos(2.0 * alpha)
     return kept / (1.0 + 3.0 * load)

@@ -83,6 +83,13 @@ def frame_demands(
     -----
     From SAMPLES states up to FREE_TIME after the motion, all impacts and, of a frame that survives,
     its last swing. Of one that overturns the forces count while abs(theta) is below alpha.
+
+    Examples
+    --------
+    >>> frame = RockingFrame(width=0.5, height=1.5, load=2.0)
+    >>> pulse = SinePulse.in_g(0.5, omega=9.0)
+    >>> round(frame_demands(frame, pulse, spacing=2.0, depth=0.2).base, 3)
+    0.353
     """
     spacing, depth = positive("spacing", spacing), positive("depth", depth)
     until = motion.duration + FREE_TIME / frame.p
@@ -117,6 +124,13 @@ def frame_faults(
         As for `frame_demands`.
     friction : float
         Coefficient mu of all contacts.
+
+    Examples
+    --------
+    >>> frame = RockingFrame(width=0.5, height=1.5, load=2.0)
+    >>> pulse = SinePulse.in_g(0.5, omega=9.0)
+    >>> frame_faults(frame, pulse, spacing=2.0, depth=0.2, friction=1.0)
+    ()
     """
     needs = frame_demands(frame, motion, start, spacing=spacing, depth=depth)
     if needs.spacing >= spacing:

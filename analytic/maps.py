@@ -205,6 +205,11 @@ def overturning_modes(
     ------
     ValueError
         If an argument is outside its range or the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> overturning_modes(0.32, [0.4, 0.9, 2.0], 2.0, 1).mode
+    array([-1,  0,  0], dtype=int32)
     """
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     size = cases.size

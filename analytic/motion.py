@@ -65,6 +65,12 @@ class SinePulse:
         If the amplitude or the phase is not finite, omega not positive and finite, or half_cycles
         not a positive integer; also if omega is not of a size whose square floating point holds,
         or the displacement of the ground overflows.
+
+    Examples
+    --------
+    >>> pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    >>> round(pulse.duration, 5), round(float(pulse.acceleration(0.25)), 3)
+    (1.0, 3.924)
     """
 
     amplitude: float
@@ -136,7 +142,14 @@ class SinePulse:
 
 @dataclass(frozen=True, slots=True)
 class Still:
-    """Ground that does not move: for a block that is released from a tilt, or set turning."""
+    """Ground that does not move: for a block that is released from a tilt, or set turning.
+
+    Examples
+    --------
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> simulate(block, Still(), start=(0.5 * block.alpha, 0.0)).peak_ratio
+    0.5000000000000001
+    """
 
     duration: ClassVar[float] = 0.0
     breakpoints: ClassVar[tuple[float, float]] = (0.0, 0.0)
@@ -167,6 +180,11 @@ class Delayed:
     ------
     ValueError
         If the time is not positive and finite.
+
+    Examples
+    --------
+    >>> round(Delayed(SinePulse.in_g(0.4, omega=6.0), rest_s=1.0).duration, 3)
+    1.524
     """
 
     motion: Motion

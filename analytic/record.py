@@ -35,6 +35,12 @@ class Record:
     ValueError
         If dt is not positive and finite, or there are not two finite samples; also where the
         displacement of the ground or the slope between two samples overflows.
+
+    Examples
+    --------
+    >>> record = Record(dt=0.01, samples=[0.0, 4.0, -4.0, 0.0])
+    >>> record.duration, float(record.acceleration(0.005))
+    (0.03, 2.0)
     """
 
     dt: float

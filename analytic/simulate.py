@@ -254,6 +254,12 @@ def peak_ratios(
     ------
     ValueError
         If an argument is outside its range or the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> peak, outcome = peak_ratios(0.32, [0.3, 0.4, 0.9], 2.0, 1)
+    >>> peak.round(4), [one.value for one in outcome]
+    (array([0.    , 0.0446,    inf]), ['at rest', 'rocked', 'overturned'])
     """
     cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
     exactly = accuracy(TOLERANCE)

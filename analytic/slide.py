@@ -23,6 +23,13 @@ class SlidingBlock(Upright):
     ------
     ValueError
         If a number is not positive and finite, or the friction is B/H or more: the block would tip.
+
+    Examples
+    --------
+    >>> box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    >>> pulse = SinePulse(amplitude=3.924, omega=6.2832, half_cycles=2)
+    >>> [round(slip, 4) for slip in simulate(box, pulse).slips]
+    [-0.1258, 0.1321]
     """
 
     friction: float

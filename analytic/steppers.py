@@ -94,6 +94,13 @@ def integrate(
     ------
     ValueError
         If an argument is unknown or out of range.
+
+    Examples
+    --------
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+    >>> round(integrate(block, pulse, method="rk4").peak_ratio, 4)
+    0.3851
     """
     if method not in METHODS:
         raise ValueError(f"method is {method!r}; it must be one of {', '.join(METHODS)}")

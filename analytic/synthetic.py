@@ -43,6 +43,11 @@ def ricker(amplitude: float, frequency: float, *, dt: float | None = None) -> Re
     ------
     ValueError
         If a number is out of range.
+
+    Examples
+    --------
+    >>> round(ricker(3.0, frequency=2.0).duration, 3)
+    1.5
     """
     amplitude, frequency = finite("amplitude", amplitude), positive("frequency", frequency)
     time, dt = _times(2.0 * RICKER_HALF / frequency, frequency, dt)
@@ -75,6 +80,11 @@ def near_fault(
     ------
     ValueError
         If a number is out of range.
+
+    Examples
+    --------
+    >>> round(near_fault(0.5, frequency=1.0, gamma=2.0).duration, 3)
+    2.0
     """
     velocity, frequency = finite("velocity", velocity), positive("frequency", frequency)
     phase = finite("phase", phase)
@@ -129,6 +139,11 @@ def kanai_tajimi(
     ------
     ValueError
         If a number is out of range.
+
+    Examples
+    --------
+    >>> float(abs(kanai_tajimi(1, peak=3.0).samples).max())
+    3.0
     """
     positive("peak", peak)
     duration, dt = positive("duration", duration), positive("dt", dt)

@@ -78,6 +78,14 @@ class Scene:
     ------
     ValueError
         If a value is not allowed; the message says what is.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, SinePulse
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> scene = Scene(system=block, motion=SinePulse.in_g(0.4, omega=6.0))
+    >>> len(scene.bodies), scene.accuracy
+    (1, 'standard')
     """
 
     system: System

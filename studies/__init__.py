@@ -56,6 +56,14 @@ def respond(
     ------
     ValueError
         If there is no such source, preset or option, or a value is not allowed.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, SinePulse
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> pulse = SinePulse.in_g(0.4, omega=6.2832)
+    >>> respond("exact", block, pulse).outcome.value
+    'rocked'
     """
     from studies.sources.registry import resolve
 
@@ -106,6 +114,14 @@ def side_by_side(
     ------
     ValueError
         If there is no such source, or a value is not allowed.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, SinePulse
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+    >>> list(side_by_side(block, pulse, ["exact", "housner"])["outcome"])
+    ['rocked', 'overturned']
     """
     from studies.compare.study import frame
     from studies.kit.arguments import BadInputError
@@ -140,6 +156,14 @@ def table(response: Response) -> pd.DataFrame:
     ------
     ValueError
         If it has no history.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, Still
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), times=[0.0, 0.1])
+    >>> table(response).round(3).to_dict("list")
+    {'time_s': [0.0, 0.1], 'theta_rad': [0.1, 0.09], 'velocity_rad_s': [0.0, -0.208]}
     """
     import pandas as pd
 
@@ -172,6 +196,14 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     ------
     ValueError
         If it has no history.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, Still
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), times=[0.0, 0.1])
+    >>> plot(response).get_xlabel()
+    'time  t  [s]'
     """
     from studies.drawing.response import draw_response
 
