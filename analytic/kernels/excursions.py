@@ -318,6 +318,10 @@ def follow(
             events = note(notes.log, events, UPLIFT, tau, float(lead), 0.0)
         j = segment_at(moving, j, tau)
         if tau >= last:
+            while n < len(notes.times) and notes.times[n] <= last:  # of a motion without length
+                notes.samples[0, n] = side * y
+                notes.samples[1, n] = side * v
+                n += 1
             ahead = free_peak(law, y, v)
             if watched:
                 watch_free(notes.limits, law, y, v)

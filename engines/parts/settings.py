@@ -55,7 +55,11 @@ def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -
 
 
 def check(settings: Any) -> None:
-    """Raise ValueError unless each of the settings is None or what its field allows."""
+    """Raise ValueError unless each of the settings is what its field allows.
+
+    None is that where it leaves the setting to the library, but not for one of several names of
+    ours: there it would be none of them.
+    """
     for item in fields(settings):
         allowed, value = item.metadata.get("allowed"), getattr(settings, item.name)
         if allowed is None:
@@ -66,7 +70,7 @@ def check(settings: Any) -> None:
             raise ValueError(
                 f"{', '.join(together)} are {values}; they must be given together or not at all"
             )
-        if value is not None:
+        if value is not None or (allowed.names and item.default is not None):
             allowed.check(item.name, value)
 
 
