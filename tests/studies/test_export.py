@@ -56,7 +56,7 @@ def written(folder, engine, what, expected):
 
 def run_alone(folder, from_folder="/"):
     command = [sys.executable, "-c", ALONE, str(folder / "block.py")]
-    return subprocess.run(command, cwd=from_folder, capture_output=True, text=True, timeout=60)
+    return subprocess.run(command, cwd=from_folder, capture_output=True, text=True, timeout=600)
 
 
 COSINE = SinePulse(amplitude=4.5, omega=6.0, half_cycles=2, phase=1.5)
@@ -113,7 +113,7 @@ def test_a_script_runs_from_any_folder_and_says_the_versions(engine, preset, tmp
     # as a reader starts it, and in Python's isolated mode, which knows no folder of the script's
     for options in ([], ["-I"]):
         command = [sys.executable, *options, str(tmp_path / "block.py")]
-        done = subprocess.run(command, cwd=elsewhere, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(command, cwd=elsewhere, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, done.stdout + done.stderr
         for package in ENGINES[engine].packages:
             now = version_of(package)
