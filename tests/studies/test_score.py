@@ -154,9 +154,8 @@ def test_the_page(alone, few, tmp_path, capsys):
 
 
 def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys, monkeypatch):
-    pytest.importorskip("pymunk")
     monkeypatch.chdir(tmp_path)
-    asked = ["score", "pymunk", "--quick", "--json", "result.json"]
+    asked = ["score", "mujoco", "--quick", "--json", "result.json"]
     assert run([*asked, "--require", "outcomes=2", "failed=0", "naive:max=1e-9"]) == 1
     *held, short = capsys.readouterr().out.splitlines()[-3:]
     assert held == [
@@ -166,10 +165,10 @@ def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys
     assert short.startswith("falls short: naive:max must be at most 1e-09, and is ")
     kept = json.loads(Path("result.json").read_text())
     assert list(kept) == ["schema", "engine", "versions", "presets", "peaks"]
-    assert (kept["schema"], kept["engine"]) == (1, "pymunk")
-    assert kept["versions"]["pymunk"] == version("pymunk")
+    assert (kept["schema"], kept["engine"]) == (1, "mujoco")
+    assert kept["versions"]["mujoco"] == version("mujoco")
 
-    jobs = [job for job in some_of(few("pymunk", True)) if job.source == "pymunk:landing"]
+    jobs = [job for job in some_of(few("mujoco", True)) if job.source == "mujoco:landing"]
     swept = [job for job in jobs if job.labels["table"] == score.SWEEP]
     errors = []
     for job in swept:
@@ -182,7 +181,7 @@ def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys
     numbers = kept["presets"]["landing"]
     assert numbers["max"] == pytest.approx(max(errors), rel=1e-6)
     assert (numbers["cases"], numbers["outcomes"], numbers["failed"]) == (len(swept), 2, 0)
-    matrix = pd.read_csv("score/score-extremes.csv").query("source == 'pymunk:landing'")
+    matrix = pd.read_csv("score/score-extremes.csv").query("source == 'mujoco:landing'")
     assert numbers["extreme"] == (matrix["verdict"] == "good").sum() > 0
     assert numbers["extremes"] == (matrix["verdict"] != "invalid").sum()
 
