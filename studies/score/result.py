@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import platform
+from importlib.metadata import packages_distributions
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -94,13 +95,14 @@ def result_of(folder: Path, engine: Engine) -> dict[str, Any]:
     lines = swept(folder).set_index("source").join(good.agg(extreme="sum", extremes="count"))
     lines = lines.rename(index=preset_of, columns=LEAST | MOST)
     numbers = lines[["cases", "extremes", *MEASURES]].astype(object)
+    packages = engine.packages or packages_distributions().get(engine.library, ())
     return {
         "schema": SCHEMA,
         "engine": engine.name,
         "versions": {
             "rocking": provenance.project_version(),
             "python": platform.python_version(),
-            **{name: provenance.version_of(name) for name in engine.packages},
+            **{name: provenance.version_of(name) for name in packages},
         },
         "presets": numbers.where(numbers.notna(), None).to_dict("index"),
         "peaks": {

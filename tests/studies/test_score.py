@@ -1,6 +1,7 @@
 """One engine on one page: registered, at a place, or nothing but what builds its world."""
 
 import json
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -14,15 +15,18 @@ from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES, registry
 from engines.declaration import Stepping
 from engines.registry import FURTHER, announce
+from engines.undeclared import undeclared
 from studies import respond
-from studies.__main__ import run
+from studies.__main__ import COMMANDS, run
+from studies.kit.app import make_app
+from studies.kit.fingerprint import ROOT
 from studies.kit.jobs import Job
 from studies.kit.options import Running
 from studies.kit.plan import Plan, fill
 from studies.kit.provenance import record_of
 from studies.score import STUDY
 from studies.score import study as score
-from studies.score.result import CASE, Requirement, required, since
+from studies.score.result import CASE, MEASURES, Requirement, required, since
 from studies.sources import registry as sources
 from studies.sources.registry import SOURCES, resolve
 
@@ -267,3 +271,15 @@ def test_what_is_no_earlier_result_is_refused_before_anything_runs(
         assert "it is no file" in refused(capsys, "--against", str(path))
     (tmp_path / "before.json").write_text(text)
     assert "schema 1" in refused(capsys, "--against", str(tmp_path / "before.json"))
+
+
+def test_the_workflow_to_paste_says_what_is_taken():
+    guide = (ROOT / "studies" / "GUIDE.md").read_text(encoding="utf-8")
+    workflow = re.search("```yaml\n(.*?)```", guide, re.DOTALL)[1]
+    (line,) = re.findall("- run: rocking (.*)", workflow)
+    _, bound, ignored = make_app(COMMANDS).parse_args(line, exit_on_error=False)
+    assert (bound.args, ignored) == ((MINE,), {})
+    engine = undeclared("my_engine", None, "my_engine")
+    assert [required(text, engine).preset for text in bound.kwargs["require"]] == ["fixed"] * 2
+    for measure in MEASURES:
+        assert f"`{measure}`" in guide
