@@ -27,6 +27,7 @@ def report(folder: Path) -> str:
     """Draw a folder's figures, and write and return its page."""
     engine = ENGINES[provenance.record_of(folder)["settings"]["engine"]]
     asked, extremes = posed(table_of(folder, "sweep")).words, table_of(folder, "extremes")
+    wrong = failures(extremes)[["case", "source", "reason", "remedy"]]
     along = ladder(folder)
     typical = along.loc[along["set"] == TYPICAL, ["method", "value", "median_error"]]
     tables = {
@@ -36,13 +37,9 @@ def report(folder: Path) -> str:
         "Along the step, on typical cases and near overturning together": (
             joint(along).merge(typical, how="left", on=["method", "value"])
         ),
-        "The cheapest setting below an error on all of these, and the published one": (
-            places(along)
-        ),
+        "The cheapest setting below an error there, and the published one": places(along),
         "Verdicts on extreme cases": verdicts(extremes),
-        "Of these failures, and the first setting that avoids each": (
-            failures(extremes)[["case", "source", "reason", "remedy"]]
-        ),
+        "Of these failures, and the first setting that avoids each": wrong,
         "What each preset is helped by, and misses": helps(engine),
     }
     finding = f"{introduction(engine)} {headline(folder)}"

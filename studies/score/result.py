@@ -26,8 +26,6 @@ SCHEMA = 1
 """Version of the form that `result_of` gives a result."""
 NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
-SHOWN = 10
-"""Of the peaks that moved most so many are shown."""
 CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 """Columns that make the name of one of the paper's cases."""
 LEAST = {"agree": "outcomes", "extreme": "extreme"}
@@ -150,5 +148,5 @@ def since(then: dict[str, Any], now: dict[str, Any]) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in then["versions"].items())
     said = f"Since {versions}: of {len(table)} answers {len(other)} have another outcome, and "
     said += f"{len(moved)} peaks moved by more than {NOISE:g} of themselves."
-    shown = [other.drop(columns="change"), moved.head(SHOWN)]
+    shown = [other.drop(columns="change"), moved]
     return "\n\n".join([said, *(in_columns(part) for part in shown if len(part))])

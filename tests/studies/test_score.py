@@ -26,7 +26,7 @@ from studies.kit.plan import Plan, fill
 from studies.kit.provenance import record_of
 from studies.score import STUDY
 from studies.score import study as score
-from studies.score.result import CASE, MEASURES, Requirement, required, since
+from studies.score.result import CASE, MEASURES, Requirement, read, required, since
 from studies.sources import registry as sources
 from studies.sources.registry import SOURCES, resolve
 
@@ -245,32 +245,23 @@ def test_what_is_no_requirement_is_refused_before_anything_runs(capsys, monkeypa
     refused(capsys, "--json", "nowhere/result.json")
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        *("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", ""),
-        *(
-            json.dumps(WRITTEN | other)
-            for other in (
-                {"schema": 2},
-                {"engine": "pymunk"},
-                {"versions": 1},
-                {"peaks": [1.0]},
-                {"peaks": {"fixed": 1.0}},
-                {"peaks": {"fixed": {"a case": [1.0]}}},
-                {"peaks": {"fixed": {"a case": 10**400}}},
-            )
-        ),
-    ],
+BROKEN = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
+FOREIGN = (
+    *({"schema": 2}, {"engine": "pymunk"}, {"versions": 1}, {"peaks": [1.0]}),
+    *({"peaks": {"fixed": value}} for value in (1.0, {"a case": [1.0]}, {"a case": 10**400})),
 )
-def test_what_is_no_earlier_result_is_refused_before_anything_runs(
-    text, tmp_path, capsys, monkeypatch
-):
+
+
+def test_what_is_no_earlier_result_is_refused_before_anything_runs(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(score, "carry_out", None)
     for path in (tmp_path, tmp_path / "nothing", "/dev/zero"):
         assert "it is no file" in refused(capsys, "--against", str(path))
-    (tmp_path / "before.json").write_text(text)
-    assert "schema 1" in refused(capsys, "--against", str(tmp_path / "before.json"))
+    kept = tmp_path / "before.json"
+    for text in (*BROKEN, *(json.dumps(WRITTEN | other) for other in FOREIGN)):
+        kept.write_text(text)
+        assert "schema 1" in refused(capsys, "--against", str(kept))
+    kept.write_text(json.dumps(WRITTEN))
+    assert read(kept, ENGINES["mujoco"]) == WRITTEN
 
 
 def test_the_workflow_to_paste_says_what_is_taken():
@@ -281,5 +272,4 @@ def test_the_workflow_to_paste_says_what_is_taken():
     assert (bound.args, ignored) == ((MINE,), {})
     engine = undeclared("my_engine", None, "my_engine")
     assert [required(text, engine).preset for text in bound.kwargs["require"]] == ["fixed"] * 2
-    for measure in MEASURES:
-        assert f"`{measure}`" in guide
+    assert all(f"`{measure}`" in guide for measure in MEASURES)
