@@ -100,10 +100,10 @@ def judged(source: Source, response: Response) -> Line:
     asked = f"{engine.name}:{source.preset}{versions and f' ({versions})'}"
     if error <= keeps:
         return Line(f"{asked}: peak to {scientific(error)} of the exact one, {keeps:g} allowed")
-    answer = brief(response.message) or f"{response.outcome.value}, peak {response.peak_ratio:.4g}"
-    right = f"the exact solution: {exact.outcome.value}, peak {exact.peak_ratio:.4g}"
+    both = [f"{it.outcome.value}, peak {it.peak_ratio:.4g}" for it in (response, exact)]
+    answer = brief(response.message) or "; the exact solution: ".join(both)
     remedy = f"pip install --force-reinstall '{engine.install}', then report it"
-    return Line(f"{asked}: {answer}; {right}", remedy)
+    return Line(f"{asked}: {answer}", remedy)
 
 
 def should_keep(source: Source) -> float:

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES
-from studies.kit.arguments import BadInputError, Out, Place, check_writable, several
+from studies.kit.arguments import BadInputError, Out, Place, check_writable, several_or_none
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -45,7 +45,7 @@ def command(
     *,
     out: Out = Path("score"),
     quick: bool = False,
-    require: Annotated[tuple[str, ...], several] = (),
+    require: Annotated[tuple[str, ...] | None, several_or_none] = None,
     json: Place | None = None,
     against: Place | None = None,
     running: Running = DEFAULT_RUNNING,
@@ -73,7 +73,7 @@ def command(
     """
     declared = ENGINES[known(engine)]
     # what cannot be held against it is refused now, and not after the last run
-    requirements = [required(text, declared) for text in require]
+    requirements = [required(text, declared) for text in require or ()]
     earlier = against and read(against, declared)
     published()
     if json:
