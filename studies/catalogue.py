@@ -9,6 +9,7 @@ from studies import (
     compare,
     contact,
     defaults,
+    doctor,
     ensemble,
     estimate,
     export,
@@ -61,6 +62,7 @@ STUDIES: tuple[Study, ...] = (
     ensemble.STUDY,
     throughput.STUDY,
     score.STUDY,
+    doctor.STUDY,
 )
 """In the order in which the help lists them and a report shows them."""
 

@@ -33,11 +33,14 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     mine, others = joint(along), joint(engines_of(published))
     others = others[~others["method"].isin(mine["method"])]
     grey = Style(BACKGROUND, "-", ".", 0.9)
-    names = [_line(axes, name, line, grey) for name, line in _methods(others)]
-    names += [_line(axes, name, line, style_of(name)) for name, line in _methods(mine)]
+    names = [
+        _line(axes, str(name), line, grey if lines is others else style_of(str(name)))
+        for lines in (others, mine)
+        for name, line in lines[lines["wall_s"] > 0.0].groupby("method", sort=False)
+    ]
     axes.axhspan(3.0, 30.0, color="#eeeeee", zorder=-1)
     failed = "failed, or a wrong outcome"
-    if untimed := sorted(set(mine["method"]) - set(_timed(mine)["method"])):
+    if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):
         failed += f"; without a run time: {listed([*map(called, untimed)])}"
     axes.text(0.01, 0.985, failed, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
     axes.set_xlabel("run time of a case, set-up apart  [s]")
@@ -48,14 +51,6 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     axes.grid(alpha=0.25)
     beside(axes, names)
     return drawing
-
-
-def _methods(lines: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    return [(str(name), line) for name, line in _timed(lines).groupby("method", sort=False)]
-
-
-def _timed(lines: pd.DataFrame) -> pd.DataFrame:
-    return lines[lines["wall_s"] > 0.0]
 
 
 def _line(axes: Axes, name: str, line: pd.DataFrame, style: Style) -> Name:

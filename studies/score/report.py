@@ -3,76 +3,56 @@
 from __future__ import annotations
 
 from pathlib import Path
-from textwrap import fill
-from typing import Any
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Engine, Precision
+from engines.declaration import Engine
 from studies.advise.evidence import LADDER
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
 from studies.kit.digests import check
-from studies.kit.tables import in_columns, read_table
-from studies.measures.costs import cost_text
-from studies.measures.differences import scientific, summarize, summary_text, with_reference
+from studies.kit.tables import read_table
+from studies.measures.differences import summarize, with_reference
 from studies.measures.posed import posed
 from studies.measures.published import PUBLISHED
-from studies.measures.words import listed, meant, part, right_but
-from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
+from studies.measures.words import listed, part, right_but
+from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
 from studies.stability.findings import failures
 from studies.stability.report import verdicts
 
-WIDTH = 99
-"""Of the page, in letters."""
-
 
 def report(folder: Path) -> str:
     """Draw a folder's figures, and write and return its page."""
-    engine = ENGINES[engine_of(folder)]
+    engine = ENGINES[provenance.record_of(folder)["settings"]["engine"]]
+    asked, extremes = posed(table_of(folder, "sweep")).words, table_of(folder, "extremes")
+    wrong = failures(extremes)[["case", "source", "reason", "remedy"]]
     along = ladder(folder)
-    extremes = _table(folder, "extremes")
-    text = "\n\n".join(
-        [
-            introduction(engine),
-            asked_text(folder) + "\n" + summary_text(swept(folder)),
-            "Along the step, on typical cases and near overturning together:\n" + along_text(along),
-            "The cheapest setting below an error on all of these, and the published one:\n"
-            + places_text(along),
-            "Verdicts on extreme cases:\n" + in_columns(verdicts(extremes)),
-            "Of these failures, and the first setting that avoids each:\n"
-            + in_columns(failures(extremes)[["case", "source", "reason", "remedy"]]),
-            help_text(engine),
-        ]
-    )
-    return keep(folder, pictures(folder), text, "score.txt")
-
-
-def asked_text(folder: Path) -> str:
-    """Say what the paper's cases are, and what of them is counted."""
-    asked = posed(_table(folder, "sweep")).words
-    return fill(
-        f"The paper's cases: {asked}. Errors of the peak are relative, over cases that survive. "
-        f"Wrong are outcomes in three kinds, fall (falsely + missed), rest and none: {meant()}.",
-        WIDTH,
-    )
-
-
-def engine_of(folder: Path) -> str:
-    """Return the name of the engine that a folder is about."""
-    return str(provenance.record_of(folder)["settings"]["engine"])
+    typical = along.loc[along["set"] == TYPICAL, ["method", "value", "median_error"]]
+    tables = {
+        f"The paper's cases ({asked}); errors of the peak are relative, over those that survive": (
+            swept(folder).drop(columns=["figure", "max_difference"])
+        ),
+        "Along the step, on typical cases and near overturning together": (
+            joint(along).merge(typical, how="left", on=["method", "value"])
+        ),
+        "The cheapest setting below an error there, and the published one": places(along),
+        "Verdicts on extreme cases": verdicts(extremes),
+        "Of these failures, and the first setting that avoids each": wrong,
+        "What each preset is helped by, and misses": helps(engine),
+    }
+    finding = f"{introduction(engine)} {headline(folder)}"
+    return tell(folder, pictures(folder), finding, tables, "score.txt")
 
 
 def headline(folder: Path) -> str:
-    """Say how many outcomes the engine's presets get right, and how far peaks are off."""
-    words = [
-        f"{line['source']} gets {right_but(line, line['cases'])} outcomes right, "
-        f"and peaks to {part(line['max_error'])}"
-        for _, line in swept(folder).iterrows()
-    ]
-    return f"{listed(words)}."
+    """Say how many outcomes the engine's best preset gets right, and how far peaks are off."""
+    best = swept(folder).iloc[-1]
+    return (
+        f"{best['source']} gets {right_but(best, best['cases'])} outcomes right, "
+        f"and peaks to {part(best['max_error'])}."
+    )
 
 
 def pictures(folder: Path) -> Pictures:
@@ -82,20 +62,18 @@ def pictures(folder: Path) -> Pictures:
 
     return {
         "score": draw_score(ladder(folder), published()),
-        "extremes": draw_matrix(_table(folder, "extremes")),
+        "extremes": draw_matrix(table_of(folder, "extremes")),
     }
 
 
 def swept(folder: Path) -> pd.DataFrame:
     """Return the lines of all figures together, one for each preset."""
-    lines = summarize(with_reference(_table(folder, "sweep")))
-    found: pd.DataFrame = lines[lines["figure"] == lines["figure"].iloc[-1]]
-    return found.reset_index(drop=True)
+    return summarize(with_reference(table_of(folder, "sweep")).assign(figure="all"))
 
 
 def ladder(folder: Path) -> pd.DataFrame:
     """Return errors and times of each method and setting; see `work_precision`."""
-    return work_precision(with_errors(_table(folder, "steps")))
+    return work_precision(with_errors(table_of(folder, "steps")))
 
 
 def published() -> pd.DataFrame:
@@ -104,66 +82,38 @@ def published() -> pd.DataFrame:
     return pd.read_csv(PUBLISHED / LADDER)
 
 
-def _table(folder: Path, name: str) -> pd.DataFrame:
+def table_of(folder: Path, name: str) -> pd.DataFrame:
+    """Return one of the tables: sweep, steps or extremes."""
     return read_table(folder / f"score-{name}.csv")
 
 
 def introduction(engine: Engine) -> str:
     """Say which engine this is, and what it can do."""
     versions = [f"{name} {provenance.version_of(name)}" for name in engine.packages]
-    precision = "single" if engine.precision is Precision.SINGLE else "double"
-    return fill(
-        f"{engine.title}{f' ({listed(versions)})' if versions else ''}, in {precision} precision, "
+    return (
+        f"{engine.title}{f' ({listed(versions)})' if versions else ''}, in "
+        f"{engine.precision.name.lower()} precision, "
         f"{'in space' if engine.spatial else 'in the plane'}; frames {listed(engine.frames)}, "
-        f"geometries {listed(engine.geometries)}.",
-        WIDTH,
+        f"geometries {listed(engine.geometries)}."
     )
 
 
-def along_text(along: pd.DataFrame) -> str:
-    """Return the errors and the time of a case of every method and setting."""
-    lines = joint(along)
-    typical = along[along["set"] == "typical"].set_index(["method", "value"])
-    keys = pd.MultiIndex.from_frame(lines[["method", "value"]])
-    return pd.DataFrame(
-        {
-            "method": lines["method"].mask(lines["method"] == lines["method"].shift(), ""),
-            "setting": lines["value"].map("{:g}".format),
-            "median": typical["median_error"].reindex(keys).map(scientific).to_numpy(),
-            "largest": lines["max_error"].map(scientific),
-            "failed": lines["failed"],
-            "ms a case": (1e3 * lines["wall_s"]).map("{:.3g}".format),
-            "runs": lines["runs"],
-            "loop": lines["driver"],
-        }
-    ).to_string(index=False)
-
-
-def places_text(along: pd.DataFrame) -> str:
+def places(along: pd.DataFrame) -> pd.DataFrame:
     """Return, for each error, the cheapest setting of this engine and of the published ones."""
-    mine, others = joint(along), joint(engines_of(published()))
+    among = {"this engine": joint(along), "published": joint(engines_of(published()))}
     return pd.DataFrame(
-        {
-            "error": f"{target:g}",
-            "this engine": _setting(cheapest_below(mine, target)),
-            "published": _setting(cheapest_below(others, target)),
-        }
+        {"error": target, "among": whose, **best}
         for target in TARGETS
-    ).to_string(index=False)
+        for whose, lines in among.items()
+        if (best := cheapest_below(lines, target)) is not None
+    )
 
 
-def _setting(line: pd.Series[Any] | None) -> str:
-    if line is None:
-        return "none"
-    cost = cost_text(line["wall_s"], line["runs"])
-    return f"{line['method']} at {line['value']:g}, {cost}, {line['driver']}"
-
-
-def help_text(engine: Engine) -> str:
-    """Say what each preset is helped by, and what the library's defaults are known to miss."""
-    sentences = []
-    for preset in engine.presets:
-        helps = listed([help_.value for help_ in preset.helped_by]) if preset.helped_by else ""
-        sentences.append(f"{preset.name} is helped by {helps or 'nothing'}.")
-        sentences += [f"{preset.name} misses: {miss.value}." for miss in preset.misses]
-    return "\n".join(fill(sentence, WIDTH) for sentence in sentences)
+def helps(engine: Engine) -> pd.DataFrame:
+    """Return what each preset is helped by, and what the library's defaults are known to miss."""
+    return pd.DataFrame(
+        {"preset": preset.name, "is": word, "what": what.value}
+        for preset in engine.presets
+        for word, named in (("helped by", preset.helped_by), ("misses", preset.misses))
+        for what in named
+    )

@@ -4,6 +4,7 @@ import functools
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from json import dumps
 from pathlib import Path
 from typing import Annotated
 
@@ -11,17 +12,19 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES
-from studies.kit.arguments import BadInputError, Out
+from studies.kit.arguments import BadInputError, Out, Place, check_writable, several_or_none
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, by_label, carry_out
+from studies.kit.provenance import write_text
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
 from studies.score.report import headline, pictures, published, report
+from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
@@ -40,11 +43,17 @@ def command(
     engine: Annotated[str, Parameter(name="ENGINE")],
     /,
     *,
-    out: Out,
+    out: Out = Path("score"),
     quick: bool = False,
+    require: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    json: Place | None = None,
+    against: Place | None = None,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Score one engine.
+
+    With a requirement or an earlier result, the exit code is 1 where a requirement falls short,
+    and 0 whatever else failed.
 
     Parameters
     ----------
@@ -53,10 +62,32 @@ def command(
         world, in this folder or among the installed packages.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
+    require
+        outcomes=N: at least so many right; median=E, p90=E, max=E: largest relative error of the
+        peak; failed=N: at most so many without an answer; extreme=N: at least so many extreme cases
+        right. Of the best preset, or as in fixed:p90=1e-3.
+    json
+        File for the result.
+    against
+        Such a file of an earlier release: what moved since is said.
     """
-    chosen = plan(known(engine), quick, running.time_limit)
-    published()  # what it is held against is refused now, and not after the last run
-    return carry_out(STUDY, chosen, out, running, report)
+    declared = ENGINES[known(engine)]
+    # what cannot be held against it is refused now, and not after the last run
+    requirements = [required(text, declared) for text in require or ()]
+    earlier = against and read(against, declared)
+    published()
+    if json:
+        check_writable("--json", json)
+    code = carry_out(STUDY, plan(declared.name, quick, running.time_limit), out, running, report)
+    result = result_of(out, declared)
+    if json:
+        write_text(json, dumps(result, indent=1, ensure_ascii=False) + "\n")
+    if earlier:
+        print("\n" + since(earlier, result))
+    judged = [requirement.judged(result) for requirement in requirements]
+    for _, line in judged:
+        print(line)
+    return int(not all(holds for holds, _ in judged)) if earlier or judged else code
 
 
 def known(engine: str) -> str:

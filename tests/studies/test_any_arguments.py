@@ -41,6 +41,7 @@ BEGINNINGS = {
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "redraw": [("FOLDER",)],
+    "doctor": [()],
     "readme": [()],
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
@@ -108,7 +109,7 @@ def refuse(folder, *_):
     raise FolderError(folder, FULL)
 
 
-def give_up(_, jobs):
+def give_up(_, jobs, many):
     """What takes long, or may crash, reaches its time limit."""
     for number in jobs:
         yield number, Response.failure("no result", reason=Reason.UNDECIDED)

@@ -1,24 +1,32 @@
 """One engine on one page: registered, at a place, or nothing but what builds its world."""
 
+import json
+import re
 import subprocess
 import sys
 from collections import Counter
+from importlib.metadata import version
+from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES, registry
 from engines.declaration import Stepping
 from engines.registry import FURTHER, announce
+from engines.undeclared import undeclared
 from studies import respond
-from studies.__main__ import run
+from studies.__main__ import COMMANDS, run
+from studies.kit.app import make_app
+from studies.kit.fingerprint import ROOT
 from studies.kit.jobs import Job
 from studies.kit.options import Running
 from studies.kit.plan import Plan, fill
 from studies.kit.provenance import record_of
 from studies.score import STUDY
 from studies.score import study as score
+from studies.score.result import CASE, MEASURES, Requirement, read, required, result_of, since
 from studies.sources import registry as sources
 from studies.sources.registry import SOURCES, resolve
 
@@ -118,21 +126,155 @@ def in_this_process(running, ask):
     return executor
 
 
-def test_the_page(alone, monkeypatch, tmp_path, capsys):
-    """Of an engine that does not declare itself: its numbers are those that `respond` gives."""
-    pytest.importorskip("pymunk")
+@pytest.fixture
+def few(monkeypatch):
+    """Let a score ask two jobs of each table and preset; give what returns all."""
     everything = score.score_jobs
     monkeypatch.setattr(score, "score_jobs", lambda *asked: list(some_of(everything(*asked))))
     monkeypatch.setattr(score, "answer", lambda case, job, source, limit: score.plain(job, source))
     monkeypatch.setattr(Running, "executor", in_this_process)
-    assert run(["score", MINE, "--quick", "--out", str(tmp_path)]) in (0, 1)
-    page = capsys.readouterr().out
+    return everything
+
+
+def test_the_page(alone, few, tmp_path, capsys):
+    """Of an engine that does not declare itself: its numbers are those that `respond` gives."""
+    pytest.importorskip("pymunk")
+    kept = tmp_path / "kept.json"
+    required = ("--require", "outcomes=2", "--require", "fixed:max=1e-9", "--json", str(kept))
+    assert run(["score", MINE, "--quick", "--out", str(tmp_path), *required]) == 1
+    page, _, said = capsys.readouterr().out.partition("holds: ")
     assert page.strip() == (tmp_path / "score.txt").read_text().strip()
-    for words in ("my_engine:landing", "ms a case", "extreme cases", "helped by steps that land"):
+    for words in ("my_engine:landing gets", "wall_s", "extreme cases", "helped by  steps that"):
         assert words in page
+    assert "falls short: fixed:max" in said
     rows = pd.read_csv(tmp_path / "score-sweep.csv")
     assert sorted(rows["source"].unique()) == ["my_engine:fixed", "my_engine:landing"]
     assert {path.name for path in tmp_path.glob("*.png")} == {"score.png", "extremes.png"}
-    job = everything("my_engine", True)[0]
+    job = few("my_engine", True)[0]
     again = respond(job.source, job.block, job.motion)
     assert rows["peak_ratio"].iloc[0] == again.peak_ratio > 0.0
+    peaks = json.loads(kept.read_text())["peaks"]["fixed"]
+    assert peaks["6/half-sine/0.05/2/0.5/0.1"] == again.outcome.value == "overturned"
+
+
+def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = ["score", "mujoco", "--quick", "--json", "result.json"]
+    assert run([*asked, "--require", "outcomes=2", "failed=0", "naive:max=1e-9"]) == 1
+    *held, short = capsys.readouterr().out.splitlines()[-3:]
+    assert held == [
+        "holds: landing:outcomes must be at least 2, and is 2",
+        "holds: landing:failed must be at most 0, and is 0",
+    ]
+    assert short.startswith("falls short: naive:max must be at most 1e-09, and is ")
+    kept = json.loads(Path("result.json").read_text())
+    assert list(kept) == ["schema", "engine", "versions", "presets", "peaks"]
+    assert (kept["schema"], kept["engine"]) == (1, "mujoco")
+    assert kept["versions"]["mujoco"] == version("mujoco")
+
+    jobs = [job for job in some_of(few("mujoco", True)) if job.source == "mujoco:landing"]
+    swept = [job for job in jobs if job.labels["table"] == score.SWEEP]
+    errors = []
+    for job in swept:
+        name = "/".join(str(job.labels[column]) for column in CASE)
+        found, right = respond(job.source, job.block, job.motion), simulate(job.block, job.motion)
+        rocked = found.outcome.value == "rocked"
+        expected = found.peak_ratio if rocked else found.outcome.value
+        assert kept["peaks"]["landing"][name] == expected
+        errors += [abs(found.peak_ratio / right.peak_ratio - 1.0)] * rocked
+    numbers = kept["presets"]["landing"]
+    assert numbers["max"] == pytest.approx(max(errors), rel=1e-6)
+    assert (numbers["cases"], numbers["outcomes"], numbers["failed"]) == (len(swept), 2, 0)
+    assert (numbers["extreme"], numbers["extremes"]) == (2, 2)
+
+    kept["peaks"]["landing"][name] = "slid"
+    Path("before.json").write_text(json.dumps(kept))
+    monkeypatch.setattr(score, "carry_out", lambda *_: 1)  # the rows are there, and some failed
+    assert run(asked) == 1
+    assert run([*asked, "--against", "before.json"]) == 0
+    assert "1 have another outcome, and 0 peaks moved" in capsys.readouterr().out
+    assert run([*asked, "--against", "result.json", "--require", "naive:max=1e-9"]) == 1
+    assert "0 have another outcome, and 0 peaks moved" in capsys.readouterr().out
+    matrix = pd.read_csv("score/score-extremes.csv")
+    one_each = matrix["verdict"].mask(~matrix["source"].duplicated(), "invalid")
+    matrix.assign(verdict=one_each).to_csv("score/score-extremes.csv", index=False)
+    numbers = result_of(Path("score"), ENGINES["mujoco"])["presets"]["landing"]
+    assert (numbers["extreme"], numbers["extremes"]) == (1, 1)
+
+
+def test_what_moved_is_beyond_noise():
+    peaks = {"same": 0.5, "noise": 0.5, "little": 0.5, "more": 0.5, "fell": 0.5, "rose": "slid"}
+    then = {"versions": {"engine": "1.0"}, "peaks": {"fixed": {**peaks, "gone": 1.0}, "old": peaks}}
+    moved = {"noise": 0.5 * (1 + 9e-7), "little": 0.5 * (1 + 2e-6), "more": 0.3}
+    moved |= {"fell": "overturned", "rose": 0.25, "new": 1.0}
+    said = since(then, {"peaks": {"new": peaks, "fixed": peaks | moved}})
+    head, other, most = said.split("\n\n")
+    assert head.startswith("Since engine 1.0: of 6 answers 2 have another outcome, and 2 peaks")
+    outcomes = [line.split()[1:] for line in other.splitlines()]
+    assert outcomes[0] == ["case", "then", "now"]
+    assert outcomes[1:] == [["fell", "0.5", "overturned"], ["rose", "slid", "0.25"]]
+    assert [line.split()[1] for line in most.splitlines()] == ["case", "more", "little"]
+
+
+@pytest.mark.parametrize(
+    ("number", "least", "most"),
+    [(0.5, True, True), (0.6, True, False), (0.4, False, True), (None, False, False)],
+)
+def test_a_bound_may_be_reached_and_no_number_is_short_of_any(number, least, most):
+    result = {"presets": {"fixed": {"p90": number, "extreme": number}}}
+    assert Requirement("fixed", "extreme", 0.5).judged(result)[0] is least
+    assert Requirement("fixed", "p90", 0.5).judged(result)[0] is most
+
+
+def test_a_requirement_is_of_the_best_preset_or_of_the_one_it_names():
+    assert required("p90=1e-3", ENGINES["mujoco"]) == ("landing", "p90", 1e-3)
+    assert required("naive:failed=0", ENGINES["mujoco"]) == ("naive", "failed", 0.0)
+
+
+WRITTEN = {"schema": 1, "engine": "mujoco", "versions": {}, "presets": {}, "peaks": {}}
+
+
+def refused(capsys, *option):
+    assert run(["score", "mujoco", *option]) == 2
+    error = capsys.readouterr().err
+    assert option[0] in error
+    assert error.count("\n") == 1
+    return error
+
+
+def test_what_is_no_requirement_is_refused_before_anything_runs(capsys, monkeypatch):
+    monkeypatch.setattr(score, "carry_out", None)
+    of_a_name = ("p90", "p95=1", "P90=1", "best:p90=1", ":p90=1", "fixed:=1", "=1")
+    for text in (*of_a_name, "p90=", "p90=x", "p90=-1", "p90=nan", "max=inf", "p90=1=1"):
+        assert repr(text) in refused(capsys, "--require", text)
+    refused(capsys, "--json", "nowhere/result.json")
+
+
+BROKEN = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
+FOREIGN = (
+    *({"schema": 2}, {"engine": "pymunk"}, {"versions": 1}, {"peaks": [1.0]}),
+    *({"peaks": {"fixed": value}} for value in (1.0, {"a case": [1.0]}, {"a case": 10**400})),
+)
+
+
+def test_what_is_no_earlier_result_is_refused_before_anything_runs(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(score, "carry_out", None)
+    for path in (tmp_path, tmp_path / "nothing", "/dev/zero"):
+        assert "it is no file" in refused(capsys, "--against", str(path))
+    kept = tmp_path / "before.json"
+    for text in (*BROKEN, *(json.dumps(WRITTEN | other) for other in FOREIGN)):
+        kept.write_text(text)
+        assert "schema 1" in refused(capsys, "--against", str(kept))
+    kept.write_text(json.dumps(WRITTEN))
+    assert read(kept, ENGINES["mujoco"]) == WRITTEN
+
+
+def test_the_workflow_to_paste_says_what_is_taken():
+    guide = (ROOT / "studies" / "GUIDE.md").read_text(encoding="utf-8")
+    workflow = re.search("```yaml\n(.*?)```", guide, re.DOTALL)[1]
+    (line,) = re.findall("- run: rocking (.*)", workflow)
+    _, bound, ignored = make_app(COMMANDS).parse_args(line, exit_on_error=False)
+    assert (bound.args, ignored) == ((MINE,), {})
+    engine = undeclared("my_engine", None, "my_engine")
+    assert [required(text, engine).preset for text in bound.kwargs["require"]] == ["fixed"] * 2
+    assert all(f"`{measure}`" in guide for measure in MEASURES)

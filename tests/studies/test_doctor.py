@@ -1,0 +1,75 @@
+"""The lines on an installation: what is there, what fails, what to do about it."""
+
+import os
+import re
+from dataclasses import replace
+from functools import partial
+
+import pytest
+
+from analytic import simulate
+from studies.__main__ import run
+from studies.doctor import study as doctor
+from studies.kit.provenance import version_of
+from studies.sources.registry import SOURCES, Source, resolve
+
+
+def diagnosed(capsys, monkeypatch, *here):
+    """Return the exit code, and the lines that are well and those that are not."""
+    monkeypatch.setattr(doctor, "installed_engines", lambda: here)
+    code, lines = run(["doctor"]), capsys.readouterr().out.splitlines()
+    failing = [line for line in lines if line.startswith("FAIL  ")]
+    assert all(line.startswith("ok    ") for line in lines if line not in failing)
+    return code, "\n".join(line for line in lines if line not in failing), failing
+
+
+def test_what_works_is_a_page_of_short_lines(capsys, monkeypatch):
+    code, text, failing = diagnosed(capsys, monkeypatch, "mujoco")
+    assert (code, failing, text.count("\n")) == (0, [], 6)
+    for words in (f"numpy {version_of('numpy')}", "Python 3.", "cores; OMP_NUM_THREADS", "GB free"):
+        assert words in text
+    said = re.search(r"mujoco:landing \(mujoco [\d.]+\): peak to (\S+) of the exact one", text)
+    assert float(said[1]) < doctor.LANDING
+    assert "no fault: box2d (pip install 'rocking[box2d]')" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "remedy"),
+    [("kept_in", lambda _: None, "set NUMBA_CACHE_DIR"), ("LEAST_BYTES", 1e30, "free some")],
+)
+def test_what_fails_says_what_to_do(name, value, remedy, capsys, monkeypatch):
+    monkeypatch.setattr(doctor, name, value)
+    code, _, (line,) = diagnosed(capsys, monkeypatch)
+    assert code == 1 and remedy in line
+
+
+RESTS = "at rest, peak 0; the exact solution: rocked, peak 0.3852; "
+
+
+def errs(block, motion, *, duration, times, strength):
+    if not strength:
+        os.abort()
+    return simulate(block, replace(motion, amplitude=strength * motion.amplitude))
+
+
+@pytest.mark.parametrize(
+    ("strength", "answer"),
+    [
+        (0.0, "the process was ended by signal SIGABRT"),
+        (0.1, RESTS),
+        (1.001, "rocked, peak 0.3955; "),
+    ],
+)
+def test_an_engine_that_crashes_or_is_wrong_is_a_line(strength, answer, capsys, monkeypatch):
+    call = partial(errs, strength=strength)
+    monkeypatch.setitem(SOURCES, "mujoco", Source("engine", call, "mujoco", "landing"))
+    code, _, (line,) = diagnosed(capsys, monkeypatch, "mujoco")
+    assert code == 1
+    assert line.startswith(f"FAIL  mujoco:landing (mujoco {version_of('mujoco')}): {answer}")
+    assert "pip install --force-reinstall 'rocking'" in line
+
+
+def test_a_preset_is_held_to_what_it_should_keep():
+    names = ("mujoco", "rapier", "drake", "mujoco:fixed", "mujoco:naive")
+    kept = [doctor.should_keep(resolve(name)) for name in names]
+    assert kept == [1e-4, 6e-3, 2e-2, 2e-2, 0.3]
