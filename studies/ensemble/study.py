@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
-from pathlib import Path
 from typing import Annotated, Literal
-
-import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, recorded
 from studies.cases.motions import FAMILIES
-from studies.drawing.kept import Pictures, keep
 from studies.ensemble import STUDY
-from studies.ensemble.agreement import confusion, settled
-from studies.ensemble.claims import first_claim
-from studies.ensemble.report import curves, findings, stripes
+from studies.ensemble.report import headline, pictures, report
 from studies.kit.arguments import (
     Count,
     Out,
@@ -33,7 +27,6 @@ from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 
 Family = Literal["noise", "near-fault", "ricker"]
@@ -62,7 +55,7 @@ DEFAULT_SOURCES = (
 MOTION_BYTES = 1.2e4
 """About what a motion scaled to an intensity holds."""
 
-TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
+__all__ = ["command", "headline", "pictures", "report"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,70 +149,26 @@ def command(
         refuse_given({"units": units, "baseline": baseline}, "only with --records")
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
         many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
-        asked = f"--motions is {count}"
-        running.refuse_too_much(asked, many, everyone, yes=yes, case_bytes=MOTION_BYTES)
+        running.refuse_too_much(
+            f"--motions is {count}", many, everyone, yes=yes, case_bytes=MOTION_BYTES
+        )
         ground = drawn(name, count, seed or 1)
-    cases = list(ensemble_cases(name, ground, sizes, intensities))
-    origin = [path.name for path in records] if records else [name, str(seed or 1)]
-    settings: dict[str, object] = {
-        "motions": origin,
-        "sizes_m": sizes,
-        "intensities": intensities,
-    }
-    if records:
-        settings["baseline"] = baseline or "none"
-    return carry_out(STUDY, plan(cases, sources, settings), out, running, report)
-
-
-def plan(
-    cases: Sequence[tuple[EnsembleCase, Record]],
-    sources: Sequence[str],
-    settings: Mapping[str, object],
-) -> Plan:
-    """Return the plan that puts every case to some sources, and a stronger one to the exact."""
     asked = list(dict.fromkeys(["exact", *sources]))
     jobs = []
-    for case, motion in cases:
+    for case, motion in ensemble_cases(name, ground, sizes, intensities):
         jobs += [_job(case, motion, source) for source in asked]
         stronger = replace(case, strength=STRONGER)
         jobs.append(_job(stronger, stronger.scaled(motion), "exact"))
-    drawn = range(max(case.motion for case, _ in cases) + 1)
-    return Plan(jobs=jobs, settings=settings, growing={"motion": drawn, "source": asked})
+    settings = {
+        "motions": [path.name for path in records] if records else [name, str(seed or 1)],
+        "sizes_m": sizes,
+        "intensities": intensities,
+        **({"baseline": baseline or "none"} if records else {}),
+    }
+    growing = {"motion": range(len(ground)), "source": asked}
+    plan = Plan(jobs=jobs, settings=settings, growing=growing)
+    return carry_out(STUDY, plan, out, running, report)
 
 
 def _job(case: EnsembleCase, motion: Record, source: str) -> Job:
     return Job(labels=asdict(case), block=case.block, motion=motion, source=source)
-
-
-def read_rows(folder: Path) -> pd.DataFrame:
-    """Read ensemble.csv; the exact solution of stronger motions is a source of its own."""
-    rows = pd.read_csv(folder / "ensemble.csv", dtype={"message": str})
-    stronger = rows["source"] + rows["strength"].map(" at {:g}".format)
-    return rows.assign(source=rows["source"].where(rows["strength"] == 1.0, stronger))
-
-
-def report(folder: Path) -> str:
-    """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
-    rows = read_rows(folder)
-    fitted, agreed = settled(rows)
-    tables = (stripes(rows), curves(rows, fitted), agreed, confusion(rows))
-    for name, table in zip(TABLES, tables, strict=True):
-        write_table(folder / name, table)
-    return keep(folder, pictures(folder), findings(rows, tables[2], tables[3]))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw a folder's figures from its tables alone; single responses where it holds them."""
-    from studies.ensemble.figure import draw_fragility, draw_singles
-
-    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
-    drawn = {"ensemble": draw_fragility(*tables)}
-    if (folder / "ensemble.csv").is_file():
-        drawn["singles"] = draw_singles(read_rows(folder))
-    return drawn
-
-
-def headline(folder: Path) -> str:
-    """Say whose statistics tests tell from the exact ones, and whose they do not."""
-    agreed = pd.read_csv(folder / "agreement.csv")
-    return first_claim(agreed[agreed["source"] != "exact"])
