@@ -299,7 +299,7 @@ def test_records_of_the_users_own(tmp_path, capsys):
         np.savetxt(paths[-1], table, header="units: m/s2", fmt="%.12g")
     arguments = ["ensemble", "--quick", "--sources", "housner", "--out", str(tmp_path / "out")]
     assert run([*arguments, "--records", *paths]) == 0
-    assert "2 motions of 'records'" in capsys.readouterr().out
+    assert "2 motions of 'records'" in " ".join(capsys.readouterr().out.split())
     assert run([*arguments, "--records", *paths, "--baseline", "constant"]) == 2
     assert "must be new, or hold results of the same" in capsys.readouterr().err
     rows = pd.read_csv(tmp_path / "out" / "ensemble.csv")
