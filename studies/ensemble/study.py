@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Annotated, Literal
 
@@ -58,45 +57,30 @@ MOTION_BYTES = 1.2e4
 __all__ = ["command", "headline", "pictures", "report"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EnsembleCase:
-    """A motion of a family, scaled to an intensity for a block and multiplied by its strength."""
-
-    family: str
-    motion: int
-    width_m: float
-    height_m: float
-    intensity: float
-    strength: float = 1.0
-
-    @property
-    def block(self) -> RigidBlock:
-        """The block."""
-        return RigidBlock(width=self.width_m, height=self.height_m)
-
-    def scaled(self, motion: Record) -> Record:
-        """Return a motion scaled to this intensity and strength."""
-        onset = self.block.gravity * self.width_m / self.height_m
-        return motion.scaled_to(self.strength * self.intensity * onset)
-
-
 def drawn(family: str, count: int, seed: int) -> list[Record]:
     """Draw motions of a family; motion i of a seed has the seed 10^6 seed + i."""
     return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
 
 
-def ensemble_cases(
+def ensemble_jobs(
     family: str,
     motions: Sequence[Record],
+    sources: Sequence[str],
     sizes: Sequence[tuple[float, float]] = SIZES_M,
     intensities: Sequence[float] = INTENSITIES,
-) -> Iterator[tuple[EnsembleCase, Record]]:
-    """Yield every case with its ground motion."""
-    for i, (width_m, height_m), intensity in product(range(len(motions)), sizes, intensities):
-        case = EnsembleCase(
-            family=family, motion=i, width_m=width_m, height_m=height_m, intensity=intensity
-        )
-        yield case, case.scaled(motions[i])
+) -> Iterator[Job]:
+    """Yield the jobs that put every case to some sources, and a stronger one to the exact."""
+    for (number, motion), size, intensity in product(enumerate(motions), sizes, intensities):
+        block = RigidBlock(width=size[0], height=size[1])
+        for strength, asked in ((1.0, sources), (STRONGER, ("exact",))):
+            peak = strength * intensity * (block.gravity * size[0] / size[1])
+            motion = motion.scaled_to(peak)
+            labels = {
+                **{"family": family, "motion": number, "width_m": size[0], "height_m": size[1]},
+                **{"intensity": intensity, "strength": strength},
+            }
+            for source in asked:
+                yield Job(labels=labels, block=block, motion=motion, source=source)
 
 
 def command(
@@ -154,11 +138,7 @@ def command(
         )
         ground = drawn(name, count, seed or 1)
     asked = list(dict.fromkeys(["exact", *sources]))
-    jobs = []
-    for case, motion in ensemble_cases(name, ground, sizes, intensities):
-        jobs += [_job(case, motion, source) for source in asked]
-        stronger = replace(case, strength=STRONGER)
-        jobs.append(_job(stronger, stronger.scaled(motion), "exact"))
+    jobs = list(ensemble_jobs(name, ground, asked, sizes, intensities))
     settings = {
         "motions": [path.name for path in records] if records else [name, str(seed or 1)],
         "sizes_m": sizes,
@@ -168,7 +148,3 @@ def command(
     growing = {"motion": range(len(ground)), "source": asked}
     plan = Plan(jobs=jobs, settings=settings, growing=growing)
     return carry_out(STUDY, plan, out, running, report)
-
-
-def _job(case: EnsembleCase, motion: Record, source: str) -> Job:
-    return Job(labels=asdict(case), block=case.block, motion=motion, source=source)

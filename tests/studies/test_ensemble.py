@@ -28,7 +28,7 @@ from studies.ensemble.fragility import (
     share_bounds,
 )
 from studies.ensemble.report import curves, first_claim, stripes
-from studies.ensemble.study import drawn, ensemble_cases, recorded
+from studies.ensemble.study import drawn, ensemble_jobs, recorded
 from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
@@ -44,14 +44,15 @@ def test_a_family_is_reproducible_and_of_unit_peak(family):
 
 
 def test_cases_are_scaled_to_their_intensity():
-    cases = list(ensemble_cases("near-fault", drawn("near-fault", 3, 1)))
-    assert len(cases) == 3 * 3 * 6
-    for case, motion in cases[::7]:
-        block = RigidBlock(width=case.width_m, height=case.height_m)
-        onset = 9.81 * math.tan(block.alpha)
-        assert motion.peak == pytest.approx(case.intensity * onset, rel=1e-12)
-    gentle = next(ensemble_cases("noise", drawn("noise", 1, 1), intensities=[0.999]))
-    assert simulate(gentle[0].block, gentle[1]).outcome is Outcome.AT_REST
+    jobs = list(ensemble_jobs("near-fault", drawn("near-fault", 3, 1), ["exact"]))
+    assert len(jobs) == 2 * 3 * 3 * 6
+    for job in jobs[::7]:
+        onset = 9.81 * math.tan(job.block.alpha)
+        peak = job.labels["strength"] * job.labels["intensity"] * onset
+        assert job.motion.peak == pytest.approx(peak, rel=1e-12)
+    assert [job.labels["strength"] for job in jobs[:4]] == [1.0, 1.01] * 2
+    gentle = next(ensemble_jobs("noise", drawn("noise", 1, 1), ["exact"], intensities=[0.999]))
+    assert simulate(gentle.block, gentle.motion).outcome is Outcome.AT_REST
 
 
 def capacities(seed, count=40, median=2.6, beta=0.35):
@@ -354,15 +355,12 @@ def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
 def test_a_block_that_leans_in_a_soft_contact_comes_to_rest():
     """It lay with both corners 1e-8 m deep in MuJoCo's base, taken for a swing: 500 000 steps.
     A record of 1201 samples should take some steps of 1/200 p each, and some tens an impact."""
-    case, motion = next(
-        (case, motion)
-        for case, motion in ensemble_cases("noise", drawn("noise", 17, 1))
-        if (case.motion, case.height_m, case.intensity) == (16, 2.0, 1.5)
-    )
-    response = respond("mujoco", case.block, motion)
-    exact = simulate(case.block, motion)
+    (motion,) = drawn("noise", 17, 1)[16:]
+    (job, *_) = ensemble_jobs("noise", [motion], ["mujoco"], [(1.0, 2.0)], [1.5])
+    response = respond("mujoco", job.block, job.motion)
+    exact = simulate(job.block, job.motion)
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
-    assert response.steps < 10 * (motion.samples.size + 200 * case.block.p * motion.duration)
+    assert response.steps < 10 * (motion.samples.size + 200 * job.block.p * motion.duration)
 
 
 def test_whose_statistics_are_told_from_the_exact_ones_where_all_or_none_are():
