@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from analytic import RigidBlock
 from studies.__main__ import run
 from studies.harmonic.attractors import Shaking, attractors, settle
-from studies.harmonic.report import branches, counts
+from studies.harmonic.report import branches, counts, engine_errors
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 START = (0.3 * BLOCK.alpha, 0.0)
@@ -145,6 +145,10 @@ def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
         engines["larger_exact"].to_numpy(), rel=1e-3
     )
     assert "Engines after some time on the exact orbit" in capsys.readouterr().out
+    engines.loc[0, "larger_ratio"] = math.nan
+    lost, whole = engine_errors(engines).to_dict("records")
+    assert (lost["orbits"] - lost["kept"], whole["orbits"] - whole["kept"]) == (1, 0)
+    assert whole["median_error"] <= whole["max_error"] < 1e-3
 
 
 @pytest.mark.parametrize(
