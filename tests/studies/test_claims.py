@@ -339,4 +339,6 @@ def test_the_papers_histories_are_judged_by_their_peaks():
     assert CLAIMS[4].finding(rows).holds is True
     worse = rows.assign(peak_ratio=np.where(rows["panel"] == "c", 1.0, rows["peak_ratio"]))
     assert CLAIMS[4].finding(worse).holds is False
+    even = rows.assign(peak_ratio=rows["peak_ratio"].replace(1.5, 1.2))
+    assert CLAIMS[4].finding(even).holds is False
     assert CLAIMS[5].finding(rows).holds is False

@@ -215,7 +215,7 @@ def test_releases_are_what_pip_names_trials_apart(monkeypatch):
 
 
 def test_pip_that_names_nothing_is_one_line(monkeypatch):
-    monkeypatch.setattr(releases, "pip", said(stderr="WARNING: a\nERROR: no network\n"))
+    monkeypatch.setattr(releases, "pip", said(stderr="ERROR: no network\nWARNING: a\n"))
     with pytest.raises(releases.MissingError, match=r"^the releases of Box2D .*: ERROR: no netw"):
         listed("box2d")
 
