@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -123,25 +122,19 @@ def told(agreed: pd.DataFrame) -> pd.DataFrame:
 
 def stripes(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the share overturned of each block, source and intensity, with its bounds."""
-    lines = []
-    by = [*BLOCK, "source", "intensity"]
-    for names, group in rows.groupby(by, sort=False):
-        usable = group[group["outcome"] != "failed"]
-        overturned = int((usable["outcome"] == "overturned").sum())
-        low, high = share_bounds(overturned, len(usable))
-        lines.append(
-            {
-                **dict(zip(by, names, strict=True)),
-                "cases": len(usable),
-                "failed": len(group) - len(usable),
-                "overturned": overturned,
-                "share": overturned / len(usable) if len(usable) else math.nan,
-                "share_low": low,
-                "share_high": high,
-                "median_peak": usable["peak_ratio"].median(),
-            }
-        )
-    return pd.DataFrame(lines)
+    counted = rows.assign(
+        **{name: rows["outcome"] == name for name in ("failed", "overturned")},
+        cases=rows["outcome"] != "failed",
+    ).groupby([*BLOCK, "source", "intensity"], sort=False)
+    table = counted[["cases", "failed", "overturned"]].sum()
+    pairs = table[["overturned", "cases"]].to_numpy().tolist()
+    low, high = zip(*(share_bounds(*pair) for pair in pairs), strict=True)
+    return table.assign(
+        share=table["overturned"] / table["cases"],
+        share_low=low,
+        share_high=high,
+        median_peak=counted["peak_ratio"].median(),
+    ).reset_index()
 
 
 def curves(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
