@@ -37,14 +37,12 @@ def report(folder: Path) -> str:
     """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
     rows = read_rows(folder)
     fitted, agreed = settled(rows)
-    confused = confusion(rows)
     tables = {"stripes": stripes(rows), "curves": curves(rows, fitted), "agreement": agreed}
-    for name, table in {**tables, "confusion": confused}.items():
+    tables["confusion"] = confusion(rows)
+    for name, table in tables.items():
         write_table(folder / f"{name}.csv", table)
-    outcomes = confused.pivot_table(
-        index=["source", "exact_outcome"], columns="outcome", values="cases", aggfunc="sum",
-        fill_value=0, sort=False,
-    )  # fmt: skip
+    by = ["source", "exact_outcome", "outcome"]
+    outcomes = tables["confusion"].groupby(by, sort=False)["cases"].sum().unstack(fill_value=0)
     others = agreed[agreed["source"] != "exact"]
     shown = {
         f"Single responses, predicted within {CLOSE:g} (exact at 1.01: the exact solution of "
