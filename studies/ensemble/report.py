@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from studies.drawing.kept import Pictures, tell
-from studies.ensemble.agreement import CLOSE, LEVEL, confusion, settled
+from studies.ensemble.agreement import BOUNDS, CLOSE, DIGITS, LEVEL, confusion, settled
 from studies.ensemble.fragility import BLOCK, Fragilities, bounds, share_bounds
 from studies.kit.tables import write_table
 from studies.measures.words import listed
@@ -24,6 +24,8 @@ IN_DISTRIBUTION = [
     *(*BLOCK, "source", "ks", "ks_p", "mcnemar_p", "capacity", "capacity_ratio"),
     *("ratio_low", "ratio_high", "ratio_at_edge", "beta"),
 ]
+SETTLED = dict.fromkeys(("capacity", "capacity_ratio", *BOUNDS), DIGITS)
+"""Digits after the point of what motions that are drawn again leave open."""
 
 
 def read_rows(folder: Path) -> pd.DataFrame:
@@ -49,7 +51,7 @@ def report(folder: Path) -> str:
         "motions 1 % stronger)": others[ONE_BY_ONE],
         f"Distributions, and the capacity over the exact one with bounds of "
         f"{agreed['resamples'].max()} samples of the motions (at_edge: one lies at the least or "
-        "the largest intensity, or beyond)": agreed[IN_DISTRIBUTION],
+        "the largest intensity, or beyond)": agreed[IN_DISTRIBUTION].round(SETTLED),
         f"Tests of all blocks that tell statistics from the exact ones, at the level {LEVEL:g} "
         "(Kolmogorov and Smirnov's errs on the side of equality, the others are paired)": (
             told(others)
