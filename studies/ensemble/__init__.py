@@ -13,14 +13,8 @@ agreement.csv, confusion.csv, two pictures and findings.txt; resumable. The full
 five minutes on one core, --quick a quarter of one.""",
     table="ensemble.csv",
     products=(
-        "ensemble.csv",
-        "stripes.csv",
-        "curves.csv",
-        "agreement.csv",
-        "confusion.csv",
-        "ensemble.png",
-        "singles.png",
-        "findings.txt",
+        *("ensemble.csv", "stripes.csv", "curves.csv", "agreement.csv", "confusion.csv"),
+        *("ensemble.png", "singles.png", "findings.txt"),
     ),
     chapters=(
         Chapter(

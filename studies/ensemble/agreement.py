@@ -7,20 +7,16 @@ import math
 import numpy as np
 import pandas as pd
 
-from studies.ensemble.fragility import (
-    BLOCK,
-    Fragilities,
-    Fragility,
-    bounds,
-    by_block,
-    fragilities,
-)
+from studies.ensemble.fragility import BLOCK, Fragilities, Fragility, bounds, fragilities
 from studies.measures.wrongness import ANSWERS, NO_ANSWER, REST, wrong_in
 
 CASE = [*BLOCK, "motion", "intensity"]
 
 CLOSE = 0.1
 """A peak is predicted when it is right within this part."""
+
+LEVEL = 0.05
+"""Level of the tests."""
 
 BOUNDS = ["capacity_low", "capacity_high", "ratio_low", "ratio_high"]
 DIGITS = 2
@@ -40,9 +36,12 @@ def beside_exact(rows: pd.DataFrame) -> pd.DataFrame:
     both = (joined["outcome"] == "rocked") & (joined["exact_outcome"] == "rocked")
     known = joined["exact_outcome"].isin(ANSWERS)
     wrong = wrong_in(joined[known]).reindex(joined.index, fill_value=NO_ANSWER)
+    lost = wrong != ""
     return joined.assign(
         wrong=wrong,
-        agrees=wrong == "",
+        agrees=~lost,
+        false=lost & (joined["outcome"] == "overturned"),
+        missed=lost & (joined["exact_outcome"] == "overturned"),
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both),
     )
 
@@ -83,38 +82,30 @@ def agreement(rows: pd.DataFrame, fitted: Fragilities) -> pd.DataFrame:
         one of the same cases, with their bounds, and whether one of the capacity's, or of the two
         that the ratio is of, lies at the least or the largest intensity or beyond.
     """
+    compared = dict(list(beside_exact(rows).groupby([*BLOCK, "source"], sort=False)))
     lines = []
-    for size, block in by_block(beside_exact(rows)):
-        known = (size["width_m"], size["height_m"])
-        exact = fitted[(*known, "exact")]
-        lines.append({**size, "source": "exact", **_capacity(exact, exact)})
-        for source, group in block.groupby("source", sort=False):
+    for key, here in fitted.items():
+        line: dict[str, object] = dict(zip([*BLOCK, "source"], key, strict=True))
+        if key in compared:
+            group = compared[key]
             usable = group[group["wrong"] != NO_ANSWER]
-            lines.append(
-                {
-                    **size,
-                    "source": source,
-                    **_one_by_one(group, usable),
-                    **_in_distribution(usable),
-                    **_capacity(fitted[(*known, str(source))], exact),
-                }
-            )
+            line |= {**_one_by_one(group, usable), **_in_distribution(usable)}
+        lines.append({**line, **_capacity(here, fitted[(*key[:2], "exact")])})
     return pd.DataFrame(lines)
 
 
 def _one_by_one(group: pd.DataFrame, usable: pd.DataFrame) -> dict[str, object]:
-    errors = usable["error"].abs().dropna()
-    close = usable["agrees"] & ~(usable["error"].abs() > CLOSE)
+    errors = usable["error"].abs()
     return {
         "cases": len(group),
         "failed": len(group) - len(usable),
         "right": int(usable["agrees"].sum()),
-        "false": int(((usable["outcome"] == "overturned") & ~usable["agrees"]).sum()),
-        "missed": int(((usable["exact_outcome"] == "overturned") & ~usable["agrees"]).sum()),
+        "false": int(usable["false"].sum()),
+        "missed": int(usable["missed"].sum()),
         REST: int((usable["wrong"] == REST).sum()),
         "median_error": errors.median(),
-        "p90_error": errors.quantile(0.9) if len(errors) else math.nan,
-        "predicted": close.sum() / len(group),
+        "p90_error": errors.quantile(0.9),
+        "predicted": (usable["agrees"] & ~(errors > CLOSE)).sum() / len(group),
     }
 
 
@@ -131,13 +122,12 @@ def _in_distribution(usable: pd.DataFrame) -> dict[str, object]:
         for _, stripe in peaks.groupby(usable["intensity"])
     ]
     worst = max(tests, key=lambda test: float(test.statistic))
-    false = int(((usable["outcome"] == "overturned") & ~usable["agrees"]).sum())
-    missed = int(((usable["exact_outcome"] == "overturned") & ~usable["agrees"]).sum())
+    false, missed = int(usable["false"].sum()), int(usable["missed"].sum())
     return {
         "ks": float(worst.statistic),
         "ks_p": float(worst.pvalue),
         "ks_tests": len(tests),
-        "ks_rejected": sum(float(test.pvalue) < 0.05 for test in tests),
+        "ks_rejected": sum(float(test.pvalue) < LEVEL for test in tests),
         "mcnemar_p": binomtest(false, false + missed).pvalue if false + missed else 1.0,
     }
 

@@ -10,7 +10,7 @@ not independent.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -176,12 +176,6 @@ def share_bounds(successes: int, cases: int) -> tuple[float, float]:
     return float(interval.low), float(interval.high)
 
 
-def by_block(rows: pd.DataFrame) -> Iterator[tuple[dict[str, float], pd.DataFrame]]:
-    """Yield the size of each block, by its columns, with its rows."""
-    for _, group in rows.groupby(BLOCK, sort=False):
-        yield {name: float(group[name].iloc[0]) for name in BLOCK}, group
-
-
 class Fragility:
     """The fit of one block and source, and those of resampled motions.
 
@@ -219,14 +213,11 @@ class Fragility:
         return Fragility(self.intensity, *both, len(self.resampled.median))
 
 
-Fragilities = Mapping[tuple[float, float, str], Fragility]
+Fragilities = Mapping[tuple[Hashable, ...], Fragility]
 """Width and height of a block [m] and a source -> what is known of its overturning."""
 
 
 def fragilities(rows: pd.DataFrame, resamples: int) -> Fragilities:
     """Fit every block and source."""
-    return {
-        (size["width_m"], size["height_m"], str(source)): Fragility.of(group, resamples)
-        for size, block in by_block(rows)
-        for source, group in block.groupby("source", sort=False)
-    }
+    groups = rows.groupby([*BLOCK, "source"], sort=False)
+    return {key: Fragility.of(group, resamples) for key, group in groups}

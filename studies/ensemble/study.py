@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterator, Sequence
 from itertools import product
-from pathlib import Path
 from typing import Annotated, Literal
-
-import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.record import Record
 from studies.cases.accelerograms import Baseline, Units, recorded
 from studies.cases.motions import FAMILIES
-from studies.drawing.kept import Pictures, keep
 from studies.ensemble import STUDY
-from studies.ensemble.agreement import confusion, settled
-from studies.ensemble.claims import first_claim
-from studies.ensemble.report import curves, findings, stripes
+from studies.ensemble.report import headline, pictures, report
 from studies.kit.arguments import (
     Count,
     Out,
@@ -33,7 +26,6 @@ from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import write_table
 from studies.sources.groups import core_sources
 
 Family = Literal["noise", "near-fault", "ricker"]
@@ -62,29 +54,7 @@ DEFAULT_SOURCES = (
 MOTION_BYTES = 1.2e4
 """About what a motion scaled to an intensity holds."""
 
-TABLES = ("stripes.csv", "curves.csv", "agreement.csv", "confusion.csv")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EnsembleCase:
-    """A motion of a family, scaled to an intensity for a block and multiplied by its strength."""
-
-    family: str
-    motion: int
-    width_m: float
-    height_m: float
-    intensity: float
-    strength: float = 1.0
-
-    @property
-    def block(self) -> RigidBlock:
-        """The block."""
-        return RigidBlock(width=self.width_m, height=self.height_m)
-
-    def scaled(self, motion: Record) -> Record:
-        """Return a motion scaled to this intensity and strength."""
-        onset = self.block.gravity * self.width_m / self.height_m
-        return motion.scaled_to(self.strength * self.intensity * onset)
+__all__ = ["command", "headline", "pictures", "report"]
 
 
 def drawn(family: str, count: int, seed: int) -> list[Record]:
@@ -92,18 +62,25 @@ def drawn(family: str, count: int, seed: int) -> list[Record]:
     return [FAMILIES[family](10**6 * seed + i) for i in range(count)]
 
 
-def ensemble_cases(
+def ensemble_jobs(
     family: str,
     motions: Sequence[Record],
+    sources: Sequence[str],
     sizes: Sequence[tuple[float, float]] = SIZES_M,
     intensities: Sequence[float] = INTENSITIES,
-) -> Iterator[tuple[EnsembleCase, Record]]:
-    """Yield every case with its ground motion."""
-    for i, (width_m, height_m), intensity in product(range(len(motions)), sizes, intensities):
-        case = EnsembleCase(
-            family=family, motion=i, width_m=width_m, height_m=height_m, intensity=intensity
-        )
-        yield case, case.scaled(motions[i])
+) -> Iterator[Job]:
+    """Yield the jobs that put every case to some sources, and a stronger one to the exact."""
+    for (number, motion), size, intensity in product(enumerate(motions), sizes, intensities):
+        block = RigidBlock(width=size[0], height=size[1])
+        for strength, asked in ((1.0, sources), (STRONGER, ("exact",))):
+            peak = strength * intensity * (block.gravity * size[0] / size[1])
+            motion = motion.scaled_to(peak)
+            labels = {
+                **{"family": family, "motion": number, "width_m": size[0], "height_m": size[1]},
+                **{"intensity": intensity, "strength": strength},
+            }
+            for source in asked:
+                yield Job(labels=labels, block=block, motion=motion, source=source)
 
 
 def command(
@@ -156,70 +133,18 @@ def command(
         refuse_given({"units": units, "baseline": baseline}, "only with --records")
         name, count = family or "noise", motions or (QUICK_MOTIONS if quick else 40)
         many, everyone = count * len(sizes) * len(intensities), ("exact", "exact", *sources)
-        asked = f"--motions is {count}"
-        running.refuse_too_much(asked, many, everyone, yes=yes, case_bytes=MOTION_BYTES)
+        running.refuse_too_much(
+            f"--motions is {count}", many, everyone, yes=yes, case_bytes=MOTION_BYTES
+        )
         ground = drawn(name, count, seed or 1)
-    cases = list(ensemble_cases(name, ground, sizes, intensities))
-    origin = [path.name for path in records] if records else [name, str(seed or 1)]
-    settings: dict[str, object] = {
-        "motions": origin,
+    asked = list(dict.fromkeys(["exact", *sources]))
+    jobs = list(ensemble_jobs(name, ground, asked, sizes, intensities))
+    settings = {
+        "motions": [path.name for path in records] if records else [name, str(seed or 1)],
         "sizes_m": sizes,
         "intensities": intensities,
+        **({"baseline": baseline or "none"} if records else {}),
     }
-    if records:
-        settings["baseline"] = baseline or "none"
-    return carry_out(STUDY, plan(cases, sources, settings), out, running, report)
-
-
-def plan(
-    cases: Sequence[tuple[EnsembleCase, Record]],
-    sources: Sequence[str],
-    settings: Mapping[str, object],
-) -> Plan:
-    """Return the plan that puts every case to some sources, and a stronger one to the exact."""
-    asked = list(dict.fromkeys(["exact", *sources]))
-    jobs = []
-    for case, motion in cases:
-        jobs += [_job(case, motion, source) for source in asked]
-        stronger = replace(case, strength=STRONGER)
-        jobs.append(_job(stronger, stronger.scaled(motion), "exact"))
-    drawn = range(max(case.motion for case, _ in cases) + 1)
-    return Plan(jobs=jobs, settings=settings, growing={"motion": drawn, "source": asked})
-
-
-def _job(case: EnsembleCase, motion: Record, source: str) -> Job:
-    return Job(labels=asdict(case), block=case.block, motion=motion, source=source)
-
-
-def read_rows(folder: Path) -> pd.DataFrame:
-    """Read ensemble.csv; the exact solution of stronger motions is a source of its own."""
-    rows = pd.read_csv(folder / "ensemble.csv", dtype={"message": str})
-    stronger = rows["source"] + rows["strength"].map(" at {:g}".format)
-    return rows.assign(source=rows["source"].where(rows["strength"] == 1.0, stronger))
-
-
-def report(folder: Path) -> str:
-    """Reduce a folder's ensemble.csv to its tables, its drawing and its findings; return these."""
-    rows = read_rows(folder)
-    fitted, agreed = settled(rows)
-    tables = (stripes(rows), curves(rows, fitted), agreed, confusion(rows))
-    for name, table in zip(TABLES, tables, strict=True):
-        write_table(folder / name, table)
-    return keep(folder, pictures(folder), findings(rows, tables[2], tables[3]))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw a folder's figures from its tables alone; single responses where it holds them."""
-    from studies.ensemble.figure import draw_fragility, draw_singles
-
-    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
-    drawn = {"ensemble": draw_fragility(*tables)}
-    if (folder / "ensemble.csv").is_file():
-        drawn["singles"] = draw_singles(read_rows(folder))
-    return drawn
-
-
-def headline(folder: Path) -> str:
-    """Say whose statistics tests tell from the exact ones, and whose they do not."""
-    agreed = pd.read_csv(folder / "agreement.csv")
-    return first_claim(agreed[agreed["source"] != "exact"])
+    growing = {"motion": range(len(ground)), "source": asked}
+    plan = Plan(jobs=jobs, settings=settings, growing=growing)
+    return carry_out(STUDY, plan, out, running, report)

@@ -58,17 +58,13 @@ def _engines(axes: Axes, engines: pd.DataFrame) -> None:
 
 
 def _shares(axes: Axes, table: pd.DataFrame) -> None:
-    places = sorted(set(table["x"].tolist()))
-    fallen = table["outcome"] == Outcome.OVERTURNED.value
-    resting = table["outcome"] == Outcome.AT_REST.value
-    layers = [(resting, RESTING, "at rest"), (fallen, FALLEN, "overturns")]
-    for period in sorted(set(table["period"].tolist()), reverse=True):
-        here = ~fallen & ~resting & (table["period"] == period)
-        layers.insert(0, (here, COLOURS.get(period, LONGER), ""))
-    layers = [layer for layer in layers if layer[0].any()]
-    heights = [
-        table[here].groupby("x")["start_share"].sum().reindex(places, fill_value=0.0)
-        for here, _, _ in layers
-    ]
-    colours, names = [colour for _, colour, _ in layers], [name for _, _, name in layers]
-    axes.stackplot(places, *heights, colors=colours, labels=names)
+    rocked = table["outcome"] == Outcome.ROCKED.value
+    kinds = table["period"].map(str).where(rocked, table["outcome"])
+    shares = table["start_share"].groupby([table["x"], kinds]).sum().unstack(fill_value=0)
+    periods = sorted(set(table.loc[rocked, "period"].tolist()))
+    looks = {str(period): (COLOURS.get(period, LONGER), "") for period in periods}
+    looks[Outcome.AT_REST.value] = RESTING, "at rest"
+    looks[Outcome.OVERTURNED.value] = FALLEN, "overturns"
+    drawn = {kind: look for kind, look in looks.items() if kind in shares}
+    colours, names = zip(*drawn.values(), strict=True)
+    axes.stackplot(shares.index, shares[[*drawn]].T, colors=colours, labels=names)

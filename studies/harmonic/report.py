@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from analytic.response import Outcome
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
-from studies.measures.differences import scientific
 from studies.measures.words import out_of
 
-NO_PERIOD = "does not repeat"
 NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
+KIND, SPANNED = ["outcome", "period", "impacts"], ["x", "larger_ratio", "start_share"]
+"""Columns that tell attractors apart, and those that change along one."""
 
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return the text."""
-    table, engines = read(folder, "harmonic"), read(folder, "engines")
-    return keep(
-        folder,
-        pictures(folder),
-        "\n\n".join([branches_text(table), *engines_text(engines), counts_text(folder)]),
-    )
+    table, asked = read(folder, "harmonic"), settings_of(folder)
+    side = asked["starts"]
+    tables = {
+        f"Abscissae: all, those with several steady states, with one longer than a forcing period, "
+        f"from which some of {side} rotations by {side} rates overturn and others do not, and all "
+        "do": pd.DataFrame([counts(table)]),
+        "Attractors of the exact solution, run by run (mirror images are one, and so are all that "
+        "do not repeat, period 0; without a start: found by following the orbit from the next "
+        "point)": branches(table),
+        "Engines after some time on the exact orbit, difference of its larger rotation": (
+            engine_errors(read(folder, "engines"))
+        ),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
@@ -35,44 +41,24 @@ def read(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(path, dtype={"message": str}) if path.is_file() else pd.DataFrame()
 
 
-def settings_of(folder: Path) -> dict[str, object]:
+def settings_of(folder: Path) -> dict[str, Any]:
     """Return what a folder's sweep was asked for, from its provenance."""
     return dict(provenance.record_of(folder)["settings"])
 
 
-def branches_text(table: pd.DataFrame) -> str:
-    """Return where each kind of attractor lives and for what share of the starts, run by run."""
-    lines = [
-        "Attractors of the exact solution (period in forcing periods; orbits that are mirror "
-        "images are one, and all that do not repeat; 0 % of the starts: found by following the "
-        "orbit from the next point):"
-    ]
-    for kind, rows in runs(table):
-        peaks = rows["larger_ratio"]
-        size = f", {_range(peaks, '.3g')} θcr" if np.isfinite(peaks).all() else ""
-        share = _range(100.0 * rows["start_share"], ".0f")
-        lines.append(f"  {_range(rows['x'], '.4g')}: {kind}{size}, {share} % of the starts")
-    return "\n".join(lines)
+def branches(table: pd.DataFrame) -> pd.DataFrame:
+    """Return each kind of attractor with its sizes and shares of the starts.
 
-
-def _range(values: pd.Series[float], form: str) -> str:
-    return " to ".join(dict.fromkeys(format(end, form) for end in (values.min(), values.max())))
-
-
-def kind_of(row: pd.Series[Any]) -> str:
-    """Return what a row of harmonic.csv is: an orbit of some period, or another end."""
-    if row["outcome"] != Outcome.ROCKED.value:
-        return str(row["outcome"])
-    return f"period {row['period']}, {row['impacts']} impacts" if row["period"] else NO_PERIOD
-
-
-def runs(table: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Yield each kind of attractor with its rows, for every run of neighbouring abscissae."""
-    grid = {x: place for place, x in enumerate(sorted(table["x"].unique()))}
-    for kind, rows in table.groupby(table.apply(kind_of, axis=1), sort=False):
-        rows = rows.sort_values("x", kind="stable")
-        for _, run in rows.groupby((rows["x"].map(grid).diff() > 1).cumsum()):
-            yield str(kind), run
+    A line for every run of neighbouring abscissae; all orbits that do not repeat are of one kind.
+    """
+    known = table.assign(
+        impacts=table["impacts"].where(table["period"] > 0, 0),
+        place=table["x"].rank(method="dense"),
+    ).sort_values("x", kind="stable")
+    run = known.groupby(KIND)["place"].transform(lambda place: (place.diff() > 1).cumsum())
+    found = known.groupby([*KIND, run], sort=False)[SPANNED].agg(["min", "max"])
+    found.columns = found.columns.map("_".join)
+    return found.reset_index(KIND)
 
 
 def counts(table: pd.DataFrame) -> dict[str, int]:
@@ -89,48 +75,22 @@ def counts(table: pd.DataFrame) -> dict[str, int]:
     }
 
 
-def engines_text(engines: pd.DataFrame) -> list[str]:
+def engine_errors(engines: pd.DataFrame) -> pd.DataFrame:
     """Return how far each engine is from the exact orbit on which it started."""
     if engines.empty:
-        return []
-    found = with_error(engines)
-    lines = ["Engines after some time on the exact orbit, difference of its larger rotation:"]
-    for source, rows in found.groupby("source", sort=False):
-        kept = rows["error"].dropna()
-        lines.append(
-            f"  {source}: median {scientific(kept.median())}, largest {scientific(kept.max())}, "
-            f"{len(rows) - len(kept)} of {len(rows)} left it"
-        )
-    return ["\n".join(lines)]
-
-
-def with_error(engines: pd.DataFrame) -> pd.DataFrame:
-    """Return an engines.csv with the relative difference from the exact orbit."""
-    return engines.assign(error=(engines["larger_ratio"] / engines["larger_exact"] - 1.0).abs())
+        return engines
+    error = (engines["larger_ratio"] / engines["larger_exact"] - 1.0).abs()
+    by = error.groupby(engines["source"], sort=False)
+    return by.agg(orbits="size", kept="count", median_error="median", max_error="max").reset_index()
 
 
 def headline(folder: Path) -> str:
     """Say at how many abscissae several steady states live, and where the start decides a fall."""
     found = counts(read(folder, "harmonic"))
-    several, both = out_of(found["several"], found["all"]), out_of(found["both"], found["all"])
-    over = settings_of(folder)["over"]
+    several, both = (out_of(found[name], found["all"]) for name in ("several", "both"))
     return (
-        f"{NOUNS[str(over)].format(several)} a block has more than one steady state, and at {both} "
-        "its start decides whether it overturns."
-    )
-
-
-def counts_text(folder: Path) -> str:
-    """Say from how many starts how many steady states were found, and where."""
-    found, side = counts(read(folder, "harmonic")), settings_of(folder)["starts"]
-    total = found["all"]
-    return (
-        f"From {side} rotations by {side} rates at each of {total} abscissae, with steady states "
-        f"counted and overturning not: {out_of(found['several'], total)} have more than one, "
-        f"{out_of(found['longer'], total)} one that takes more than one forcing period; at "
-        f"{out_of(found['both'], total)} some starts overturn and others do not, at "
-        f"{out_of(found['fallen'], total)} all overturn. An orbit may live where no start of the "
-        "grid found it."
+        f"{NOUNS[settings_of(folder)['over']].format(several)} a block has more than one steady "
+        f"state, and at {both} its start decides whether it overturns."
     )
 
 
@@ -138,5 +98,5 @@ def pictures(folder: Path) -> Pictures:
     """Draw the diagram of a folder from its tables alone."""
     from studies.harmonic.figure import draw_harmonic
 
-    swept, asked = read(folder, "harmonic"), settings_of(folder)
-    return {"harmonic": draw_harmonic(swept, read(folder, "engines"), str(asked["over"]))}
+    swept, over = read(folder, "harmonic"), settings_of(folder)["over"]
+    return {"harmonic": draw_harmonic(swept, read(folder, "engines"), over)}

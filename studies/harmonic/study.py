@@ -15,7 +15,7 @@ from analytic.response import Response
 from studies.harmonic import STUDY
 from studies.harmonic.attractors import Attractor, Shaking, State, attractors
 from studies.harmonic.report import headline, pictures, report
-from studies.kit.arguments import BadInputError, Count, Out, Positive, check_sources
+from studies.kit.arguments import BadInputError, Count, Out, Positive, check_sources, refuse_given
 from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
@@ -115,10 +115,8 @@ def command(
     for name in sources:
         if resolve(name).kind == "model":
             raise BadInputError(f"--sources names {name}; it must name engines, peers or solvers")
-    given = {"frequency": omega_over_p, "amplitude": onsets}[over]
-    if given is not None:
-        name = {"frequency": "--omega-over-p", "amplitude": "--onsets"}[over]
-        raise BadInputError(f"{name} is {given}; it must not be given where it is swept")
+    swept = {"omega-over-p": omega_over_p} if over == "frequency" else {"onsets": onsets}
+    refuse_given(swept, "only where it is not swept")
     begin, end = low or RANGES[over][0], high or RANGES[over][1]
     if not begin < end:
         raise BadInputError(f"--low is {begin}; it must be less than --high, {end}")

@@ -10,15 +10,7 @@ STUDY = Study(
 Writes for each figure its samples (CSV), its drawing (PNG) and what was found (text).""",
     table="figure-[245].csv",
     products=(
-        "figure-2.csv",
-        "figure-2.png",
-        "figure-2.txt",
-        "figure-4.csv",
-        "figure-4.png",
-        "figure-4.txt",
-        "figure-5.csv",
-        "figure-5.png",
-        "figure-5.txt",
+        *(f"figure-{number}.{kind}" for number in (2, 4, 5) for kind in ("csv", "png", "txt")),
         "findings.csv",
     ),
     chapters=(

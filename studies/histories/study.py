@@ -11,9 +11,8 @@ import pandas as pd
 
 from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
-from studies.drawing.kept import Pictures
+from studies.drawing.kept import Pictures, tell
 from studies.histories import STUDY
-from studies.kit import provenance
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.digests import seal
 from studies.kit.jobs import Job, summary
@@ -22,14 +21,7 @@ from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, blaming_its_rows, fill
 from studies.kit.runner import exit_code
-from studies.measures.claims import (
-    TABLE,
-    Claim,
-    Finding,
-    read_findings,
-    tally,
-    write_findings,
-)
+from studies.measures.claims import TABLE, Claim, Finding, read_findings, tally, write_findings
 from studies.measures.samples import samples
 
 if TYPE_CHECKING:
@@ -157,24 +149,20 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
 
 def report(folder: Path, rows: Sequence[Row]) -> str:
     """Draw and judge the figures of some rows; write and return the texts."""
-    from studies.drawing.figures import save_all
-
     tables, texts, found = tabulate(rows), [], []
     for number, told in by_figure(rows).items():
         name = f"figure-{number}"
-        if name in tables:
-            save_all({name: drawn(folder, number)}, folder)
-        found.append(judge(number, told, tables.get(name, pd.DataFrame())))
-        texts.append(figure_text(number, told, found[-1]))
-        provenance.write_text(folder / f"{name}.txt", texts[-1] + "\n")
-    write_findings(folder, [*_others(folder, found), *found])
-    return "\n\n".join(texts)
-
-
-def _others(folder: Path, found: Sequence[Finding]) -> list[Finding]:
-    """Return what a folder holds about figures that were not drawn now."""
+        drawings = {name: drawn(folder, number)} if name in tables else {}
+        said = judge(number, told, tables.get(name, pd.DataFrame()))
+        found.append(said)
+        finding = f"{TITLES[number]}. {said.verdict}: {said.statement}; {said.numbers}"
+        peaks = pd.DataFrame(told)[["panel", "source", "outcome", "peak_ratio"]]
+        texts.append(tell(folder, drawings, finding, {"Largest rotations": peaks}, f"{name}.txt"))
     held = read_findings(folder) if (folder / TABLE).is_file() else []
-    return [item for item in held if item.statement not in {new.statement for new in found}]
+    new = {item.statement for item in found}
+    # what it holds about figures that were not drawn now stays
+    write_findings(folder, [*(item for item in held if item.statement not in new), *found])
+    return "\n\n".join(texts)
 
 
 def pictures(folder: Path) -> Pictures:
@@ -198,27 +186,10 @@ def drawn(folder: Path, figure: int) -> Figure:
     return draw_histories(samples, TITLES[figure], errors=errors)
 
 
-def figure_text(figure: int, rows: Sequence[Row], found: Finding) -> str:
-    """Return the peaks of a figure as a table, and what the paper says about it."""
-    peaks = pd.DataFrame(rows).assign(
-        shown=lambda f: (
-            f["peak_ratio"].map("{:.4f}".format).where(f["outcome"] == "rocked", f["outcome"])
-        )
-    )
-    shown = peaks.pivot(index="panel", columns="source", values="shown")
-    shown = shown[list(dict.fromkeys(row["source"] for row in rows))]
-    shown.index = [f"{figure}-{panel}" for panel in shown.index]
-    shown.columns.name = "θmax/θcr"
-    return f"{TITLES[figure]}\n{shown.to_string()}\n{found.text}"
-
-
-def judge(figure: int, rows: Sequence[Row], table: pd.DataFrame) -> Finding:
+def judge(figure: int, rows: Sequence[Row], samples: pd.DataFrame) -> Finding:
     """Test what the paper says about a figure, of the sources that answered in every panel."""
     failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
-    summaries = pd.DataFrame(rows, columns=["source"] if not rows else None)
-    asked = (
-        table if figure == 2 and len(table) else summaries.drop(columns="samples", errors="ignore")
-    )
+    asked = samples if figure == 2 and len(samples) else pd.DataFrame(rows)
     return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
@@ -232,34 +203,23 @@ def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
 
 def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
     """Compare the errors of both linearizations from panel to panel."""
-    peak = rows.set_index(["panel", "source"])["peak_ratio"]
-    errors = {
-        name: [peak[panel, name] / peak[panel, "exact"] - 1.0 for panel in "abc"]
-        for name in ("housner", "modified")
-    }
-    far, near = errors["housner"], errors["modified"]
-    holds = abs(far[0]) < abs(far[1]) < abs(far[2]) and all(
-        abs(m) < abs(h) for h, m in zip(far, near, strict=True)
-    )
-    words = (
-        f"{name} " + ", ".join(f"{value:+.1%}" for value in values)
-        for name, values in errors.items()
-    )
-    return bool(holds), f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
+    peaks = rows.pivot(index="panel", columns="source", values="peak_ratio")
+    errors = peaks[["housner", "modified"]].div(peaks["exact"], axis=0) - 1.0
+    far, near = errors["housner"].abs(), errors["modified"].abs()
+    holds = bool((far.diff().iloc[1:] > 0.0).all() and (near < far).all())
+    words = [f"{name} {', '.join(map('{:+.1%}'.format, errors[name]))}" for name in errors]
+    return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
 
 
 def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
     """Look at the outcomes in 5-b and 5-c."""
-    outcome = rows.set_index(["panel", "source"])["outcome"]
-    holds = all(
-        outcome[panel, "housner"] == "overturned"
-        and outcome[panel, "exact"] == outcome[panel, "modified"] == "rocked"
-        for panel in "bc"
-    )
-    words = (
-        f"5-{panel}: " + ", ".join(f"{name} {outcome[panel, name]}" for name in DEFAULT_SOURCES[5])
-        for panel in "bc"
-    )
+    table = rows.pivot(index="panel", columns="source", values="outcome")
+    outcomes = table.loc[["b", "c"], ["exact", "housner", "modified"]]
+    holds = bool((outcomes == ["rocked", "overturned", "rocked"]).all(axis=None))
+    words = [
+        f"5-{panel}: {', '.join(f'{name} {outcome}' for name, outcome in found.items())}"
+        for panel, found in outcomes.iterrows()
+    ]
     return holds, "; ".join(words)
 
 

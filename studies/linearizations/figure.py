@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 
-NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
-"""Variants of a linearization that have a name."""
 ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
 """What a variant takes as the onset -> its colour, and what that is."""
 
@@ -19,7 +17,9 @@ NAMED_AT = 0.9
 """Part of the cases at which a line is named: at its end, the worst case, lines lie together."""
 
 
-def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
+def draw_distributions(
+    quantiles: pd.DataFrame, titles: Mapping[str, str], names: Mapping[str, str]
+) -> Figure:
     """Draw by how much a part of the cases errs at most, a panel for each grid.
 
     The colour of a line is its onset, its dash its frequency, its width its saddle.
@@ -29,7 +29,9 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
     quantiles : DataFrame
         Columns grid, changed, quantile, error.
     titles : mapping
-        Names of the lines by `changed`.
+        What the variants take, by `changed`.
+    names : mapping
+        What variants are called that have a name.
     """
     grids = list(quantiles["grid"].unique())
     drawing = Figure(figsize=(9.4, 5.2), layout="constrained")
@@ -37,7 +39,7 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
     for axes, name in zip(panels, grids, strict=True):
         part = quantiles[quantiles["grid"] == name]
         ends = [
-            _one_variant(axes, str(changed), rows, titles[str(changed)])
+            _one_variant(axes, str(changed), rows, titles[str(changed)], names.get(str(changed)))
             for changed, rows in part.groupby("changed", sort=False)
         ]
         axes.set(yscale="log", xlim=(0.0, 1.0), ylim=(1e-4, 1e1), title=f"{name} grid")
@@ -51,7 +53,9 @@ def draw_distributions(quantiles: pd.DataFrame, titles: Mapping[str, str]) -> Fi
     return drawing
 
 
-def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame, title: str) -> Name:
+def _one_variant(
+    axes: Axes, changed: str, rows: pd.DataFrame, title: str, known: str | None
+) -> Name:
     onset, frequency, saddle = tuple(changed)
     colour = ONSETS[onset][0]
     axes.plot(
@@ -59,11 +63,11 @@ def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame, title: str) -> Na
         rows["error"],
         color=colour,
         linestyle=(0, (4, 2)) if frequency == "1" else "-",
-        linewidth=0.9 + 0.9 * (changed in NAMED),
-        alpha=1.0 if saddle == "0" or changed in NAMED else 0.6,
+        linewidth=1.8 if known else 0.9,
+        alpha=1.0 if saddle == "0" or known else 0.6,
     )
     # the onset is the colour
     words = title.partition(", ")[2].partition(" (")[0]
-    name = f"{NAMED[changed]}: {words}" if changed in NAMED else words
+    name = f"{known}: {words}" if known else words
     named = rows[rows["quantile"] <= NAMED_AT].sort_values("quantile").iloc[-1]
     return Name(name, float(named["quantile"]), float(named["error"]), colour)

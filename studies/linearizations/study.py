@@ -14,28 +14,30 @@ from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import read_table
 from studies.linearizations import STUDY
-from studies.measures.claims import (
-    Claim,
-    Finding,
-    findings_text,
-    read_findings,
-    tally,
-    write_findings,
-)
-from studies.measures.differences import posed_cases, scientific
+from studies.measures.claims import TABLE, Finding, read_findings, tally, write_findings
+from studies.measures.differences import posed_cases
+from studies.measures.words import out_of
 
 HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
 NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
 """What of (onset, frequency, saddle) is changed from Housner's -> the model's name."""
 
+CODES = {"".join(map(str, changed)): name for changed, name in NAMED.items()}
+"""The same by the column "changed"."""
+
 QUANTILES = np.linspace(0.0, 1.0, 201)
 GRIDS = ("paper", "wide")
+SHOWN = [
+    *("title", "cases", "wrong", "false", "missed", "median_error", "rms_error", "max_error"),
+    *("rms_difference", "max_difference"),
+]
 
 
 def variant(onset: int, frequency: int, saddle: int) -> Model:
@@ -176,16 +178,16 @@ def key(word: str) -> tuple[int, int, int]:
 
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
-    table = read(folder, "linearizations")
-    found = conclusions(table, all_errors())
-    write_findings(folder, found)
-    text = "\n\n".join(
-        [
-            *(f"On the {name} grid:\n" + table_text(table, name) for name in GRIDS),
-            findings_text(found),
-        ]
-    )
-    return keep(folder, pictures(folder), text)
+    table, errors = read(folder, "linearizations"), all_errors()
+    write_findings(folder, conclusions(table, errors))
+    tables = {
+        "What the paper concludes": read_table(folder / TABLE),
+        **{f"On the {name} grid": table.loc[table["grid"] == name, SHOWN] for name in GRIDS},
+        "On the wide grid by slenderness, the median error and the part of wrong outcomes": (
+            by_slenderness(errors).reset_index()
+        ),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
@@ -198,7 +200,7 @@ def pictures(folder: Path) -> Pictures:
     from studies.linearizations.figure import draw_distributions
 
     titles = {"".join(map(str, changed)): model.title for changed, model in VARIANTS.items()}
-    return {"linearizations": draw_distributions(read(folder, "quantiles"), titles)}
+    return {"linearizations": draw_distributions(read(folder, "quantiles"), titles, CODES)}
 
 
 def headline(folder: Path) -> str:
@@ -206,105 +208,72 @@ def headline(folder: Path) -> str:
     return tally(read_findings(folder), "the paper's conclusions about the linearizations")
 
 
-def table_text(table: pd.DataFrame, name: str) -> str:
-    """Return the lines of a grid as an aligned table."""
-    rows = table[table["grid"] == name]
-    shown = pd.DataFrame(
-        {
-            "linearization": rows["title"],
-            "wrong": rows["wrong"].astype(str) + "/" + rows["cases"].astype(str),
-            "false": rows["false"],
-            "missed": rows["missed"],
-            "median": rows["median_error"].map(scientific),
-            "RMS": rows["rms_error"].map(scientific),
-            "max": rows["max_error"].map(scientific),
-            "RMS Δ": rows["rms_difference"].map(scientific),
-            "max Δ": rows["max_difference"].map(scientific),
-        }
-    )
-    return shown.to_string(index=False)
-
-
 def frequency_matters(table: pd.DataFrame) -> tuple[bool, str]:
     """Change the frequency alone, with either onset and either saddle."""
     lines = table.set_index(["grid", "changed"])["median_error"]
-    pairs = [
-        (name, onset, saddle, lines[name, f"{onset}0{saddle}"], lines[name, f"{onset}1{saddle}"])
-        for name in GRIDS
-        for onset in (0, 1)
-        for saddle in (0, 1)
+    pairs = itertools.product(GRIDS, "01", "01")
+    closer = [
+        lines[g, f"{onset}1{saddle}"] < lines[g, f"{onset}0{saddle}"] for g, onset, saddle in pairs
     ]
-    words = [
-        f"{name} grid, onset g {('α', 'tan α')[onset]}, saddle {('α', 'tan α')[saddle]}: "
-        f"{before:.2%} to {after:.2%}"
-        for name, onset, saddle, before, after in pairs
-    ]
-    closer = sum(after < before for *_, before, after in pairs)
-    return (
-        closer == len(pairs),
-        f"the median error falls in {closer} of {len(pairs)} comparisons ({'; '.join(words)})",
-    )
+    words = out_of(sum(closer), len(closer))
+    return all(closer), f"the median error falls in {words} comparisons"
 
 
 def maps_mislead(errors: pd.DataFrame) -> tuple[bool, str]:
     """Count what Housner's linearization overturns falsely, also where H/B is 3 or more."""
     housner = errors[errors["changed"] == "000"]
-    words = []
+    words, fallen = [], {}
     for name, rows in housner.groupby("grid", sort=False):
-        slender = rows[rows["aspect"] >= 3.0]
+        slender = rows.loc[rows["aspect"] >= 3.0, "false"]
+        fallen[name] = slender.any()
         words.append(
-            f"{name} grid: {int(rows['false'].sum())} of {len(rows)} falsely overturned "
-            f"({int(slender['false'].sum())} of {len(slender)} at H/B ≥ 3), "
-            f"{int(rows['missed'].sum())} missed"
+            f"{name} grid: {out_of(rows['false'].sum(), len(rows))} falsely overturned, at H/B ≥ 3 "
+            f"{out_of(slender.sum(), len(slender))}; {rows['missed'].sum()} missed"
         )
-    slender = housner[(housner["aspect"] >= 3.0) & (housner["grid"] == "paper")]
-    return (
-        bool(slender["false"].any()),
-        "; ".join(words),
-    )
+    return bool(fallen["paper"]), "; ".join(words)
+
+
+def by_slenderness(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return for each H/B of the wide grid how far off the named linearizations are.
+
+    Returns
+    -------
+    DataFrame
+        Columns by the model's name: its median error, and its part of wrong outcomes.
+    """
+    wide = errors[errors["grid"] == "wide"].assign(error=lambda rows: rows["error"].abs())
+    groups = wide.groupby(["aspect", "changed"])
+    parts = {"error": groups["error"].median(), "wrong": groups["wrong"].mean()}
+    found = {
+        word: part.unstack()[list(CODES)].rename(columns=CODES) for word, part in parts.items()
+    }
+    return pd.concat([part.add_suffix(f" {word}") for word, part in found.items()], axis=1)
 
 
 def modified_is_better(errors: pd.DataFrame) -> tuple[bool, str]:
     """Compare median errors and wrong outcomes at every slenderness."""
-    wide = errors[errors["grid"] == "wide"].assign(size=errors["error"].abs())
-    medians = wide.groupby(["changed", "aspect"])["size"].median().unstack("aspect")
-    wrong = wide.groupby(["changed", "aspect"])["wrong"].mean().unstack("aspect")
-    words = [
-        f"H/B {float(aspect):.3g}: {shares(medians[aspect])} (wrong outcomes "
-        f"{shares(wrong[aspect])})"
-        for aspect in medians.columns[::3]
-    ]
-    better = (medians.loc["111"] < medians.loc["000"]) & (wrong.loc["111"] <= wrong.loc["000"])
-    return (
-        bool(better.all()),
-        "median errors of housner, modified, onset-matched: " + "; ".join(words),
+    found = by_slenderness(errors)
+    closer = found["modified error"] < found["housner error"]
+    as_right = found["modified wrong"] <= found["housner wrong"]
+    counts = [out_of(each.sum(), len(found)) for each in (closer, as_right)]
+    return bool((closer & as_right).all()), (
+        f"closer in the median at {counts[0]} values of H/B, and wrong no more often at {counts[1]}"
     )
-
-
-CLAIMS = (
-    Claim(
-        "(a) p√cos α in place of p brings a linearization closer, other things being equal",
-        frequency_matters,
-    ),
-    Claim(
-        "(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more",
-        maps_mislead,
-    ),
-    Claim(
-        "(c) The modified linearization is closer than Housner's at every slenderness tried",
-        modified_is_better,
-    ),
-)
-"""The paper's conclusions; the first needs the summary, the others all errors."""
 
 
 def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
     """Hold the paper's conclusions (a), (b) and (c) against the numbers."""
     return [
-        claim.finding(given) for claim, given in zip(CLAIMS, (table, errors, errors), strict=True)
+        Finding(
+            "(a) p√cos α in place of p brings a linearization closer, other things being equal",
+            *frequency_matters(table),
+        ),
+        Finding(
+            "(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more",
+            *maps_mislead(errors),
+        ),
+        Finding(
+            "(c) The modified linearization is closer than Housner's at every slenderness tried",
+            *modified_is_better(errors),
+        ),
     ]
-
-
-def shares(values: pd.Series[float]) -> str:
-    """Return the values of housner, modified and onset-matched in per cent."""
-    return ", ".join(f"{float(values[changed]):.1%}" for changed in ("000", "111", "100"))

@@ -1,21 +1,26 @@
 """Printed numbers against the models and the engines: who printed what, and does it come out?"""
 
-from typing import Annotated
+from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated, Any
+
+import pandas as pd
+
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import read_table, write_table
 from studies.literature import STUDY
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
-from studies.literature.readings import reduce, solve_problem, times_of
-from studies.literature.report import headline, pictures, report
+from studies.literature.readings import NAMED, reduce, solve_problem, times_of
+from studies.measures.words import out_of
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
-
-__all__ = ["command", "headline", "pictures", "report"]
 
 DEFAULT_SOURCES = core_sources()
 AFTER_A_RELEASE = 3.0
@@ -45,12 +50,9 @@ def command(
         for source in dict.fromkeys((problem.model, "exact", *sources))
         if can_answer(problem, source)
     ]
-    plan = Plan(jobs=jobs, growing={"source": _asked(jobs)}, ask=solve_problem, reduce=reduce)
+    asked = tuple(dict.fromkeys(job.source for job in jobs))
+    plan = Plan(jobs=jobs, growing={"source": asked}, ask=solve_problem, reduce=reduce)
     return carry_out(STUDY, plan, out, running, report)
-
-
-def _asked(jobs: list[Job]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(job.source for job in jobs))
 
 
 def can_answer(problem: Problem, source: str) -> bool:
@@ -86,3 +88,72 @@ def _observed(problem: Problem) -> float | None:
     if isinstance(problem, Drop | Restitution):
         return AFTER_A_RELEASE / problem.block.p
     return problem.pulse.duration if times_of(problem) is not None else None
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's literature.csv; write and return the text."""
+    table = agreement(_read(folder, "literature"))
+    write_table(folder / "agreement.csv", table)
+    shown = {
+        "Printed numbers, and the answers": answers(table),
+        "Who printed them": table[["work"]].drop_duplicates(),
+    }
+    return tell(folder, pictures(folder), headline(folder), shown)
+
+
+def headline(folder: Path) -> str:
+    """Say how many printed numbers come out to their digits, by the models that they are about."""
+    table = _read(folder, "agreement")
+    mine = table[(table["source"] == table["model"]) & (table["of"] == "theory")]
+    right = int((mine["agrees"] == "True").sum())
+    return f"Of the printed numbers of the literature {out_of(right, len(mine))} come out."
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
+    from studies.literature.figure import draw_literature
+
+    return {"literature": draw_literature(_read(folder, "agreement"))}
+
+
+def _read(folder: Path, name: str) -> pd.DataFrame:
+    """Read a table back with empty words as such."""
+    return read_table(folder / f"{name}.csv", "measured", "agrees", "printed", "why")
+
+
+def agreement(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each printed number and source: the print, the answer, its miss."""
+    lines: list[dict[str, Any]] = []
+    for row in rows.to_dict("records"):
+        problem = NAMED[str(row["problem"])]
+        for side, printed in enumerate(problem.printed):
+            value, (low, high) = float(row[("value", "other_side")[side]]), printed.bounds
+            lines.append(
+                {
+                    **{"problem": problem.name, "side": side},
+                    **{name: getattr(problem, name) for name in ("work", "where", "quantity")},
+                    "printed": str(printed),
+                    "measured": problem.measured[side] if problem.measured else "",
+                    "model": problem.model,
+                    "of": "test" if isinstance(problem, Restitution) else "theory",
+                    **{"source": row["source"], "outcome": row["outcome"], "value": value},
+                    **{"low": low, "high": high, "miss": printed.miss(value)},
+                    "agrees": str(bool(low <= value <= high)),
+                    **{"why": problem.why, "message": row["message"]},
+                }
+            )
+    table = pd.DataFrame(lines)
+    exact = table[table["source"] == "exact"].set_index(["problem", "side"])["value"]
+    places = pd.MultiIndex.from_frame(table[["problem", "side"]])
+    return table.assign(from_exact=table["value"] / exact.reindex(places).to_numpy() - 1.0)
+
+
+def answers(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each printed number: what its model makes of it, and all answers."""
+    place = ["problem", "side"]
+    mine = table[table["source"] == table["model"]].set_index(place)
+    values = table.pivot(index=place, columns="source", values="value")[table["source"].unique()]
+    shown = values.map("{:.6g}".format).replace("nan", "")  # a print may have many digits
+    why = mine["why"].where(mine["agrees"] != "True", "")
+    words = mine[["quantity", "printed", "measured", "agrees", "miss"]]
+    return words.join(shown).assign(why=why).reset_index("problem")

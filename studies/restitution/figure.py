@@ -78,17 +78,14 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     """
     corner, off = lines(rows, CORNER)["off"], lines(rows, shown.measure)
     heard = (corner < IGNORED) | (corner == math.inf)
-    partly = off[heard & ((corner > KEPT) | (off["off"] > KEPT))]
-    drawn = list(zip(partly["engine"], partly["way"], strict=True))
-    across = min(ACROSS, max(len(drawn), 1))
-    down = math.ceil(len(drawn) / across)
-    upper = 1.1 + 0.24 * len(off)
-    drawing = Figure(figsize=(9.4, upper + 2.2 * down + 0.9 * (down > 0)), layout="constrained")
-    parts = (upper, 2.2 * down + 0.5) if drawn else (upper,)
-    halves = drawing.subfigures(len(parts), 1, height_ratios=parts, squeeze=False)[:, 0]
-    _matrix(halves[0], halves[0].subplots(), off)
-    if drawn:
-        _partly(halves[1], down, across, rows, drawn, shown)
+    partly = off[heard & ((corner > KEPT) | (off["off"] > KEPT))][["engine", "way"]]
+    down = math.ceil(len(partly) / ACROSS)
+    parts = (1.1 + 0.24 * len(off), *([2.2 * down + 0.5] if down else []))
+    drawing = Figure(figsize=(9.4, sum(parts) + 0.4 * (down > 0)), layout="constrained")
+    upper, *lower = drawing.subfigures(len(parts), 1, height_ratios=parts, squeeze=False)[:, 0]
+    _matrix(upper, off)
+    for part in lower:
+        _partly(part, rows, [*partly.itertuples(index=False)], shown)
     kept = int((off["off_over_all"] <= MOST).sum())
     drawing.suptitle(
         f"{shown.label}: {kept} of {len(off)} ways keep it within {MOST:g} whatever is varied",
@@ -97,9 +94,9 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     return drawing
 
 
-def _matrix(drawing: Figure | SubFigure, axes: Axes, off: pd.DataFrame) -> None:
+def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:
     """Paint how far off each way is at most as it is asked, and with one thing varied."""
-    values = off[list(VARIATIONS)].to_numpy(float)
+    axes, values = drawing.subplots(), off[list(VARIATIONS)].to_numpy(float)
     shown = cells(axes, np.where(np.isinf(values), 1.0, values), LEAST, 1.0, [*VARIATIONS.values()])
     names = (
         off["engine"].map(title_of) + ": " + off["way"].str.replace("^and ", "… and ", regex=True)
@@ -113,15 +110,13 @@ def _matrix(drawing: Figure | SubFigure, axes: Axes, off: pd.DataFrame) -> None:
 
 
 def _partly(
-    drawing: Figure | SubFigure,
-    down: int,
-    across: int,
-    rows: pd.DataFrame,
-    ways: Sequence[tuple[str, str]],
-    shown: Shown,
+    drawing: SubFigure, rows: pd.DataFrame, ways: Sequence[tuple[str, str]], shown: Shown
 ) -> None:
     """Draw a panel for each way whose coefficient is neither kept nor ignored."""
-    grid = drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    across = min(ACROSS, len(ways))
+    grid = drawing.subplots(
+        math.ceil(len(ways) / across), across, sharex=True, sharey=True, squeeze=False
+    )
     for axes in grid.flat[len(ways) :]:
         axes.remove()
     for place, (axes, (engine, way)) in enumerate(zip(grid.flat, ways, strict=False)):

@@ -8,19 +8,35 @@ from typing import Annotated
 import pandas as pd
 
 from engines import installed_engines
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import BadInputError, Out, check_engines, several
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
+from studies.measures.words import listed
 from studies.restitution import STUDY, strikes
-from studies.restitution.report import (
-    findings_text,
-    first_claim,
-)
-from studies.restitution.ways import WAYS
+from studies.restitution.strikes import BASE, VARIED
+from studies.restitution.ways import SHOWN, WAYS
 
 ASKED = tuple(name for name in installed_engines() if name in WAYS)
+
+GOOD = 0.05
+"""A coefficient that comes out within this is kept."""
+
+USUAL = f"{BASE.step:g}/p, {BASE.rate:g} α p, {BASE.height:g} m and H/B {BASE.aspect:g}"
+"""From which one thing at a time is varied."""
+
+RANGES = listed(
+    [
+        words.format(f"{min(ends):.2g} to {max(ends):.2g}")
+        for words, name in (
+            *(("steps of {}/p", "step"), ("rates of {} α p", "rate")),
+            *(("heights of {} m", "height"), ("H/B of {}", "aspect")),
+        )
+        for ends in [(*VARIED[name], getattr(BASE, name))]
+    ]
+)
+"""Over what strikes are varied."""
 
 
 def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
@@ -55,9 +71,20 @@ def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    return keep(
-        folder, pictures(folder), findings_text(_read(folder, "corners"), _read(folder, "rates"))
-    )
+    corners, rates = _read(folder, "corners"), _read(folder, "rates")
+    said = "^(engine|way|off)"
+    tables = {
+        f"Largest difference of the speed upwards of a corner that strikes the base, over that of "
+        f"its approach, from the coefficient that is wanted, at {USUAL}, wherever in a step the "
+        f"impact falls, and over {RANGES}; the strikes that broke; and the corner's largest speed "
+        "along the base": corners.filter(regex=f"{said}|^broken|^slide"),
+        f"What is set for {SHOWN:g}, DT being the step in seconds": (
+            corners[["engine", "way", "literal"]]
+        ),
+        "Largest difference of the angular rate of the block, after over before, from 1 - 3/2 (1 + "
+        "e) sin^2(alpha), of the same strikes": rates.filter(regex=said),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def _read(folder: Path, name: str) -> pd.DataFrame:
@@ -66,8 +93,23 @@ def _read(folder: Path, name: str) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say how well engines keep a coefficient."""
-    return first_claim(_read(folder, "corners"))
+    """Say how well the engines keep a coefficient at best, and who does not as first asked."""
+    corners = _read(folder, "corners")
+    best = corners.loc[corners.groupby("engine", sort=False)["off_over_all"].idxmin()]
+    first = corners.drop_duplicates("engine")
+    lost = list(first.loc[first["off"] > 10.0 * GOOD, "engine"])
+    beside = f"; asked in the first way that comes to mind, {listed(lost)} miss it" if lost else ""
+    return (
+        "Of a coefficient of restitution from 0 to 1 a block that strikes with a corner keeps, "
+        f"with each engine's best setting, all but {_ends(best, 'off_over_all')} over {RANGES}, "
+        f"and all but {_ends(best, 'off')} at {USUAL}{beside}."
+    )
+
+
+def _ends(best: pd.DataFrame, column: str) -> str:
+    """Return the least and the largest of a column, and of which engine."""
+    ends = best.sort_values(column).iloc[[0, -1]][[column, "engine"]].to_numpy()
+    return " to ".join(dict.fromkeys(f"{value:.3f} in {engine}" for value, engine in ends))
 
 
 def pictures(folder: Path) -> Pictures:

@@ -1,6 +1,7 @@
 """The short study that each release is asked."""
 
 import math
+from collections.abc import Iterable
 from itertools import islice
 from typing import Any
 
@@ -42,22 +43,25 @@ def jobs_of(release: Release, quick: bool) -> list[Job]:
 
 def posed(quick: bool) -> list[tuple[dict[str, Any], RigidBlock, Motion]]:
     """Return labels, block and motion of every case: those of the figure, then random ones."""
-    paper = [_posed(f"figure {FIGURE}", n, case) for n, case in enumerate(sweep_cases([FIGURE]))]
-    drawn = [_posed("random", case.case, case) for case in islice(draw(SEED), RANDOM)]
-    every = EVERY if quick else 1
-    return [*paper[::every], *drawn[::every]]
-
-
-def _posed(
-    name: str, number: int, case: Case | RandomCase
-) -> tuple[dict[str, Any], RigidBlock, Motion]:
-    labels = {
-        "set": name,
-        "case": number,
-        "aspect": float(case.aspect),
-        "width_m": case.width_m,
-        "half_cycles": case.motion.half_cycles,
-        "amplitude_g": case.amplitude_g,
-        "omega_over_p": case.omega_over_p,
+    asked: dict[str, Iterable[Case | RandomCase]] = {
+        f"figure {FIGURE}": sweep_cases([FIGURE]),
+        "random": islice(draw(SEED), RANDOM),
     }
-    return labels, case.block, case.motion
+    every = EVERY if quick else 1
+    return [
+        (
+            {
+                "set": name,
+                "case": number,
+                "aspect": float(case.aspect),
+                "width_m": case.width_m,
+                "half_cycles": case.motion.half_cycles,
+                "amplitude_g": case.amplitude_g,
+                "omega_over_p": case.omega_over_p,
+            },
+            case.block,
+            case.motion,
+        )
+        for name, cases in asked.items()
+        for number, case in islice(enumerate(cases), 0, None, every)
+    ]

@@ -7,8 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.drawing.facets import key, panels
 from studies.drawing.styles import preset_style, title_of
 from studies.measures.presets import in_words, told
+from studies.versions.changes import answered
 from studies.versions.tables import CHANGED
 
 COLUMNS = 2
@@ -32,33 +34,22 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
     lines, changes : DataFrame
         The columns of releases.csv and changes.csv.
     """
+    lines = lines.assign(preset=lines["source"].str.partition(":")[2])
     engines = list(lines["engine"].unique())
-    rows = -(-len(engines) // COLUMNS)
-    drawing = Figure(figsize=(9.4, 2.9 * rows), layout="constrained")
-    panels = drawing.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
-    for axes, engine in zip(panels, engines, strict=False):
-        mine = lines[lines["engine"] == engine]
-        _panel(axes, mine, changes[changes["engine"] == engine])
+    drawing, grid = panels(len(engines), COLUMNS, (9.4 / COLUMNS, 2.9), 0.0, sharey=True)
+    for place, (axes, engine) in enumerate(zip(grid, engines, strict=True)):
+        _panel(axes, lines[lines["engine"] == engine], changes[changes["engine"] == engine])
         axes.set_title(title_of(str(engine)), fontsize=10)
-    panels[0].set_ylim(FLOOR, 3.0 * max(1.0, lines["max_error"].max()))
-    for axes in panels[len(engines) :]:
-        axes.set_axis_off()
+        if place % COLUMNS == 0:
+            axes.set_ylabel("relative error of the peak  [–]")
+    grid[0].set_ylim(FLOOR, 3.0 * max(1.0, lines["max_error"].max()))
     drawing.suptitle(
         "Errors by release: medians (lines) and largest (points); "
         f"at a grey line an answer moved by more than {CHANGED:g}",
         fontsize=11,
     )
-    for axes in panels[::COLUMNS]:
-        axes.set_ylabel("relative error of the peak  [–]")
-    presets = _presets(lines[lines["source"] != ""]).unique()
-    handles = [_handle(preset) for preset in presets]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    key(drawing, [_handle(preset) for preset in lines["preset"].unique() if preset], across=4)
     return drawing
-
-
-def _presets(lines: pd.DataFrame) -> pd.Series[str]:
-    """Return the preset of each line, whose engine need not be here."""
-    return lines["source"].str.partition(":")[2]
 
 
 def _handle(preset: str) -> Line2D:
@@ -69,33 +60,25 @@ def _handle(preset: str) -> Line2D:
 
 def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
     """Draw medians and largest errors over both sets of cases."""
-    releases = [str(name) for name in lines["release"].unique()]
-    place = {name: number for number, name in enumerate(releases)}
+    releases = list(lines["release"].unique())
     axes.set(yscale="log", xlim=(-0.5, len(releases) - 0.5))
     axes.set_xticks(range(len(releases)), releases, rotation=60, ha="right", fontsize=8)
     for release in changes["release"]:
-        axes.axvline(place[str(release)] - 0.5, color="#999999", linewidth=1.0)
-    answered = set(lines.loc[lines["failed"] < lines["cases"], "release"])
-    for release in (name for name in releases if name not in answered):
-        at = place[release]
+        axes.axvline(releases.index(release) - 0.5, color="#999999", linewidth=1.0)
+    for release in set(releases) - set(answered(lines)["release"]):
+        at = releases.index(release)
         axes.axvspan(at - 0.5, at + 0.5, color="#EEEEEE", linewidth=0.0)
         axes.text(at, 1e-4, "no answer", rotation=90, fontsize=8, color="#555555", ha="center")
-    asked = lines[lines["source"] != ""]
-    presets = _presets(asked)
-    for number, preset in enumerate(names := list(presets.unique())):
-        style = preset_style(preset)
-        both = asked[presets == preset].groupby("release", sort=False)
-        median = both["median_error"].max().clip(lower=FLOOR)
-        largest = both["max_error"].max().clip(lower=FLOOR)
-        x = [place[str(name)] for name in median.index]
-        alone = len(x) == 1  # a line needs two ends
-        axes.plot(
-            [x[0] - ALONE, x[0] + ALONE] if alone else x,
-            [*median] * (1 + alone),
-            color=style.colour,
-            linestyle=told(preset).line,
-            linewidth=1.3,
-        )
-        aside = APART * len(releases) * (number - (len(names) - 1) / 2)
-        axes.plot([at + aside for at in x], largest, **style.points(4.5))
+    presets = lines[lines["preset"] != ""].groupby("preset", sort=False)
+    for number, (preset, mine) in enumerate(presets):
+        both = mine.groupby("release", sort=False)[["median_error", "max_error"]].max()
+        both = both.clip(lower=FLOOR).rename(index=releases.index)
+        style, line = preset_style(str(preset)), told(str(preset)).line
+        median = both["median_error"]
+        if len(median) == 1:  # a line needs two ends
+            median = pd.concat([median.rename(index=lambda at: at - ALONE),
+                                median.rename(index=lambda at: at + ALONE)])  # fmt: skip
+        axes.plot(median, line, color=style.colour, linewidth=1.3)
+        aside = APART * len(releases) * (number - (len(presets) - 1) / 2)
+        axes.plot(both.index + aside, both["max_error"], **style.points(4.5))
     axes.grid(alpha=0.25)

@@ -1,29 +1,29 @@
 """Which releases of an engine there are, which of them are asked, and what room they take."""
 
 import importlib.util
+import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from engines import ENGINES
 from studies.kit.arguments import BadInputError
+from studies.kit.fingerprint import ROOT
 from studies.kit.provenance import version_of
 
 INSTALLED, MINOR, ALL = "installed", "minor", "all"
 """Words for the release that is here, for the last of each minor number, and for all of them."""
-
-MIB = 2.0**20
 
 LISTED = re.compile(r"^Available versions: (.+)$", re.MULTILINE)
 FINAL = re.compile(r"\d+(\.\d+)*(\.post\d+)?")
 """Releases that are no trial."""
 
 
-class UnlistedError(Exception):
-    """The releases of an engine could not be asked for; one line says why."""
+class MissingError(Exception):
+    """A release that cannot be had, or releases that cannot be asked for; one line says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +58,40 @@ class Release:
         """The name of its folders."""
         return f"{self.engine}-{self.version}"
 
-    def __str__(self) -> str:
-        return f"{self.engine}=={self.version}"
-
 
 def installed(engine: str) -> Release:
     """Return the release that is installed."""
     return Release(engine, version_of(ENGINES[engine].packages[0]))
+
+
+def python(*words: str, first: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a Python that looks in a folder before it looks where this one does.
+
+    Whatever ends this process ends that one in an orderly way.
+    """
+    places = [*([first.absolute()] if first else []), ROOT, *sys.path]
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, places))}
+    command, kept = [sys.executable, "-P", *words], subprocess.PIPE
+    with subprocess.Popen(command, env=env, text=True, stdout=kept, stderr=kept) as process:
+        try:
+            said = process.communicate()
+        except BaseException:
+            process.terminate()
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, *said)
+
+
+def pip(*words: str) -> subprocess.CompletedProcess[str]:
+    """Run pip, of whose packages none is built here."""
+    quiet = ("--only-binary", ":all:", "--retries", "1", "--disable-pip-version-check")
+    return python("-m", "pip", *words, *quiet)
+
+
+def complaint(done: subprocess.CompletedProcess[str]) -> str:
+    """Return what a process said last of what went wrong."""
+    lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+    errors = [line for line in lines if line.startswith("ERROR")]
+    return (errors or lines or [f"ended with exit code {done.returncode}"])[-1]
 
 
 def listed(engine: str) -> list[Release]:
@@ -72,40 +99,29 @@ def listed(engine: str) -> list[Release]:
 
     Raises
     ------
-    UnlistedError
+    MissingError
         If pip is not there, or knows none.
     """
     package = ENGINES[engine].packages[0]
-    command = [sys.executable, "-m", "pip", "index", "versions", package]
-    quick = ["--only-binary", ":all:", "--retries", "1", "--disable-pip-version-check"]
-    done = subprocess.run([*command, *quick], capture_output=True, text=True, check=False)
+    done = pip("index", "versions", package)
     found = LISTED.search(done.stdout)
     if found is None:
-        said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-        reason = said[-1] if said else "pip named none"
-        raise UnlistedError(f"the releases of {package} cannot be asked for: {reason}")
+        raise MissingError(f"the releases of {package} cannot be asked for: {complaint(done)}")
     versions = [word for word in found[1].split(", ") if FINAL.fullmatch(word)]
     return sorted((Release(engine, version) for version in versions), key=lambda it: it.order)
-
-
-def last_of_minors(releases: Iterable[Release]) -> list[Release]:
-    """Return the last release of each minor number, of releases in order."""
-    return list({release.order[:2]: release for release in releases}.values())
 
 
 def check_releases(asked: Sequence[str], engines: Sequence[str]) -> None:
     """Raise BadInputError unless each names releases of the engines."""
     for word in asked:
-        name, equals, version = word.partition("==")
-        if word in (INSTALLED, MINOR, ALL) or (
-            equals and name in engines and FINAL.fullmatch(version)
-        ):
-            continue
-        words = f"{INSTALLED}, {MINOR}, {ALL}, or ENGINE==RELEASE of {', '.join(engines)}"
-        raise BadInputError(f"--releases is {word!r}; it must be {words}")
+        name, _, version = word.partition("==")
+        of_one = name in engines and FINAL.fullmatch(version)
+        if word not in (INSTALLED, MINOR, ALL) and not of_one:
+            words = f"{INSTALLED}, {MINOR}, {ALL}, or ENGINE==RELEASE of {', '.join(engines)}"
+            raise BadInputError(f"--releases is {word!r}; it must be {words}")
 
 
-def chosen(engine: str, asked: Sequence[str], known: Mapping[str, list[Release]]) -> list[Release]:
+def chosen(engine: str, asked: Sequence[str]) -> tuple[list[Release], str]:
     """Return the releases of an engine that are asked, in order, the installed one among them.
 
     Parameters
@@ -113,31 +129,37 @@ def chosen(engine: str, asked: Sequence[str], known: Mapping[str, list[Release]]
     engine : str
     asked : sequence of str
         Words and names, as `check_releases` lets them pass.
-    known : mapping
-        Engine -> its releases in order; those of an engine that is not there are unknown.
+
+    Returns
+    -------
+    list of Release, str
+        And why those that were not named are missing, where they are.
     """
-    every = known.get(engine, [])
-    found = {installed(engine)}
-    for word in asked:
-        name, _, version = word.partition("==")
-        if name == engine:
-            found.add(Release(engine, version))
-        elif word in (MINOR, ALL):
-            found |= set(last_of_minors(every) if word == MINOR else every)
-    return sorted(found, key=lambda release: release.order)
+    names = [word.partition("==") for word in asked]
+    found = {
+        installed(engine),
+        *(Release(engine, last) for name, _, last in names if name == engine),
+    }
+    problem = ""
+    if {MINOR, ALL}.intersection(asked):
+        try:
+            every = listed(engine)
+            last_of_minors = {one.order[:2]: one for one in every}.values()
+            found.update(every if ALL in asked else last_of_minors)
+        except MissingError as error:
+            problem = str(error)
+    return sorted(found, key=lambda release: release.order), problem
 
 
-def room_mib(engine: str) -> float:
-    """Return the room of an engine's library as it is installed here [MiB], others' apart."""
-    spec = importlib.util.find_spec(ENGINES[engine].library)
+def places_of(library: str) -> list[Path]:
+    """Return the folders or the file of a library as it is installed here, others' apart."""
+    spec = importlib.util.find_spec(library)
     if spec is None:
-        return 0.0
-    if spec.submodule_search_locations:
-        return sum(bytes_in(Path(folder)) for folder in spec.submodule_search_locations) / MIB
-    return Path(spec.origin).stat().st_size / MIB if spec.has_location and spec.origin else 0.0
+        return []
+    return [Path(place) for place in spec.submodule_search_locations or [spec.origin or os.devnull]]
 
 
-def bytes_in(folder: Path) -> int:
-    """Return the room of the files in a folder [byte], links apart."""
-    files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
-    return sum(path.stat().st_size for path in files)
+def room_mib(places: Iterable[Path]) -> float:
+    """Return the room of some files and of those in some folders [MiB]."""
+    files = [path for place in places for path in (place, *place.rglob("*"))]
+    return sum(path.lstat().st_size for path in files if path.is_file()) / 2.0**20

@@ -6,20 +6,31 @@ from pathlib import Path
 
 import pandas as pd
 
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import read_table, write_table
-from studies.versions.changes import changes_table
-from studies.versions.words import changes_text, first_claim, releases_text
+from studies.measures.words import listed, out_of
+from studies.versions.changes import answered, changes_table, is_changed
+from studies.versions.tables import CHANGED
+
+SHOWN = [
+    *("engine", "release", "source", "set", "cases", "failed", "right"),
+    *("median_error", "p90_error", "max_error", "moved", "turned", "message"),
+]
 
 
 def report(folder: Path) -> str:
     """Write what changed beside a folder's releases.csv, draw both; return them as text."""
     lines = read(folder, "releases")
     write_table(folder / "changes.csv", changes_table(lines))
-    changes = read(folder, "changes")
-    return keep(
-        folder, pictures(folder), "\n".join([releases_text(lines), "", changes_text(changes)])
-    )
+    other = lines["moved"].isna() | is_changed(lines)
+    tables = {
+        f"Answers that moved by more than {CHANGED:g}, or turned into another outcome": (
+            read(folder, "changes")
+        ),
+        "Errors of the peak, relative, over cases that both survive, of the first release and of "
+        "those that do not answer as the one before": lines.loc[other, SHOWN],
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path, name: str) -> pd.DataFrame:
@@ -31,6 +42,27 @@ def read(folder: Path, name: str) -> pd.DataFrame:
 def headline(folder: Path) -> str:
     """Say between how many releases of each engine the answers changed."""
     return first_claim(read(folder, "releases"), read(folder, "changes"))
+
+
+def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
+    """Say between which releases of which engines an answer moved, and between which none did."""
+    moved, still = [], []
+    for engine, mine in answered(lines).groupby("engine", sort=False):
+        releases = mine["release"].unique()
+        times = len(changes[changes["engine"] == engine])
+        name = f"{engine} ({releases[0]} to {releases[-1]}"
+        if times:
+            moved.append(f"{name}, at {out_of(times, len(releases) - 1)} steps)")
+        elif len(releases) > 1:
+            still.append(f"{name})")
+    if not (moved or still):
+        return "Of each engine one release was asked."
+    bound, words = f"by more than {CHANGED:g}", []
+    if still:
+        words.append(f"no answer moves {bound} in {listed(still)}")
+    if moved:
+        words.append(f"{'some do' if still else f'answers move {bound}'} in {listed(moved)}")
+    return f"From one release to the next {'; '.join(words)}."
 
 
 def pictures(folder: Path) -> Pictures:

@@ -11,7 +11,7 @@ from typing import Annotated
 import pandas as pd
 from tqdm import tqdm
 
-from engines import installed_engines
+from engines import ENGINES, installed_engines
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -26,18 +26,16 @@ from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.versions import STUDY
-from studies.versions.asked import Asked, ask
+from studies.versions.asked import Asked, ask, is_made
 from studies.versions.cases import jobs_of
-from studies.versions.environments import is_made
 from studies.versions.releases import (
     INSTALLED,
     MINOR,
     Release,
-    UnlistedError,
     check_releases,
     chosen,
     installed,
-    listed,
+    places_of,
     room_mib,
 )
 from studies.versions.report import headline, pictures, report
@@ -85,7 +83,8 @@ def command(
     """
     named, engines = engines is not None, installed_engines() if engines is None else engines
     check_engines(engines)
-    check_here(engines)
+    if missing := [name for name in engines if name not in installed_engines()]:
+        raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
     refuse_repeats("--releases", releases)
     check_releases(releases, engines)
     running = Running(jobs=jobs, time_limit=time_limit)
@@ -94,30 +93,25 @@ def command(
     limits = ("--time-limit", repr(time_limit), *(("--jobs", str(jobs)) if jobs else ()))
     options = (*limits, *(("--quick",) if quick else ()))
     environments = environments or out / "environments"
-    known, unlisted = _known(engines, releases)
-    wanted = {engine: chosen(engine, releases, known) for engine in engines}
-    kept, notes = _affordable(wanted, environments, named)
-    if not kept:
+    found = {engine: chosen(engine, releases) for engine in engines}
+    wanted, notes = _affordable(
+        {engine: some for engine, (some, _) in found.items()}, environments, named
+    )
+    if not wanted:
         raise BadInputError(f"--engines is not given, and nothing is asked; {'; '.join(notes)}")
 
     def tabulate(_: object) -> Tables:
         print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)
-        each = tqdm([one for name in kept for one in wanted[name]], disable=None, unit="release")
-        asked = [ask(one, out, environments, options) for one in each]
-        return {"releases": releases_table(asked)}
+        each = tqdm([one for some in wanted.values() for one in some], disable=None, unit="release")
+        return {"releases": releases_table([ask(one, out, environments, options) for one in each])}
 
-    growing = {"engine": kept, "release": releases}
+    growing = {"engine": list(wanted), "release": releases}
     plan = Plan(settings={"quick": quick}, growing=growing, tabulate=tabulate)
     code = carry_out(STUDY, plan, out, running, report)
+    unlisted = [problem for _, problem in found.values() if problem]
     for problem in unlisted:
         print(f"{problem}; the releases that were not named are missing", file=sys.stderr)
     return 1 if unlisted else code
-
-
-def check_here(engines: Sequence[str]) -> None:
-    """Raise BadInputError if an engine is not installed."""
-    if missing := [name for name in engines if name not in installed_engines()]:
-        raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
 
 
 def plan_here(engines: Sequence[str], quick: bool) -> Plan:
@@ -139,32 +133,17 @@ def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
     return {"answers": answers, "releases": releases_table(asked)}
 
 
-def _known(
-    engines: Sequence[str], asked: Sequence[str]
-) -> tuple[dict[str, list[Release]], list[str]]:
-    """Return the releases of each engine, and why those of others cannot be learnt."""
-    known: dict[str, list[Release]] = {}
-    unlisted = []
-    if any("==" not in word and word != INSTALLED for word in asked):
-        for engine in engines:
-            try:
-                known[engine] = listed(engine)
-            except UnlistedError as error:
-                unlisted.append(str(error))
-    return known, unlisted
-
-
 def _affordable(
     wanted: Mapping[str, Sequence[Release]], environments: Path, named: bool
-) -> tuple[list[str], list[str]]:
-    """Return the engines, those that take too much only if named, and what is to be fetched."""
-    kept, notes = [], []
+) -> tuple[dict[str, Sequence[Release]], list[str]]:
+    """Leave out engines that take too much, unless they are named; say what is to be fetched."""
+    kept, notes = {}, []
     for engine, releases in wanted.items():
         new = [one for one in releases if not (one.here or is_made(environments / one.folder))]
-        room = len(new) * room_mib(engine)
+        room = len(new) * room_mib(places_of(ENGINES[engine].library))
         fetched = f"{len(new)} releases of {engine}, about {room:.0f} MiB"
         if named or room <= MOST_MIB:
-            kept.append(engine)
+            kept[engine] = releases
             notes += [f"to fetch: {fetched}"] if new else []
         else:
             notes.append(f"left out: {fetched}; --engines {engine} asks them")

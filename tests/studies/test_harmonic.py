@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from analytic import RigidBlock
 from studies.__main__ import run
 from studies.harmonic.attractors import Shaking, attractors, settle
-from studies.harmonic.report import counts, runs
+from studies.harmonic.report import branches, counts, engine_errors
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 START = (0.3 * BLOCK.alpha, 0.0)
@@ -30,7 +30,7 @@ def test_orbits_beside_the_one_that_is_followed_are_found(tmp_path, capsys):
         assert set(rows.loc[rows["outcome"] == "rocked", "period"]) == {1, 3}
         assert rows["starts"].sum() == 25
         assert rows["start_share"].sum() == pytest.approx(1.0, rel=1e-12)
-    assert "all 2 have more than one" in capsys.readouterr().out
+    assert "At all 2 frequencies a block has more than one" in capsys.readouterr().out
 
 
 def carried(shaking, state, periods):
@@ -121,11 +121,18 @@ def test_what_is_counted():
         (3.0, "rocked", 3),
         (3.0, "overturned", 0),
     ]
-    table = pd.DataFrame(rows, columns=["x", "outcome", "period"]).assign(impacts=2)
+    table = pd.DataFrame(rows, columns=["x", "outcome", "period"])
+    table = table.assign(impacts=2, larger_ratio=table["x"] / 10.0, start_share=0.5)
     assert counts(table) == {"all": 3, "several": 1, "longer": 1, "both": 2, "fallen": 1}
-    found = [(kind, run["x"].tolist()) for kind, run in runs(table)]
-    assert ("overturned", [1.0, 2.0, 3.0]) in found
-    assert ("period 3, 2 impacts", [3.0]) in found
+    found = branches(table[(table["x"] != 2.0) | (table["period"] == 0)])
+    kept = ["outcome", "period", "impacts", "x_min", "x_max", "larger_ratio_max"]
+    assert found[kept].to_numpy().tolist() == [
+        ["overturned", 0, 0, 1.0, 3.0, 0.3],
+        ["rocked", 1, 2, 3.0, 3.0, 0.3],
+        ["rocked", 3, 2, 3.0, 3.0, 0.3],
+    ]
+    apart = branches(table[(table["outcome"] == "rocked") | (table["x"] != 2.0)])
+    assert apart.loc[apart["period"] == 0, "x_max"].to_list() == [1.0, 3.0]
 
 
 def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
@@ -138,6 +145,10 @@ def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
         engines["larger_exact"].to_numpy(), rel=1e-3
     )
     assert "Engines after some time on the exact orbit" in capsys.readouterr().out
+    engines.loc[0, "larger_ratio"] = math.nan
+    lost, whole = engine_errors(engines).to_dict("records")
+    assert (lost["orbits"] - lost["kept"], whole["orbits"] - whole["kept"]) == (1, 0)
+    assert whole["median_error"] <= whole["max_error"] < 1e-3
 
 
 @pytest.mark.parametrize(

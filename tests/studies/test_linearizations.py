@@ -66,3 +66,16 @@ def test_the_page_and_its_figure(tmp_path, capsys):
     (tmp_path / "linearizations.png").unlink()
     assert redraw.command(tmp_path) == 0
     assert (tmp_path / "linearizations.png").read_bytes() == before
+
+
+def test_what_the_named_linearizations_miss_at_each_slenderness():
+    errors = linearizations.all_errors()
+    found = linearizations.by_slenderness(errors)
+    assert len(found) == 12
+    mine = errors[(errors["grid"] == "wide") & (errors["changed"] == "111")]
+    mine = mine[mine["aspect"] == found.index[3]]
+    assert found["modified error"].iloc[3] == mine["error"].abs().median()
+    assert found["modified wrong"].iloc[3] == mine["wrong"].mean()
+    worse = errors.assign(wrong=errors["wrong"] | (errors["changed"] == "111"))
+    assert linearizations.modified_is_better(errors)[0]
+    assert not linearizations.modified_is_better(worse)[0]

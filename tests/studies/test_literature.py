@@ -3,16 +3,16 @@
 import math
 from dataclasses import replace
 
-import pandas as pd
 import pytest
 
 from engines import core_engines
 from studies.__main__ import run
+from studies.kit.tables import read_table
 from studies.literature import readings
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import ModeEnd, OrbitLimit, Restitution, Threshold, number
 from studies.literature.readings import reduce, solve_problem
-from studies.literature.study import can_answer, literature_job
+from studies.literature.study import answers, can_answer, literature_job
 from studies.sources.registry import resolve
 
 RECOMPUTED = {
@@ -136,7 +136,13 @@ def test_a_threshold_that_is_not_there_is_a_failure_with_its_reason():
 
 def test_the_command_writes_what_it_says(tmp_path, capsys):
     assert run(["literature", "--out", str(tmp_path), "--sources", "modified"]) in (0, 1)
-    table = pd.read_csv(tmp_path / "agreement.csv")
+    table = read_table(tmp_path / "agreement.csv", "printed")
     assert set(table["problem"]) == set(NAMED)
     assert (tmp_path / "literature.png").stat().st_size > 4_000
     assert "printed numbers" in capsys.readouterr().out
+    shown = answers(table)
+    assert len(shown) == sum(len(problem.printed) for problem in PROBLEMS)
+    orbit = shown.set_index("problem").loc["orbit (1, 1) loses its stability"]
+    assert (orbit["printed"], orbit["housner"], orbit["exact"]) == ("9.63982", "9.63982", "")
+    wrong = ~shown["agrees"].astype(bool)
+    assert (shown["why"] != "").equals(wrong) and (shown["miss"] > 0.0).equals(wrong)

@@ -21,12 +21,10 @@ from studies.page.facts import MOVING
 from studies.versions import releases, study
 from studies.versions.asked import Asked
 from studies.versions.cases import EVERY, FIGURE, RANDOM, posed
-from studies.versions.changes import changes_table
-from studies.versions.notes import NOTES, notes_between
-from studies.versions.releases import Release, check_releases, chosen, last_of_minors, listed
-from studies.versions.report import read
+from studies.versions.changes import NOTES, changes_table, notes_between
+from studies.versions.releases import Release, check_releases, chosen, listed
+from studies.versions.report import first_claim, read
 from studies.versions.tables import CHANGED, releases_table
-from studies.versions.words import changes_text, first_claim
 
 ENGINE = """
 from dataclasses import replace
@@ -97,7 +95,9 @@ def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path,
     assert (lines.loc["1.1", "moved"] == 0.0).all()
     (change,) = read(out, "changes").to_dict("records")
     assert (change["before"], change["release"], change["presets"]) == ("1.1", "2.0", "naive")
-    assert "pretender 1.1 -> 2.0 (naive): " in told
+    assert told.startswith(
+        "From one release to the next answers move by more than 1e-06 in pretend"
+    )
     # nothing was done to what is installed here
     assert {name: metadata.version(name) for name in before} == before
     made = {path: path.stat().st_mtime_ns for path in out.glob("*/*/made.json")}
@@ -131,58 +131,54 @@ def test_what_takes_much_room_to_fetch_is_asked_only_if_named(
     pretender, tmp_path, capsys, monkeypatch
 ):
     """And what is there already is not fetched."""
-    out, asked = tmp_path / "out", []
-    here = ["pretender"]
+    out, asked, here = tmp_path / "out", [], ["pretender"]
     monkeypatch.setattr(study, "installed_engines", lambda: tuple(here))
     monkeypatch.setattr(study, "MOST_MIB", 30.0)
     monkeypatch.setattr(study, "ask", lambda *_: None)
     monkeypatch.setattr(study, "releases_table", lambda answers: None)
 
     def carry_out(_, plan, *__):
-        asked.append(plan.growing)
+        asked[:] = plan.growing["engine"]
         plan.tabulate(())
         return 0
 
     monkeypatch.setattr(study, "carry_out", carry_out)
-    words = ["versions", "--out", str(out)]
-    left_out = "left out: 2 releases of pretender, about 32 MiB; --engines pretender asks them\n"
-    for room, named, line in (
-        (14.0, (), "to fetch: 2 releases of pretender, about 28 MiB\n"),
-        (16.0, ("--engines", "pretender"), "to fetch: 2 releases of pretender, about 32 MiB\n"),
-    ):
-        monkeypatch.setattr(study, "room_mib", lambda _, room=room: room)
-        assert run([*words, *named]) == 0
-        assert capsys.readouterr().err == line
-        assert list(asked.pop()["engine"]) == ["pretender"]
-    assert run(words) == 2
+
+    def said(room, *named):
+        monkeypatch.setattr(study, "room_mib", lambda _: room)
+        code = run(["versions", "--out", str(out), *named])
+        return code, capsys.readouterr().err
+
+    fetched = "2 releases of pretender, about {} MiB"
+    left_out = f"left out: {fetched.format(32)}; --engines pretender asks them\n"
+    assert said(14.0) == (0, f"to fetch: {fetched.format(28)}\n")
+    assert said(16.0, "--engines", "pretender") == (0, f"to fetch: {fetched.format(32)}\n")
+    assert asked == here
     nothing = "rocking: --engines is not given, and nothing is asked; "
-    assert capsys.readouterr().err == nothing + left_out
+    assert said(16.0) == (2, nothing + left_out)
     here.append("box2d")
-    assert run([*words, "--releases", "pretender==1.1", "pretender==2.0"]) == 0
-    assert capsys.readouterr().err == left_out
-    assert list(asked.pop()["engine"]) == here[1:]
+    assert said(16.0, "--releases", "pretender==1.1", "pretender==2.0") == (0, left_out)
+    assert asked == here[1:]
     here.pop()
     for version in ("1.1", "2.0"):
         folder = out / "environments" / f"pretender-{version}"
         folder.mkdir(parents=True)
         (folder / "made.json").write_text("{}")
-    assert run(words) == 0
-    assert capsys.readouterr().err == ""
-    assert list(asked.pop()["engine"]) == ["pretender"]
+    assert said(16.0) == (0, "")
+    assert asked == here
 
 
 def test_the_room_of_a_library_is_that_of_its_files(pretender, tmp_path):
     size = (tmp_path / "here" / "pretender.py").stat().st_size
-    assert releases.room_mib("pretender") == size / 2.0**20
-    assert 10.0 < releases.room_mib("mujoco") < 1000.0
+    assert releases.room_mib(releases.places_of("pretender")) == size / 2.0**20
+    assert 10.0 < releases.room_mib(releases.places_of("mujoco")) < 1000.0
 
 
 def test_the_releases_here_are_asked_in_this_process(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("studies.versions.cases.EVERY", 60)
     words = ["versions", "--engines", "box2d", "--releases", "installed", "--quick"]
     assert run([*words, "--jobs", "1", "--out", str(tmp_path)]) == 0
-    assert "No answer moved by more than 1e-06" in capsys.readouterr().out
-    assert study.headline(tmp_path) == "Of each engine one release was asked."
+    assert capsys.readouterr().out.startswith("Of each engine one release was asked.\n")
     answers = pd.read_csv(tmp_path / "answers.csv")
     assert len(answers) == len(ENGINES["box2d"].presets) * 5
     assert (tmp_path / "versions.png").stat().st_size > 4_000
@@ -199,25 +195,28 @@ def test_the_cases_are_those_of_the_figure_and_the_first_random_ones():
 
 
 def said(stdout="", stderr=""):
-    return lambda *_, **__: subprocess.CompletedProcess([], 0, stdout, stderr)
+    return lambda *_: subprocess.CompletedProcess([], 0, stdout, stderr)
 
 
 def test_releases_are_what_pip_names_trials_apart(monkeypatch):
     text = "mujoco (4.0.1)\nAvailable versions: 4.0.1, 4.0.0, 3.10.0, 3.9.1, 3.9.0, 3.9.0rc1\n"
-    monkeypatch.setattr(releases.subprocess, "run", said(text))
+    monkeypatch.setattr(releases, "pip", said(text))
     found = listed("mujoco")
     assert [one.version for one in found] == ["3.9.0", "3.9.1", "3.10.0", "4.0.0", "4.0.1"]
-    assert [one.version for one in last_of_minors(found)] == ["3.9.1", "3.10.0", "4.0.1"]
     here = metadata.version("mujoco")
-    words = [one.version for one in chosen("mujoco", ("minor",), {"mujoco": found})]
-    assert words == sorted({"3.9.1", "3.10.0", "4.0.1", here}, key=lambda v: Release("", v).order)
-    named = chosen("mujoco", ("mujoco==3.2.7", "pymunk==6.0.0"), {})
+    minors, problem = chosen("mujoco", ("minor",))
+    assert not problem
+    assert minors == sorted(
+        {Release("mujoco", version) for version in ("3.9.1", "3.10.0", "4.0.1", here)},
+        key=lambda release: release.order,
+    )
+    named, _ = chosen("mujoco", ("mujoco==3.2.7", "pymunk==6.0.0"))
     assert [one.version for one in named] == ["3.2.7", here]
 
 
 def test_pip_that_names_nothing_is_one_line(monkeypatch):
-    monkeypatch.setattr(releases.subprocess, "run", said(stderr="WARNING: a\nERROR: no network\n"))
-    with pytest.raises(releases.UnlistedError, match=r"^the releases of Box2D .*: ERROR: no netw"):
+    monkeypatch.setattr(releases, "pip", said(stderr="ERROR: no network\nWARNING: a\n"))
+    with pytest.raises(releases.MissingError, match=r"^the releases of Box2D .*: ERROR: no netw"):
         listed("box2d")
 
 
@@ -227,81 +226,82 @@ def test_what_names_no_release_is_refused(word):
         check_releases([word], ["mujoco"])
 
 
-def answers(peaks, outcomes=None):
+def answers(peaks, outcomes="rocked", message=""):
     """Return answers to two cases of which the first is the paper's figure 5-b."""
     rows = [
         {
             **{"engine": "mujoco", "source": "mujoco:naive", "set": "random", "case": case},
             **{"aspect": 3.0, "width_m": 0.5, "half_cycles": 2, "amplitude_g": 0.4},
-            **{"omega_over_p": 2.9, "peak_ratio": peak, "message": "", "release": ""},
-            "outcome": "rocked",
+            **{"omega_over_p": 2.9, "peak_ratio": peak, "message": message, "release": ""},
         }
         for case, peak in enumerate(peaks)
     ]
-    return pd.DataFrame(rows).assign(**({} if outcomes is None else {"outcome": outcomes}))
+    return pd.DataFrame(rows).assign(outcome=outcomes)
+
+
+def tables_of(found):
+    """Return both tables of releases with some answers, of one without the reason why."""
+    asked = [
+        Asked(Release("mujoco", name), None, problem=each)
+        if isinstance(each, str)
+        else Asked(Release("mujoco", name), each)
+        for name, each in found.items()
+    ]
+    lines = releases_table(asked)
+    return lines, changes_table(lines)
 
 
 def test_a_change_is_what_moves_by_more_than_a_millionth_or_turns():
-    asked = [
-        Asked(Release("mujoco", "3.0.0"), answers([0.3, 0.4])),
-        Asked(Release("mujoco", "3.1.0"), answers([0.3 * (1 + 0.5 * CHANGED), 0.4])),
-        Asked(Release("mujoco", "3.2.0"), None, problem="cannot be installed: no wheel"),
-        Asked(Release("mujoco", "3.3.0"), answers([0.3, 0.4 * (1 + 3 * CHANGED)])),
-        Asked(Release("mujoco", "3.4.0"), answers([0.3, 0.4], ["rocked", "failed"])),
-    ]
-    lines = releases_table(asked)
+    found = {
+        "3.0.0": answers([0.3, 0.4]),
+        "3.1.0": answers([0.3 * (1 + 0.5 * CHANGED), 0.4]),
+        "3.2.0": "cannot be installed: no wheel",
+        "3.3.0": answers([0.3, 0.4 * (1 + 3 * CHANGED)]),
+        "3.4.0": answers([0.3, 0.4], ["rocked", "failed"]),
+    }
+    lines, changes = tables_of(found)
     assert lines["moved"].to_list() == pytest.approx(
         [math.nan, 0.5e-6, math.nan, 3e-6, 0.0], rel=1e-6, abs=1e-9, nan_ok=True
     )
-    changes = changes_table(lines)
-    assert changes[["before", "release"]].to_numpy().tolist() == [
-        ["3.1.0", "3.3.0"],
-        ["3.3.0", "3.4.0"],
+    assert changes[["before", "release", "moved_cases", "turned"]].to_numpy().tolist() == [
+        ["3.1.0", "3.3.0", 1, 0],
+        ["3.3.0", "3.4.0", 0, 1],
     ]
-    assert changes["moved_cases"].to_list() == [1, 0]
-    assert changes["turned"].to_list() == [0, 1]
 
 
 def test_what_moved_and_what_did_not_is_said():
-    rows = {"3.0.0": [0.3, 0.4], "3.1.0": [0.3, 0.4], "3.2.0": [0.3, 0.5]}
-    asked = [Asked(Release("mujoco", name), answers(peaks)) for name, peaks in rows.items()]
-    still, all_of_them = releases_table(asked[:2]), releases_table(asked)
-    said = first_claim(still, changes_table(still))
-    assert said == (
+    found = {"3.0.0": answers([0.3, 0.4]), "3.1.0": answers([0.3, 0.4])}
+    assert first_claim(*tables_of(found)) == (
         "From one release to the next no answer moves by more than 1e-06 in mujoco "
         "(3.0.0 to 3.1.0)."
     )
-    said = first_claim(all_of_them, changes_table(all_of_them))
-    assert said == (
+    lines, changes = tables_of({**found, "3.2.0": answers([0.3, 0.5])})
+    assert first_claim(lines, changes) == (
         "From one release to the next answers move by more than 1e-06 in mujoco (3.0.0 to 3.2.0, "
         "at 1 of 2 steps)."
     )
-    assert "mujoco 3.1.0 -> 3.2.0 (naive): 1 of 2 peaks by up to 25 %" in (
-        changes_text(changes_table(all_of_them))
-    )
+    (change,) = changes.to_dict("records")
+    assert (change["before"], change["release"], change["presets"]) == ("3.1.0", "3.2.0", "naive")
+    assert (change["moved_cases"], change["cases"]) == (1, 2)
+    assert change["moved"] == pytest.approx(0.25)
 
 
 def test_a_release_that_answers_nothing_is_passed_over():
     """Its row says why, and its neighbours are held against each other."""
-    lost = answers([math.nan, math.nan], ["failed", "failed"]).assign(message="AttributeError: x")
-    asked = [
-        Asked(Release("mujoco", "3.0.0"), answers([0.3, 0.4])),
-        Asked(Release("mujoco", "3.1.0"), lost),
-        Asked(Release("mujoco", "3.2.0"), answers([0.3, 0.5])),
-    ]
-    lines = releases_table(asked)
+    lost = answers([math.nan, math.nan], "failed", "AttributeError: x")
+    found = {"3.0.0": answers([0.3, 0.4]), "3.1.0": lost, "3.2.0": answers([0.3, 0.5])}
+    lines, changes = tables_of(found)
     assert lines["message"].to_list() == ["", "AttributeError: x", ""]
-    found = changes_table(lines)[["before", "release"]]
-    assert found.to_numpy().tolist() == [["3.0.0", "3.2.0"]]
+    assert changes[["before", "release"]].to_numpy().tolist() == [["3.0.0", "3.2.0"]]
 
 
 def test_notes_are_of_the_releases_after_one_up_to_another():
-    for engine, notes in NOTES.items():
-        orders = [Release(engine, note.release).order for note in notes]
+    for engine in {note.release.engine for note in NOTES}:
+        notes = [note for note in NOTES if note.release.engine == engine]
+        orders = [note.release.order for note in notes]
         assert orders == sorted(orders)
         assert all(note.text and note.link.startswith("https://") for note in notes)
-        first, last = (Release(engine, notes[place].release) for place in (0, -1))
-        assert notes_between(first, last) == list(notes[1:])
+        assert notes_between(notes[0].release, notes[-1].release) == notes[1:]
 
 
 def known_elsewhere(name, source):
