@@ -1,4 +1,4 @@
-"""Error against run time, reported: errors, orders, cheapest settings, from the CSV alone."""
+"""Error against run time: errors, orders and cheapest settings, from the CSV alone."""
 
 from __future__ import annotations
 
@@ -10,20 +10,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from scipy.stats import linregress
 
 from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
-from studies.measures.differences import scientific
 from studies.measures.words import duration, listed, times
 from studies.precision import cost_report
-from studies.precision.choices import TYPICAL, cheapest_below, choices, exact_cost
-from studies.precision.methods import METHODS
-from studies.precision.orders import observed_order
+from studies.precision.choices import EXACT, TYPICAL, cheapest_below, choices, exact_cost
+from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,23 +34,27 @@ STRICT = "RK4"
 CASE = ("figure", "aspect", "width_m", "omega_over_p")
 """Columns that tell one case from another."""
 
+FINEST = (
+    *("method", "value", "median_error", "max_error", "impact_error", "energy_drift"),
+    *("steps", "wall_s", "runs", "driver", "setup_s"),
+)
+"""Columns of the table of the finest settings."""
+
 
 def report(folder: Path) -> str:
-    """Reduce and draw a folder's precision.csv; return tables and findings as text."""
+    """Reduce and draw a folder's precision.csv; write and return what it shows."""
     rows = pd.read_csv(folder / "precision.csv", dtype={"message": str})
     table = work_precision(with_errors(rows))
     write_table(folder / "work-precision.csv", table)
-    typical = table[table["set"] == "typical"]
-    text = "\n".join(
-        [
-            "Cheapest setting whose largest error of the peak stays below a target, as every finer",
-            "one's does, typical cases; cost over that of the Taylor series at its tightest:",
-            cheapest(typical).to_string(index=False),
-            "\nErrors at the finest setting, where they stop falling, and the observed order:",
-            floor_text(typical),
-        ]
-    )
-    return keep(folder, {"precision": drawn(folder)}, text)
+    typical = table[table["set"] == TYPICAL]
+    costs = cheapest(typical)
+    tables = {
+        "Cheapest setting with which, as with every finer one, the largest error of a typical "
+        "case stays below": over_targets(costs, "value"),
+        f"Its cost over that of the {EXACT} at its tightest": over_targets(costs, "cost"),
+        "Typical cases at the setting with the smallest median error": finest(typical),
+    }
+    return tell(folder, {"precision": drawn(folder)}, first_claim(table), tables)
 
 
 def headline(folder: Path) -> str:
@@ -158,46 +161,54 @@ def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
-    """Return, for each method and target, the cheapest setting that stays below with all finer.
+    """Return for methods and targets the cheapest setting that stays below with all finer ones.
 
-    Costs are over that of the Taylor series at its tightest tolerance.
+    Returns
+    -------
+    DataFrame
+        method, target, value, and cost: over that of the Taylor series at its tightest tolerance.
     """
-    unit = table[table["method"] == "Taylor series"]["wall_s"].iloc[-1]
+    unit = table[table["method"] == EXACT]["wall_s"].iloc[-1]
+    return pd.DataFrame(
+        {"method": name, "target": target, "value": best["value"], "cost": best["wall_s"] / unit}
+        for name, group in table.groupby("method", sort=False)
+        for target in TARGETS
+        if (best := cheapest_below(group, target)) is not None
+    )
+
+
+def over_targets(costs: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return a column of `cheapest` as a table: a row for each method, a column for each target."""
+    if costs.empty:
+        return costs
+    found = costs.set_index(["method", "target"])[name].unstack("target", sort=False)
+    shown = found.sort_index(axis=1, ascending=False).rename(columns="{:g}".format)
+    return shown.reset_index()
+
+
+def finest(table: pd.DataFrame) -> pd.DataFrame:
+    """Return each method at its smallest median error, with its order and how many cases failed."""
     lines = []
     for name, group in table.groupby("method", sort=False):
-        line: dict[str, object] = {"method": name}
-        for target in TARGETS:
-            best = cheapest_below(group, target)
-            if best is None:
-                line[f"{target:.0e}"] = "-"
-                continue
-            setting = f" at {best['value']:.0e}" if METHODS[str(name)].setting else ""
-            line[f"{target:.0e}"] = f"{best['wall_s'] / unit:.3g} x{setting}"
-        lines.append(line)
+        order, spread = observed_order(group, METHODS[str(name)])
+        best = group.sort_values("median_error").iloc[0]
+        found = {"order": order, "order_error": spread, "failed": group["failed"].sum()}
+        lines.append({**best[list(FINEST)], **found})
     return pd.DataFrame(lines)
 
 
-def floor_text(table: pd.DataFrame) -> str:
-    """Return for each method its smallest median error, its order and the errors beside it."""
-    lines = []
-    for name, group in table.groupby("method", sort=False):
-        best = group.sort_values("median_error").iloc[0]
-        order, spread = observed_order(group, METHODS[str(name)])
-        lines.append(
-            {
-                "method": name,
-                "best setting": f"{best['value']:.0e}" if METHODS[str(name)].setting else "-",
-                "median": scientific(best["median_error"]),
-                "max": scientific(best["max_error"]),
-                "impact times": scientific(best["impact_error"]),
-                "energy": scientific(best["energy_drift"]),
-                "order": "-" if math.isnan(order) else f"{order:.2f} ± {spread:.2f}",
-                "steps": f"{best['steps']:.0f}",
-                "time": f"{best['wall_s'] * 1e6:.0f} µs",
-                "runs": int(best["runs"]),
-                "loop": str(best["driver"] or "-"),
-                "set-up": f"{best['setup_s'] * 1e6:.0f} µs",
-                "failed": int(group["failed"].sum()),
-            }
-        )
-    return pd.DataFrame(lines).to_string(index=False)
+def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
+    """Return the order of the median error in the step with its standard error; nan if unclear.
+
+    A line through the logarithms, over the settings whose error is above three times the floor, and
+    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
+    """
+    usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
+    floor = usable["median_error"].min()
+    reached = usable["value"][usable["median_error"] == floor].max()
+    usable = usable[usable["median_error"].between(3.0 * floor, 0.3, inclusive="neither")]
+    usable = usable[usable["value"] > reached]
+    if not method.stepping or len(usable) < 3:
+        return math.nan, math.nan
+    fit = linregress(np.log(usable["value"]), np.log(usable["median_error"]))
+    return float(fit.slope), float(fit.stderr)
