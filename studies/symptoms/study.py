@@ -8,8 +8,7 @@ from typing import Annotated
 import pandas as pd
 
 from engines import ENGINES
-from studies.drawing.kept import Pictures
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import (
     BadInputError,
     NotNegative,
@@ -84,11 +83,7 @@ def command(
     plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
     def report(folder: Path) -> str:
-        from studies.drawing.figures import save_all
-
-        provenance.write_text(folder / "findings.txt", text + "\n")
-        save_all(pictures(folder), folder)
-        return text
+        return keep(folder, pictures(folder), text)
 
     return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
 
