@@ -7,12 +7,16 @@ from typing import Any
 import pandas as pd
 
 
-def with_every_finer(keeps: pd.Series[Any]) -> pd.Series[bool]:
+def with_every_finer(keeps: pd.Series[Any], *uses: pd.Series[Any]) -> pd.Series[bool]:
     """Return which settings keep an error together with every finer one.
 
     Parameters
     ----------
     keeps : Series of bool
         Whether each setting keeps it by itself, from coarse to fine.
+    uses : Series
+        What the settings are of, as a method, or an engine and a preset; by default all of one.
     """
-    return keeps.astype(bool)[::-1].cummin()[::-1]
+    from_fine = keeps.astype(bool)[::-1]
+    each = from_fine.groupby(list(uses), sort=False) if uses else from_fine
+    return each.cummin()[::-1]

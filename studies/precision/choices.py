@@ -121,7 +121,7 @@ def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
     target : float
     """
     keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
-    good = lines[keeps.groupby(lines["method"], sort=False).transform(with_every_finer)]
+    good = lines[with_every_finer(keeps, lines["method"])]
     return None if good.empty else good.sort_values("wall_s").iloc[0]
 
 
