@@ -15,9 +15,9 @@ from engines.declaration import Preset
 from studies.advise.tried import RANDOM, SETTING
 from studies.cases.paper import sweep_cases
 from studies.kit.tables import read_table
+from studies.measures.finer import joint
 from studies.measures.presets import uses_of
 from studies.measures.verdicts import ACCEPTED
-from studies.precision.choices import joint
 from studies.sources.registry import resolve
 
 LADDER = "precision/work-precision.csv"

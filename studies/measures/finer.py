@@ -20,3 +20,17 @@ def with_every_finer(keeps: pd.Series[Any], *uses: pd.Series[Any]) -> pd.Series[
     from_fine = keeps.astype(bool)[::-1]
     each = from_fine.groupby(list(uses), sort=False) if uses else from_fine
     return each.cummin()[::-1]
+
+
+def joint(table: pd.DataFrame) -> pd.DataFrame:
+    """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
+    total = table.assign(wall_s=table["wall_s"] * table["cases"])
+    found = total.groupby(["method", "value"], sort=False).agg(
+        cases=("cases", "sum"),
+        failed=("failed", "sum"),
+        max_error=("max_error", "max"),
+        wall_s=("wall_s", "sum"),
+        runs=("runs", "min"),
+        driver=("driver", "first"),
+    )
+    return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()

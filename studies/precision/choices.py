@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.measures.finer import with_every_finer
+from studies.measures.finer import joint, with_every_finer
 from studies.precision.methods import METHODS
 from studies.sources.registry import resolve
 
@@ -133,20 +133,6 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
         if method.stepping and resolve(method.source).kind == "engine"
     }
     return table[table["method"].isin(stepping)]
-
-
-def joint(table: pd.DataFrame) -> pd.DataFrame:
-    """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
-    total = table.assign(wall_s=table["wall_s"] * table["cases"])
-    found = total.groupby(["method", "value"], sort=False).agg(
-        cases=("cases", "sum"),
-        failed=("failed", "sum"),
-        max_error=("max_error", "max"),
-        wall_s=("wall_s", "sum"),
-        runs=("runs", "min"),
-        driver=("driver", "first"),
-    )
-    return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()
 
 
 def exact_cost(lines: pd.DataFrame) -> float:

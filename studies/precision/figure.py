@@ -14,9 +14,10 @@ from engines import ENGINES
 from studies.drawing.facets import error_scale, strip_beyond
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import LOWEST, Style, engine_style, title_of
+from studies.measures.finer import joint
 from studies.measures.presets import in_order, told
 from studies.measures.words import capital, duration, out_of, per_cent
-from studies.precision.choices import EXACT, cheapest_below, exact_cost, joint
+from studies.precision.choices import EXACT, cheapest_below, exact_cost
 
 STYLES = {
     EXACT: Style("#000000", "-", "o", 2.2),
