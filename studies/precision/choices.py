@@ -29,10 +29,9 @@ class Choice:
 
     Attributes
     ----------
-    method : str
     value : float
     setting : str
-        Both in words.
+        It and its method in words.
     wall_s : float
         Mean time of a case [s], over the cases among which it was chosen.
     over_exact : float
@@ -45,7 +44,6 @@ class Choice:
         Its largest error on typical cases and near overturning; inf where an outcome is wrong.
     """
 
-    method: str
     value: float
     setting: str
     wall_s: float
@@ -78,34 +76,33 @@ def choices(table: pd.DataFrame, loop: str = "") -> tuple[Choices, ...]:
     typical, engines = table[table["set"] == TYPICAL], engines_of(table)
     if loop:
         engines = engines[engines["driver"] == loop]
+    errors = engines.set_index(["method", "value", "set"])["max_error"]
+
+    def choose(among: pd.DataFrame, target: float, timed: pd.DataFrame) -> Choice | None:
+        best = cheapest_below(among, target)
+        if best is None:
+            return None
+        typical, near = (
+            errors.get((best["method"], best["value"], name), math.nan) for name in (TYPICAL, NEAR)
+        )
+        return Choice(
+            value=float(best["value"]),
+            setting=setting_of(best),
+            wall_s=float(best["wall_s"]),
+            over_exact=float(best["wall_s"]) / exact_cost(timed),
+            runs=int(best["runs"]),
+            loop=str(best["driver"]),
+            typical_error=float(typical),
+            near_error=float(near),
+        )
+
     return tuple(
         Choices(
             target=target,
-            typical=_choice(engines, engines[engines["set"] == TYPICAL], target, typical),
-            everywhere=_choice(engines, joint(engines), target, table),
+            typical=choose(engines[engines["set"] == TYPICAL], target, typical),
+            everywhere=choose(joint(engines), target, table),
         )
         for target in TARGETS
-    )
-
-
-def _choice(
-    engines: pd.DataFrame, among: pd.DataFrame, target: float, timed: pd.DataFrame
-) -> Choice | None:
-    best = cheapest_below(among, target)
-    if best is None:
-        return None
-    same = (engines["method"] == best["method"]) & (engines["value"] == best["value"])
-    errors = dict(zip(engines.loc[same, "set"], engines.loc[same, "max_error"], strict=True))
-    return Choice(
-        method=str(best["method"]),
-        value=float(best["value"]),
-        setting=setting_of(best),
-        wall_s=float(best["wall_s"]),
-        over_exact=float(best["wall_s"]) / exact_cost(timed),
-        runs=int(best["runs"]),
-        loop=str(best["driver"]),
-        typical_error=float(errors.get(TYPICAL, math.nan)),
-        near_error=float(errors.get(NEAR, math.nan)),
     )
 
 
