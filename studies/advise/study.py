@@ -19,7 +19,6 @@ from studies.advise.words import ASK, claim, settings_text, tables
 from studies.drawing.kept import WIDTH, Pictures, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (
-    BadInputError,
     NotNegative,
     Place,
     Positive,
@@ -30,12 +29,11 @@ from studies.kit.arguments import (
     several,
     several_or_none,
 )
-from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
 from studies.kit.tables import read_table
-from studies.measures.published import PUBLISHED
+from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
 
@@ -87,11 +85,8 @@ def command(
         given = None if error is TARGETS else error[0]
         refuse_given({"error": given, "out": out}, "only without --dt")
         check_written(dt)
-    kept = published or PUBLISHED
     block = posed_block(width, height)
-    if missing := [name for name in TABLES if not (kept / name).is_file()]:
-        raise BadInputError(f"--published is {str(kept)!r}; it must hold {missing[0]}")
-    check(kept, TABLES, "--published")
+    kept = published_in(published, TABLES)
     asked = published_engines(kept) if engines is None else engines
     check_engines(asked)
     with as_bad_input():
@@ -106,10 +101,9 @@ def command(
     settings = {"error": error, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
 
-    def report(folder: Path) -> str:
-        return keep(folder, pictures(folder), text)
-
-    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
+    return carry_out(
+        STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(folder, pictures(folder), text)
+    )
 
 
 def _reverse(

@@ -57,26 +57,15 @@ def literal(
     """
     asked = options_at(preset, value)
     scene = Scene(system=block, motion=ANY_PULSE, preset=preset.name, friction=friction, **asked)
-    lines = [*_settings(engine, preset, scene), *_besides(preset)]
-    return "\n".join(lines)
-
-
-def _settings(engine: Engine, preset: Preset, scene: Scene) -> list[str]:
-    dt_s = preset.ordinary_step_s(scene)
-    chosen = scene.choose(preset.settings)
+    dt_s, chosen = preset.ordinary_step_s(scene), scene.choose(preset.settings)
     if engine.script is not None:
-        return list(engine.script(scene, chosen, dt_s).settings)
-    named = ", ".join(f"{name}={value!r}" for name, value in given(asdict(chosen)).items())
-    return [f"a step of {dt_s!r} s, and in this project's names", named]
-
-
-def _besides(preset: Preset) -> list[str]:
-    """Say what an adapter does that no setting of the library does."""
-    helps = [help_.value for help_ in preset.helped_by]
-    if not helps:
-        return []
-    words = "and at every step, by no setting of the library: "
-    return [f"{words}{'; '.join(helps)}"]
+        lines = list(engine.script(scene, chosen, dt_s).settings)
+    else:
+        named = ", ".join(f"{name}={value!r}" for name, value in given(asdict(chosen)).items())
+        lines = [f"a step of {dt_s!r} s, and in this project's names", named]
+    if helps := "; ".join(each.value for each in preset.helped_by):
+        lines.append(f"and at every step, by no setting of the library: {helps}")
+    return "\n".join(lines)
 
 
 def tables(lines: pd.DataFrame, block: RigidBlock) -> dict[str, pd.DataFrame]:
