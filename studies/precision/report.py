@@ -20,7 +20,7 @@ from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed, times
-from studies.precision import cost_report
+from studies.precision import cost
 from studies.precision.choices import EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
 
@@ -88,7 +88,7 @@ def first_claim(table: pd.DataFrame) -> str:
 
 def pictures(folder: Path) -> Pictures:
     """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
-    return {"precision": drawn(folder), **cost_report.pictures(folder)}
+    return {"precision": drawn(folder), **cost.pictures(folder)}
 
 
 def drawn(folder: Path) -> Figure:

@@ -23,8 +23,7 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, meant, part, right_but
 from studies.precision.choices import TARGETS, cheapest_below, engines_of
 from studies.precision.report import with_errors, work_precision
-from studies.stability.findings import failures
-from studies.stability.report import verdicts
+from studies.stability.report import failures, verdicts
 
 WIDTH = 99
 """Of the page, in letters."""

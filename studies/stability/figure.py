@@ -14,8 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from studies.drawing.facets import key
 from studies.drawing.styles import name_of
-from studies.measures.verdicts import Verdict
-from studies.stability.findings import ACCEPTED_WORDS
+from studies.measures.verdicts import ACCEPTED, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +128,7 @@ def _label_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: in
                     rotation=70 if len(sources) > MANY else 40, rotation_mode="anchor",
                     linespacing=0.9)  # fmt: skip
     valid = rows["verdict"] != Verdict.INVALID.value
-    right = rows["verdict"].isin(ACCEPTED_WORDS) & valid
+    right = rows["verdict"].isin([verdict.value for verdict in ACCEPTED]) & valid
     score: dict[str, Any] = {"va": "center", "fontsize": 8, "color": "#333333", "linespacing": 0.9}
     axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **score)
     between = "\n" if len(sources) > MANY else "/"
