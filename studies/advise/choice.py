@@ -17,7 +17,7 @@ from studies.advise.evidence import declared_value, extremes, in_words, settings
 from studies.advise.tried import COUNTS, counted, random_runs
 from studies.kit.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.finer import with_every_finer
+from studies.measures.finer import cheapest_kept
 from studies.measures.presets import uses_of
 from studies.measures.words import out_of, part
 
@@ -98,8 +98,7 @@ def cheapest(known: pd.DataFrame, target: float) -> pd.Series[Any] | None:
         it keeps the error with every finer one: a coarse step may be lucky.
     target : float
     """
-    good = known[with_every_finer(_alone(known, target))]
-    return None if good.empty else good.sort_values("wall_s").iloc[0]
+    return cheapest_kept(known, _alone(known, target))
 
 
 def _alone(known: pd.DataFrame, target: float) -> pd.Series[bool]:

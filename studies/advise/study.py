@@ -64,7 +64,8 @@ def command(
     error
         Largest relative errors [-] of the peak rotation that are to be kept.
     engines
-        Names of engines, without a preset; by default all in the published tables.
+        Names of engines, without a preset; by default all in the published tables. Of one alone
+        the settings are written out.
     dt
         Your step [s], instead of errors: which error each preset with equal steps keeps with it,
         and its settings as formulas of the step DT, with their values.

@@ -22,6 +22,17 @@ def with_every_finer(keeps: pd.Series[Any], *uses: pd.Series[Any]) -> pd.Series[
     return each.cummin()[::-1]
 
 
+def cheapest_kept(
+    lines: pd.DataFrame, keeps: pd.Series[Any], *uses: pd.Series[Any]
+) -> pd.Series[Any] | None:
+    """Return the line of the least wall_s that keeps an error with every finer one, if any does.
+
+    The others as in `with_every_finer`.
+    """
+    good = lines[with_every_finer(keeps, *uses)]
+    return None if good.empty else good.sort_values("wall_s").iloc[0]
+
+
 def joint(table: pd.DataFrame) -> pd.DataFrame:
     """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
     total = table.assign(wall_s=table["wall_s"] * table["cases"])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.measures.finer import joint, with_every_finer
+from studies.measures.finer import cheapest_kept, joint
 from studies.precision.methods import METHODS
 from studies.sources.registry import resolve
 
@@ -118,8 +118,7 @@ def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
     target : float
     """
     keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
-    good = lines[with_every_finer(keeps, lines["method"])]
-    return None if good.empty else good.sort_values("wall_s").iloc[0]
+    return cheapest_kept(lines, keeps, lines["method"])
 
 
 def engines_of(table: pd.DataFrame) -> pd.DataFrame:
