@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, Style
-from studies.measures.finer import joint
 from studies.measures.words import listed
-from studies.precision.choices import engines_of
+from studies.precision.choices import engines_of, joint
 from studies.precision.figure import called, style_of
 
 BACKGROUND = "#b5b5b5"

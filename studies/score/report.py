@@ -17,13 +17,13 @@ from studies.kit.digests import check
 from studies.kit.tables import in_columns, read_table
 from studies.measures.costs import cost_text
 from studies.measures.differences import scientific, summarize, summary_text, with_reference
-from studies.measures.finer import joint
 from studies.measures.posed import posed
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, meant, part, right_but
-from studies.precision.choices import TARGETS, cheapest_below, engines_of
+from studies.precision.choices import TARGETS, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
-from studies.stability.report import failures, verdicts
+from studies.stability.findings import failures
+from studies.stability.report import verdicts
 
 WIDTH = 99
 """Of the page, in letters."""

@@ -25,7 +25,8 @@ from studies.overturning import report as overturning
 from studies.overturning.areas import with_verdicts
 from studies.precision import report as precision
 from studies.precision.choices import cheapest_below, choices
-from studies.stability import report as stability
+from studies.stability import findings as stability
+from studies.stability.report import mended, peers
 from studies.validate import claims as validate
 from studies.validity import report as validity
 
@@ -221,14 +222,12 @@ def test_the_reference_stands_beside_independent_integrators():
     ]
     rest = {"case": "a", "remedy": "", "failure": "", "invalid": "", "friction": 1.0}
     table = pd.DataFrame(rows).assign(error=[2e-7, math.nan], slip_widths=0.0, **rest)
-    found = stability.peers(table).set_index("source")
+    found = peers(table).set_index("source")
     assert found[["runs", "same"]].to_numpy().tolist() == [[1, 1], [1, 0]]
     assert found.loc["radau", "off"] == pytest.approx(1e-7, rel=1e-6)
-    counts = stability.mended(table.assign(remedy="another step", failure="THROWN")).to_dict(
-        "records"
-    )
+    counts = mended(table.assign(remedy="another step", failure="THROWN")).to_dict("records")
     assert counts == [{"verdict": "fall_wrong", "failures": 1, "unbounded": 1, "mended": 1}]
-    assert stability.mended(table)[["unbounded", "mended"]].to_numpy().tolist() == [[0, 0]]
+    assert mended(table)[["unbounded", "mended"]].to_numpy().tolist() == [[0, 0]]
 
 
 def test_the_census_counts_what_was_left_out():
