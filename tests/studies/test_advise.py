@@ -2,7 +2,6 @@
 
 import math
 import re
-import shutil
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -247,41 +246,12 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert Path(out / "provenance.json").is_file()
 
 
-@pytest.fixture
-def wider(tmp_path):
-    """The published tables, with ladders of further engines that are made up of MuJoCo's."""
-    for name in TABLES:
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        table = pd.read_csv(PUBLISHED / name, keep_default_na=False, na_values=["nan"])
-        # what is published of these engines themselves would tell more than what is made up
-        asked = table["source" if "source" in table else "method"]
-        mine = asked.str.startswith(MADE_UP)
-        table[~mine].to_csv(tmp_path / name, index=False, na_rep="nan")
-    ladder = pd.read_csv(tmp_path / TABLES[0])
-    fixed, landing = (ladder[ladder["method"] == f"mujoco {name}"] for name in ("fixed", "landing"))
-    steps = sorted(landing["value"].unique(), reverse=True)
-    dial = dict(zip(steps, DIAL, strict=False))
-    own = landing[landing["value"].isin(list(dial))].assign(method="drake error-controlled")
-    rows = [fixed.assign(method=f"{name} fixed") for name in MADE_UP]
-    whole = pd.concat([ladder, *rows, own.assign(value=own["value"].map(dial))])
-    whole.to_csv(tmp_path / TABLES[0], index=False, na_rep="nan")
-    for folder in tmp_path.iterdir():
-        shutil.copy(PUBLISHED / folder.name / "provenance.json", folder)
-        seal(folder)
-    return tmp_path
-
-
-MADE_UP = ("drake", "newton", "dart")
-
-DIAL = ENGINES["drake"].preset("error-controlled").dial[1]
-
-
-def test_each_preset_of_each_engine_that_was_published_has_a_row(wider, capsys):
-    assert run(["advise", "--published", str(wider)]) == 0
+def test_each_preset_of_each_engine_that_was_published_has_a_row(capsys):
+    assert run(["advise"]) == 0
     told = capsys.readouterr().out
-    engines = published_engines(wider)
-    assert {*CORE, *MADE_UP} <= set(engines)
-    lines = advice(wider, engines, TARGETS, BLOCK)
+    engines = published_engines(PUBLISHED)
+    assert {*CORE, "drake", "newton"} <= set(engines)
+    lines = advice(PUBLISHED, engines, TARGETS, BLOCK)
     uses = {(name, use.name) for name in engines for use in ENGINES[name].presets}
     uses = {use for use in uses if use[1] != AT_REST}  # no use of its own
     for _, group in lines.groupby("target"):
@@ -294,19 +264,21 @@ def test_each_preset_of_each_engine_that_was_published_has_a_row(wider, capsys):
     assert told.count("rocking advise --engine ") == 1 and "solref" not in told
 
 
-def test_a_dial_is_no_step(wider, capsys):
-    lines = advice(wider, ["drake"], [1e-2, 1e-4], BLOCK).set_index(["target", "preset"])
-    loose, close = (lines.loc[(target, "error-controlled")] for target in (1e-2, 1e-4))
-    assert DIAL[0] == loose["value"] > close["value"] > DIAL[-1]
+def test_a_dial_is_no_step(capsys):
+    lines = advice(PUBLISHED, ["drake"], [0.1, 1e-2], BLOCK).set_index(["target", "preset"])
+    loose, close = (lines.loc[(target, "error-controlled")] for target in (0.1, 1e-2))
+    drake = ENGINES["drake"].preset("error-controlled")
+    assert {loose["value"], close["value"]} <= set(drake.dial[1])
+    assert loose["value"] > close["value"]
     assert math.isnan(loose["dt_s"])
     assert loose["cheapest"]
-    assert run(["advise", "--published", str(wider), "--engine", "drake", "--error", "0.01"]) == 0
+    assert run(["advise", "--engine", "drake", "--error", "0.01"]) == 0
     told = capsys.readouterr().out
-    assert f"accuracy = {DIAL[0]:g}" in told
-    own = DIAL[0] * BLOCK.alpha * max(1.0, BLOCK.R)
+    assert f"accuracy = {close['value']:g}" in told
+    own = float(close["value"]) * BLOCK.alpha * max(1.0, BLOCK.R)
     assert f"integrator.set_target_accuracy({own!r})" in told
     assert re.search(r"AddContactMaterial\(.*point_stiffness=", told)
-    rough = float(ENGINES["drake"].preset("error-controlled").settings.friction)
+    rough = float(drake.settings.friction)
     assert f"CoulombFriction({rough!r}, {rough!r})" in told
 
 
