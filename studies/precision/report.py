@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -103,39 +102,39 @@ def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    exact = {}
-    for case in (case for cases in chosen_cases(quick=False).values() for case in cases):
-        window = free_rocking_window(case.block, case.motion)
-        exact[tuple(asdict(case)[name] for name in CASE)] = (
-            simulate(case.block, case.motion, duration=window),
-            case,
-        )
-    names = list(rows[list(CASE)].itertuples(index=False, name=None))
-    peaks = np.array([exact[name][0].peak_ratio for name in names])
+    exact = {
+        tuple(getattr(case, name) for name in CASE): (case, _windowed(case))
+        for cases in chosen_cases(quick=False).values()
+        for case in cases
+    }
+    posed = [exact[case] for case in rows[list(CASE)].itertuples(index=False, name=None)]
+    peaks = np.array([response.peak_ratio for _, response in posed])
     failed = rows["outcome"] == Outcome.FAILED.value
     error = (rows["peak_ratio"] / peaks - 1.0).abs()
     finest = rows.groupby(["method", "figure", "aspect", "set"])["peak_ratio"].transform("last")
     own = (rows["peak_ratio"] / finest - 1.0).abs()
-    late = [
-        _impact_error(json.loads(found), *exact[name])
-        for found, name in zip(rows["impact_times"], names, strict=True)
-    ]
+    found = map(json.loads, rows["impact_times"])
+    late = [_impact_error(each, *asked) for each, asked in zip(found, posed, strict=True)]
     return rows.assign(
         error=error.mask(failed),
         own_error=own.mask(failed),
         impact_error=pd.Series(late, index=rows.index).mask(failed),
         failed=failed,
-        pulse_s=[exact[name][1].motion.duration for name in names],
+        pulse_s=[case.motion.duration for case, _ in posed],
     )
 
 
-def _impact_error(found: list[float], response: Response, case: Case) -> float:
+def _windowed(case: Case) -> Response:
+    window = free_rocking_window(case.block, case.motion)
+    return simulate(case.block, case.motion, duration=window)
+
+
+def _impact_error(found: list[float], case: Case, exact: Response) -> float:
     """Return the largest error of the first impact times [1/p]; inf where one is missing."""
-    wanted = [impact.time * case.block.p for impact in response.impacts[:COMPARED_IMPACTS]]
+    wanted = [impact.time * case.block.p for impact in exact.impacts[:COMPARED_IMPACTS]]
     if len(found) < len(wanted):
         return math.inf
-    pairs = zip(found, wanted, strict=False)
-    return max((abs(a - b) for a, b in pairs), default=0.0)
+    return max((abs(a - b) for a, b in zip(found, wanted, strict=False)), default=0.0)
 
 
 def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
