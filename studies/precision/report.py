@@ -20,7 +20,7 @@ from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed, times
 from studies.precision import cost
-from studies.precision.choices import EXACT, TYPICAL, cheapest_below, choices, exact_cost
+from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
@@ -63,24 +63,22 @@ def headline(folder: Path) -> str:
 
 def first_claim(table: pd.DataFrame) -> str:
     """Say what the smallest of the targets costs with an engine, and with the paper's solver."""
-    reached = [chosen for chosen in choices(table) if chosen.typical is not None]
+    found = choices(table)
+    reached = [target for target, cases in found if cases == TYPICAL]
     if not reached:
         return "No engine setting reaches any of the errors asked for on every typical case."
-    last = reached[-1]
+    asked = {TYPICAL: "on typical cases", ALL: "with those near overturning"}
     engines = [
-        f"{times(chosen.over_exact)} that {words}, {LOOPS[chosen.loop]}"
-        for chosen, words in (
-            (last.typical, "on typical cases"),
-            (last.everywhere, "with those near overturning"),
-        )
-        if chosen is not None
+        f"{times(chosen['over_exact'])} that {words}, {LOOPS[chosen['driver']]}"
+        for cases, words in asked.items()
+        if (chosen := found.get((reached[-1], cases)))
     ]
     typical = table[table["set"] == TYPICAL]
     own = exact_cost(typical)
-    best = cheapest_below(typical[typical["method"] == STRICT], last.target)
+    best = cheapest_below(typical[typical["method"] == STRICT], reached[-1])
     rival = "" if best is None else f", and RK4 {times(best['wall_s'] / own)} it"
     return (
-        f"The exact solution takes {duration(own)} a case; an error below {last.target:g} costs "
+        f"The exact solution takes {duration(own)} a case; an error below {reached[-1]:g} costs "
         f"an engine {listed(engines)}{rival}."
     )
 

@@ -24,7 +24,7 @@ from studies.measures.claims import (
 from studies.overturning import report as overturning
 from studies.overturning.areas import with_verdicts
 from studies.precision import report as precision
-from studies.precision.choices import cheapest_below, choices
+from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
 from studies.stability import findings as stability
 from studies.stability.report import mended, peers
 from studies.validate import claims as validate
@@ -66,13 +66,13 @@ KINDS = ("typical", "near overturning")
 
 
 def test_a_target_on_typical_cases_is_not_one_on_all():
-    last = choices(precision_table())[-1]
-    assert last.target == 1e-4
-    assert (last.typical.value, last.everywhere.value) == (0.02, 0.005)
-    assert last.typical.over_exact == pytest.approx(200.0)
+    found = choices(precision_table())
+    typical, everywhere = (found[1e-4, cases] for cases in (TYPICAL, ALL))
+    assert (typical["value"], everywhere["value"]) == (0.02, 0.005)
+    assert typical["over_exact"] == pytest.approx(200.0)
     # both sets of the cheapest setting for all, over the exact solution on both
-    assert last.everywhere.over_exact == pytest.approx(750.0)
-    assert last.typical.near_error == 1e-3
+    assert everywhere["over_exact"] == pytest.approx(750.0)
+    assert typical["near_error"] == 1e-3
     text = precision.first_claim(precision_table())
     assert "200 times that on typical cases" in text
     assert "and 750 times that with those near overturning" in text
@@ -91,7 +91,8 @@ def test_each_cost_says_who_takes_the_steps():
     rows = [work("pymunk landing", 0.02, kind, 5e-5, 9e-5, 1e-2) for kind in KINDS]
     marked = pd.DataFrame(rows).assign(runs=2)
     table = pd.concat([precision_table(), marked], ignore_index=True)
-    assert choices(table, "python")[-1].typical.setting == "pymunk landing at p dt = 0.02"
+    found = choices(table, "python")
+    assert found[1e-4, TYPICAL]["setting"] == "pymunk landing at p dt = 0.02"
     assert "stepped by a compiled loop" in precision.first_claim(table)
 
 
