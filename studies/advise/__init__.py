@@ -13,9 +13,9 @@ that nothing does. It runs nothing: it reads the published tables, and names the
     products=("advice.csv", "advice.png", "findings.txt"),
     captions={
         "advice": (
-            "Time of a case over the largest error that is to be kept, a line for each engine and "
-            "preset that keeps it with every finer step; beside the points their steps, p dt, "
-            "or the accuracy of an engine's own."
+            "Time of a case with each preset that keeps an error with every finer step, a panel "
+            "for each error, a row for each engine; at the points their steps, p dt, or the "
+            "accuracy of an engine's own."
         ),
     },
     chapters=(

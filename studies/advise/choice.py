@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from studies.advise.evidence import declared_value, extremes, in_words, settings
 from studies.advise.tried import COUNTS, counted, random_runs
 from studies.kit.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.finer import with_every_finer
+from studies.measures.finer import cheapest_kept
 from studies.measures.presets import uses_of
 from studies.measures.words import out_of, part
 
@@ -26,6 +26,13 @@ TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
 
 NOTHING = "nothing does"
 """What is said of a preset without a setting that keeps the error."""
+
+NONE_FOUND: Row = {
+    **dict.fromkeys(("value", "dt_s", "wall_s", "max_error"), math.nan),
+    "driver": "",
+    **dict.fromkeys(("runs", "cases", *COUNTS, "extreme_cases", "extreme_off"), 0),
+}
+"""Columns of advice about a setting, where there is none."""
 
 
 def advice(
@@ -52,57 +59,33 @@ def advice(
     rows: list[Row] = []
     for target in targets:
         known = counted(settled, runs, target)
-        for engine in engines:
-            mine = known[known["engine"] == engine]
-            lines = list(_of_engine(published, mine, engine, target, block))
-            times = [line["wall_s"] for line in lines if not line["message"]]
-            for line in lines:
-                line["cheapest"] = bool(times) and line["wall_s"] == min(times)
-            rows += lines
-    return pd.DataFrame(rows)
+        for engine, preset in ((name, preset) for name in engines for preset in uses_of(name)):
+            mine = known[(known["engine"] == engine) & (known["preset"] == preset.name)]
+            best = cheapest(mine, target)
+            found = {} if best is None else _found(published, best, preset, target, block)
+            message = "" if found else _message(mine, preset, target)
+            use = {"target": target, "engine": engine, "preset": preset.name}
+            rows.append({**use, **NONE_FOUND, **found, "message": message})
+    lines = pd.DataFrame(rows)
+    least = lines.groupby(["target", "engine"])["wall_s"].transform("min")
+    return lines.assign(cheapest=lines["wall_s"] == least)
 
 
-def _of_engine(
-    published: Path, known: pd.DataFrame, engine: str, target: float, block: RigidBlock
-) -> Iterator[Row]:
-    for preset in uses_of(engine):
-        mine = known[known["preset"] == preset.name]
-        best = cheapest(mine, target)
-        yield {
-            "target": target,
-            "engine": engine,
-            "preset": preset.name,
-            **_chosen(best, preset, block),
-            **_extreme(published, best, engine, preset, target),
-            "message": _message(mine, preset, target),
-        }
+def _found(
+    published: Path, best: pd.Series[Any], preset: Preset, target: float, block: RigidBlock
+) -> Row:
+    """Return the columns of a setting that keeps an error.
 
-
-def _extreme(
-    published: Path, best: pd.Series[Any] | None, engine: str, preset: Preset, target: float
-) -> dict[str, int]:
-    """Count extreme cases where they were run with the very setting that is advised."""
-    if best is None or not np.array_equal(best["value"], declared_value(preset), equal_nan=True):
-        return {"extreme_cases": 0, "extreme_off": 0}
-    source = engine if preset is ENGINES[engine].best else f"{engine}:{preset.name}"
-    return extremes(published, source, target)
-
-
-def _chosen(best: pd.Series[Any] | None, preset: Preset, block: RigidBlock) -> Row:
-    if best is None:
-        nothing = ("value", "dt_s", "wall_s", "max_error")
-        none = dict.fromkeys(("runs", "cases", *COUNTS), 0)
-        return {**dict.fromkeys(nothing, math.nan), "driver": "", **none}
-    value = float(best["value"])
+    Extreme cases are counted where they were run with the very setting that is advised.
+    """
+    engine, value = str(best["engine"]), float(best["value"])
     own = math.nan if preset.dial else preset.step_s
-    return {
-        "value": value,
-        "dt_s": own if preset.dial or math.isnan(value) else value / block.p,
-        "wall_s": float(best["wall_s"]),
-        "max_error": float(best["max_error"]),
-        "driver": str(best["driver"]),
-        **{name: int(best[name]) for name in ("runs", "cases", *COUNTS)},
-    }
+    found = {name: best[name] for name in NONE_FOUND if name in best}
+    found["dt_s"] = own if preset.dial or math.isnan(value) else value / block.p
+    if np.array_equal(value, declared_value(preset), equal_nan=True):
+        source = engine if preset is ENGINES[engine].best else f"{engine}:{preset.name}"
+        found |= extremes(published, source, target)
+    return found
 
 
 def cheapest(known: pd.DataFrame, target: float) -> pd.Series[Any] | None:
@@ -115,8 +98,7 @@ def cheapest(known: pd.DataFrame, target: float) -> pd.Series[Any] | None:
         it keeps the error with every finer one: a coarse step may be lucky.
     target : float
     """
-    good = known[with_every_finer(_alone(known, target))]
-    return None if good.empty else good.sort_values("wall_s").iloc[0]
+    return cheapest_kept(known, _alone(known, target))
 
 
 def _alone(known: pd.DataFrame, target: float) -> pd.Series[bool]:
@@ -128,8 +110,6 @@ def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
     """Say that nothing keeps the error, and why."""
     if known.empty:
         return f"{NOTHING}: not in the published tables"
-    if cheapest(known, target) is not None:
-        return ""
     alone = _alone(known, target)
     if alone.any():
         lucky = in_words(preset, float(known.loc[alone, "value"].iloc[-1]))
@@ -147,13 +127,5 @@ def _missed(line: pd.Series[Any], preset: Preset, target: float) -> str:
         return f"an outcome is wrong at {at}"
     if error > target:
         return f"{part(error)} at {at}"
-    return random_text(line, f"at {at}")
-
-
-def random_text(line: pd.Series[Any], where: str = "at this step") -> str:
-    """Return how many random cases are off, and of those with a small κ; empty where none ran."""
-    if not line["random_cases"]:
-        return ""
-    off = f"{out_of(line['random_off'], line['random_cases'])} random cases are off {where}"
-    calm = f" ({line['random_calm_off'] or 'none'} of them with κ < {WELL_CONDITIONED:g})"
-    return off + calm if line["random_off"] else off
+    off, calm = out_of(line["random_off"], line["random_cases"]), line["random_calm_off"]
+    return f"{off} random cases are off at {at} ({calm} of them with κ < {WELL_CONDITIONED:g})"

@@ -15,6 +15,8 @@ from engines.declaration import Preset
 from studies.advise.tried import RANDOM, SETTING
 from studies.cases.paper import sweep_cases
 from studies.kit.tables import read_table
+from studies.measures.finer import joint
+from studies.measures.presets import uses_of
 from studies.measures.verdicts import ACCEPTED
 from studies.sources.registry import resolve
 
@@ -51,26 +53,19 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         timed at least; driver: who took the steps; cases; max_error: the largest error of the peak,
         inf where an outcome is wrong or a case failed. Those of a preset from coarse to fine.
     """
-    whole, ladder = of_paper(published, engines), along_steps(published, engines)
-    found = pd.concat([ladder, whole], ignore_index=True)
+    found = pd.concat([along_steps(published, engines), of_paper(published, engines)])
     # where both tables know a setting, the ladder's time is the best of several
-    kept = found.groupby(["engine", "preset", "value"], sort=False, dropna=False)
-    lines = kept.agg(
+    lines = found.groupby(SETTING, sort=False, dropna=False, as_index=False).agg(
         wall_s=("wall_s", "first"),
         runs=("runs", "first"),
         cases=("cases", "sum"),
         max_error=("max_error", "max"),
-    ).reset_index()
-    coarse = [-fineness(*line) for line in lines[SETTING].itertuples(index=False, name=None)]
+    )
+    uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
+    steps = lines["value"].fillna(pd.Series(map(declared_step, uses)))
+    preset = lines.groupby(SETTING[:2], sort=False).ngroup()
     lines["driver"] = lines["engine"].map(drivers(published))
-    preset = lines.groupby(["engine", "preset"], sort=False).ngroup()
-    return lines.iloc[np.lexsort(np.array([coarse, preset]))].reset_index(drop=True)
-
-
-def fineness(engine: str, preset: str, value: float) -> float:
-    """Return p dt, or the dial; of a step in seconds, the largest p dt in the paper."""
-    declared = ENGINES[engine].preset(preset)
-    return declared_step(declared) if math.isnan(value) else value
+    return lines.iloc[np.lexsort((-steps, preset))].reset_index(drop=True)
 
 
 def drivers(published: Path) -> dict[str, str]:
@@ -99,52 +94,30 @@ def aspects(published: Path) -> tuple[float, float]:
 
 def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """Return the settings of the ladder: every preset along its steps, both sets of cases."""
-    table = pd.read_csv(published / LADDER)
-    uses = {
-        f"{name} {preset.name}": (name, preset.name)
-        for name in engines
-        for preset in ENGINES[name].presets
-    }
-    mine = table[table["method"].isin(list(uses))]
-    worst = mine["max_error"].where(mine["failed"] == 0, math.inf)
-    mine = mine.assign(max_error=worst, wall_s=mine["wall_s"] * mine["cases"])
-    lines = (
-        mine.groupby(["method", "value"], sort=False)
-        .agg(
-            wall_s=("wall_s", "sum"),
-            runs=("runs", "min"),
-            cases=("cases", "sum"),
-            max_error=("max_error", "max"),
-        )
-        .reset_index()
+    uses = pd.DataFrame(
+        [(f"{name} {use.name}", name, use.name) for name in engines for use in uses_of(name)],
+        columns=["method", "engine", "preset"],
     )
-    names = [uses[str(name)] for name in lines["method"]]
-    return lines.assign(
-        engine=[name for name, _ in names],
-        preset=[preset for _, preset in names],
-        wall_s=lines["wall_s"] / lines["cases"],
-    )[SETTINGS]
+    lines = joint(pd.read_csv(published / LADDER)).merge(uses, on="method")
+    worst = lines["max_error"].where(lines["failed"] == 0, math.inf)
+    return lines.assign(max_error=worst)[SETTINGS]
 
 
 def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """Return each preset, as it is declared, on the paper's cases."""
-    tables = [pd.read_csv(published / name) for name in PAPER]
-    lines = pd.concat(tables, ignore_index=True)
+    lines = pd.concat([pd.read_csv(published / name) for name in PAPER], ignore_index=True)
     lines = lines[lines["figure"].astype(str) == "all"].drop_duplicates("source")
-    asked = [resolve(str(name)) for name in lines["source"]]
-    lines = lines.assign(
+    asked = lines["source"].map(resolve)
+    lines = lines[[source.engine in engines for source in asked]]
+    asked = asked[lines.index]
+    return lines.assign(
         engine=[source.engine for source in asked],
         preset=[source.preset for source in asked],
+        value=[declared_value(source.used) for source in asked],
         max_error=lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
         wall_s=lines["wall_s"] / lines["cases"],
         runs=1,
-    )
-    lines = lines[lines["engine"].isin(list(engines))]
-    own = [
-        declared_value(ENGINES[name].preset(preset))
-        for name, preset in zip(lines["engine"], lines["preset"], strict=True)
-    ]
-    return lines.assign(value=own)[SETTINGS].reset_index(drop=True)
+    )[SETTINGS]
 
 
 def options_at(preset: Preset, value: float) -> dict[str, Any]:

@@ -2,126 +2,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from textwrap import wrap
+from textwrap import fill
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines import ENGINES
+from engines.declaration import RECOMMENDED
+from studies.advise.choice import NOTHING
 from studies.advise.evidence import in_words
-from studies.drawing.labels import Name, around, beyond
-from studies.drawing.styles import engine_style, title_of
+from studies.drawing.facets import HALO, key, panels, preset_dots, rows
+from studies.drawing.styles import title_of
 from studies.measures.presets import told
 from studies.measures.words import listed, per_cent
 
-LETTERS = 88
-"""In a line of the title."""
-BEFORE, AFTER, EDGE = 0.9, 1.3, 0.25
-"""Room for names before and after the points of a panel, and for none, over that of the points."""
+LETTERS = 44
+"""In a line of the title, for each panel under it."""
+LEFT, RIGHT = 0.5, 2.0
+"""Room before the first point of all and after the last, as factors of a time."""
 
 
 def draw_advice(lines: pd.DataFrame) -> Figure:
-    """Draw a case's time against the error that is kept, a line for each preset of an engine.
+    """Draw the time of a case with each preset that keeps an error: engines as rows.
+
+    A panel for each error; at a point the step, p dt, or the accuracy of an engine's own.
 
     Parameters
     ----------
     lines : DataFrame
         The columns of advice.csv.
     """
-    targets = sorted(lines["target"].unique(), reverse=True)
-    landing = lines["preset"] == "landing"
-    parts = {"landing steps": lines[landing], "equal steps, or an engine's own": lines[~landing]}
-    parts = {title: part for title, part in parts.items() if (part["message"] == "").any()}
-    drawing = Figure(figsize=(10.0, 5.6), layout="constrained")
-    panels = drawing.subplots(1, max(len(parts), 1), sharey=True, squeeze=False)[0]
-    panels[0].set(yscale="log", ylabel="time of a case  [ms]")
-    panels[0].margins(y=0.1)
-    drawn = [
-        _panel(axes, part, targets) for axes, part in zip(panels, parts.values(), strict=False)
-    ]
-    for axes, title, (ends, steps) in zip(panels, parts, drawn, strict=False):
-        axes.set_title(title, fontsize=10)
-        alone = [end for end in ends if end.x == targets[0]]
-        beyond(axes, alone, -1 if len(alone) < len(ends) else 1)
-        last = min((end.x for end in ends), default=0.0)
-        beyond(axes, [end for end in ends if end.x == last and end not in alone])
-        # others go on where these end
-        between = [end for end in ends if end.x not in (targets[0], last)]
-        around(axes, [*steps, *between], 7.0)
-    drawing.supxlabel("largest error of a peak, kept with every finer step", fontsize=10)
+    engines, targets = list(lines["engine"].unique()), list(lines["target"].unique())
+    each = (4.8, 0.9 + 0.3 * len(engines))
+    drawing, grid = panels(len(targets), 2, each, 1.0, sharex=True, sharey=True)
+    kept = lines[lines["message"] == ""]
+    for axes, target in zip(grid, targets, strict=True):
+        rows(axes, [title_of(name) for name in engines])
+        axes.set_title(f"{per_cent(target)} kept with every finer step", fontsize=10.5)
+        axes.set(xscale="log")
+        mine = kept[kept["target"] == target]
+        for line in mine.to_dict("records"):
+            place = (1e3 * line["wall_s"], engines.index(line["engine"]))
+            preset = ENGINES[line["engine"]].preset(line["preset"])
+            axes.plot(*place, "o", color=told(preset.name).colour)
+            step = in_words(preset, line["value"]).rpartition(" = ")[2]
+            axes.annotate(step, place, (0, -11 if preset.name == RECOMMENDED else 5), ha="center",
+                          textcoords="offset points", fontsize=7, path_effects=HALO)  # fmt: skip
+        for engine in set(engines) - set(mine["engine"]):
+            axes.text(0.01, engines.index(engine), NOTHING, fontsize=7.5, color="#888888",
+                      va="center", path_effects=HALO,
+                      transform=axes.get_yaxis_transform())  # fmt: skip
+    if len(kept):
+        times = 1e3 * kept["wall_s"]
+        grid[0].set_xlim(LEFT * times.min(), RIGHT * times.max())
+    for axes in grid[-2:]:
+        axes.set_xlabel("time of a case  [ms]")
     drawing.suptitle(_title(lines, targets), fontsize=11)
+    key(drawing, preset_dots(kept["preset"].unique()), 5)
     return drawing
 
 
-def _panel(
-    axes: Axes, lines: pd.DataFrame, targets: Sequence[float]
-) -> tuple[list[Name], list[Name]]:
-    """Draw the lines of some presets; return their names, and their steps where these change."""
-    ends: list[Name] = []
-    steps: list[Name] = []
-    for (engine, preset), group in lines.groupby(["engine", "preset"], sort=False):
-        kept = group[group["message"] == ""]
-        if not kept.empty:
-            end, mine = _draw(axes, str(engine), str(preset), kept)
-            ends.append(end)
-            steps += mine
-    shown = [
-        error for error in targets if (lines.loc[lines["message"] == "", "target"] == error).any()
-    ]
-    axes.set(xscale="log", xticks=shown)
-    axes.set_xticks([], minor=True)
-    axes.set_xticklabels([per_cent(float(error)) for error in shown])
-    reach = max(shown[0] / shown[-1], 10.0)
-    first = BEFORE if any(end.x == shown[0] > shown[-1] for end in ends) else EDGE
-    axes.set_xlim(shown[0] * reach**first, shown[-1] / reach**AFTER)
-    axes.grid(alpha=0.25)
-    return ends, steps
-
-
-def _draw(axes: Axes, engine: str, preset: str, kept: pd.DataFrame) -> tuple[Name, list[Name]]:
-    """Draw a preset's line; return its name, with its last step, and the steps before."""
-    style = engine_style(engine, preset)
-    errors, times = kept["target"].to_numpy(float), 1e3 * kept["wall_s"].to_numpy(float)
-    axes.plot(
-        errors,
-        times,
-        color=style.colour,
-        linestyle=told(preset).line,
-        marker=style.marker,
-        fillstyle=style.fill,
-        markersize=6,
-    )
-    steps = [_step(engine, preset, value) for value in kept["value"]]
-    marks = [
-        Name(step, float(error), float(time), style.colour)
-        for step, before, error, time in zip(steps, ["", *steps], errors, times, strict=False)
-        if step not in (before, steps[-1])
-    ]
-    name = f"{title_of(engine)}, {told(preset).short}, {steps[-1]}"
-    return Name(name, float(errors[-1]), float(times[-1]), style.colour), marks
-
-
-def _step(engine: str, preset: str, value: float) -> str:
-    """Return a setting: a number alone where it has one."""
-    return in_words(ENGINES[engine].preset(preset), value).rpartition(" = ")[2]
-
-
-def _title(lines: pd.DataFrame, targets: Sequence[float]) -> str:
+def _title(lines: pd.DataFrame, targets: list[float]) -> str:
     """Say which presets keep the smallest error, and which keep none at all."""
     kept, asked = lines[lines["message"] == ""], list(lines["preset"].unique())
-    best = list(kept.loc[kept["target"] == targets[-1], "preset"].unique())
+    best = list(kept.loc[kept["target"] == min(targets), "preset"].unique())
     none = [name for name in asked if name not in set(kept["preset"])]
-    words = f"{per_cent(targets[-1])} is kept {_named(best) if best else 'by none of them'}"
+    words = f"{per_cent(min(targets))} is kept {_named(best) if best else 'by none of them'}"
     if 0 < len(best) < len(asked):
         words += " alone"
     if none and len(targets) > 1:
-        words += f", and {per_cent(targets[0])} not even {_named(none)}"
-    return "\n".join(
-        [*wrap(words, LETTERS), "(numbers: p dt, or the accuracy of an engine's own steps)"]
-    )
+        words += f", and {per_cent(max(targets))} not even {_named(none)}"
+    note = "(numbers: p dt, or the accuracy of an engine's own steps)"
+    return f"{fill(words, LETTERS * min(len(targets), 2))}\n{note}"
 
 
-def _named(presets: Sequence[str]) -> str:
+def _named(presets: list[str]) -> str:
     return listed([told(name).words for name in presets], "or")

@@ -14,12 +14,10 @@ from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.declaration import Preset, Stepping
 from studies.advise.evidence import LADDER
-from studies.advise.words import literal
-from studies.kit.journal import Row
-from studies.kit.tables import in_columns
+from studies.advise.words import ASK, literal
+from studies.drawing.kept import as_text
 from studies.measures.formulas import by_step
 from studies.measures.presets import uses_of
-from studies.measures.words import listed, part
 
 SETS = ("typical", "near overturning")
 """Published cases, a column each."""
@@ -48,24 +46,16 @@ def kept_errors(
         there is none; and for each of `SETS` the largest error of the peak at it and every finer
         published step, inf where an outcome is wrong.
     """
-    table = pd.read_csv(published / LADDER)
-    worst = table["max_error"].where(table["failed"] == 0, math.inf)
-    lines = table.assign(max_error=worst)
-    p_dt = dt_s * block.p
-    return pd.DataFrame([_kept(lines, name, use, p_dt) for name in engines for use in _equal(name)])
-
-
-def _kept(lines: pd.DataFrame, engine: str, preset: Preset, p_dt: float) -> Row:
-    mine = lines[lines["method"] == f"{engine} {preset.name}"]
-    at = mine.loc[mine["value"] >= p_dt * (1.0 - SAME), "value"].min()
-    within = mine[mine["value"] <= at]
-    return {
-        "engine": engine,
-        "preset": preset.name,
-        "p_dt": p_dt,
-        "coarser": float(at),
-        **{name: float(within.loc[within["set"] == name, "max_error"].max()) for name in SETS},
-    }
+    table, p_dt = pd.read_csv(published / LADDER), dt_s * block.p
+    table["max_error"] = table["max_error"].where(table["failed"] == 0, math.inf)
+    lines = []
+    for engine, preset in ((name, use.name) for name in engines for use in _equal(name)):
+        mine = table[table["method"] == f"{engine} {preset}"]
+        at = mine.loc[mine["value"] >= p_dt * (1.0 - SAME), "value"].min()
+        worst = mine[mine["value"] <= at].groupby("set")["max_error"].max()
+        use = {"engine": engine, "preset": preset, "p_dt": p_dt, "coarser": at}
+        lines.append({**use, **worst.reindex(SETS)})
+    return pd.DataFrame(lines)
 
 
 def _equal(engine: str) -> list[Preset]:
@@ -75,41 +65,21 @@ def _equal(engine: str) -> list[Preset]:
 def reverse_text(
     lines: pd.DataFrame, block: RigidBlock, dt_s: float, friction: float | None
 ) -> str:
-    """Return the errors as a table, and under it the settings as formulas and their values."""
-    head = (
+    """Return the errors as a table; of one engine also its settings, as formulas and values."""
+    finding = (
         f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s) a step of "
-        f"{dt_s:g} s is p dt = {dt_s * block.p:.3g}. Largest error of the peak that it keeps, on "
-        "published cases:"
+        f"{dt_s:g} s is p dt = {dt_s * block.p:.3g}; presets that land on impacts, or choose their "
+        "own steps, have no one step."
     )
-    shown = pd.DataFrame(
-        {
-            "engine": lines["engine"],
-            "preset": lines["preset"],
-            **{name: [_said(float(error)) for error in lines[name]] for name in SETS},
-            "published at": [_at(line) for _, line in lines.iterrows()],
-        }
+    title = (
+        "Largest error of the peak on published cases at the next coarser published p dt, and\n"
+        "every finer one; inf: an outcome is wrong"
     )
-    without = [name for name in lines["engine"].unique() if len(_equal(name)) < len(uses_of(name))]
-    note = (
-        f"\nThe other presets of {listed(without)} have no one step: they land on impacts, or "
-        "choose their own."
-        if without
-        else ""
-    )
+    engines = lines["engine"].unique()
     parts = [_written(line, block, dt_s, friction) for _, line in lines.iterrows()]
-    return "\n\n".join([f"{head}\n{in_columns(shown.astype(str))}{note}", *parts])
-
-
-def _said(error: float) -> str:
-    if math.isnan(error):
-        return "-"
-    return "an outcome is wrong" if math.isinf(error) else part(error)
-
-
-def _at(line: pd.Series[Any]) -> str:
-    if math.isnan(line["coarser"]):
-        return "no step as coarse"
-    return f"p dt = {line['coarser']:.3g} and every finer step"
+    if len(engines) > 1:
+        parts = [f"{ASK} {engines[0]} --dt {dt_s:g}"]
+    return "\n\n".join([as_text(finding, {title: lines.drop(columns="p_dt")}), *parts])
 
 
 def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: float | None) -> str:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from textwrap import fill
 from typing import Annotated
 
 import pandas as pd
@@ -14,11 +13,10 @@ import pandas as pd
 from engines import ENGINES, core_engines, installed_engines
 from studies.advise import STEPS
 from studies.advise.choice import TARGETS
-from studies.advise.evidence import in_words, options_at, settings
+from studies.advise.evidence import options_at, settings
 from studies.advise.tried import SETTING, counted, judged
 from studies.cases.drawn import RandomCase, draw
-from studies.drawing.kept import Pictures
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
 from studies.kit.jobs import Job
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -26,7 +24,7 @@ from studies.kit.plan import Plan, carry_out
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import with_every_finer
 from studies.measures.published import PUBLISHED
-from studies.measures.words import gathered, listed, per_cent
+from studies.measures.words import per_cent
 
 LEAST = 50
 """Random cases at every setting, however long they take, where so many are asked for."""
@@ -80,8 +78,7 @@ def plan(engines: Sequence[str], cases: int, share_s: float, seed: int) -> Plan:
 def worth_trying(known: pd.DataFrame) -> pd.DataFrame:
     """Return the settings that keep the largest of the errors with every finer one."""
     keeps = known["max_error"] <= max(TARGETS)
-    uses = [known["engine"], known["preset"]]
-    return known[keeps.groupby(uses, sort=False).transform(with_every_finer)]
+    return known[with_every_finer(keeps, known["engine"], known["preset"])]
 
 
 def job(engine: str, preset: str, value: float, case: RandomCase) -> Job:
@@ -97,19 +94,19 @@ def job(engine: str, preset: str, value: float, case: RandomCase) -> Job:
 
 
 def report(folder: Path) -> str:
-    """Write and return how many random cases are off at each setting, and the findings."""
-    table = _read(folder)
-    text = "\n".join(
-        [
-            "Random cases at each setting, and how many are off by more than an error, in brackets",
-            f"those with κ < {WELL_CONDITIONED:g}:",
-            counts_text(table),
-            "",
-            fill(told(table), 99),
-        ]
-    )
-    provenance.write_text(folder / "findings.txt", text + "\n")
-    return text
+    """Write and return how many random cases are off at the settings of each preset."""
+    table, small = _read(folder), f"κ < {WELL_CONDITIONED:g}"
+    known = counts(table, max(TARGETS))
+    tables = {
+        "Random cases that are off by more than an error, at all settings of a preset": (
+            off(table, "random_off")
+        ),
+        f"Those among them with {small}": off(table, "random_calm_off"),
+        f"Settings at which a case with {small} is off by more than {per_cent(max(TARGETS))}": (
+            known[known["random_calm_off"] > 0]
+        ),
+    }
+    return tell(folder, {}, first_claim(table), tables)
 
 
 def _read(folder: Path) -> pd.DataFrame:
@@ -121,25 +118,13 @@ def counts(table: pd.DataFrame, target: float) -> pd.DataFrame:
     return counted(table[SETTING].drop_duplicates(), table, target)
 
 
-def counts_text(table: pd.DataFrame) -> str:
-    """Return a line for each setting: its cases, and how many are off each error."""
-    columns = {
-        f"off {per_cent(target)}": [
-            f"{off} ({calm})"
-            for off, calm in counts(table, target)[["random_off", "random_calm_off"]].to_numpy()
-        ]
-        for target in TARGETS
-    }
-    known = counts(table, max(TARGETS))
-    shown = known[["engine", "preset"]].assign(
-        setting=[
-            in_words(ENGINES[engine].preset(preset), value)
-            for engine, preset, value in known[SETTING].itertuples(index=False, name=None)
-        ],
-        cases=known["random_cases"],
-        **columns,
-    )
-    return shown.to_string(index=False)
+def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return a column of `counts` at all settings of each preset, a column for each error."""
+    found = [counts(table, target).assign(target=f"{target:g}") for target in TARGETS]
+    uses = ["engine", "preset", "random_cases"]
+    by_use = pd.concat(found).groupby([*uses[:2], "target"], sort=False)[[uses[2], name]].sum()
+    shown = by_use.reset_index().pivot_table(name, uses, "target", sort=False)
+    return shown.astype(int).reset_index()
 
 
 def headline(folder: Path) -> str:
@@ -158,27 +143,6 @@ def first_claim(table: pd.DataFrame) -> str:
         f"cases, with every finer one, {calm} keep it on all random ones with "
         f"κ < {WELL_CONDITIONED:g}, and {every} on all ({each} random cases at a setting)."
     )
-
-
-def told(table: pd.DataFrame) -> str:
-    """Say the first claim, and how many cases each preset is off at its settings that miss."""
-    known = counts(table, max(TARGETS))
-    missed = known[known["random_calm_off"] > 0]
-    said = [
-        (
-            f"{engine} {preset}",
-            listed(
-                [
-                    f"{line['random_calm_off']} of {line['random_cases']} at "
-                    f"{in_words(ENGINES[str(engine)].preset(str(preset)), float(line['value']))}"
-                    for _, line in lines.iterrows()
-                ]
-            ),
-        )
-        for (engine, preset), lines in missed.groupby(["engine", "preset"], sort=False)
-    ]
-    words = f" Off by more, with κ < {WELL_CONDITIONED:g}: {gathered(said)}." if said else ""
-    return f"{first_claim(table)}{words}"
 
 
 def pictures(folder: Path) -> Pictures:

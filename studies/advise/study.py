@@ -15,11 +15,10 @@ from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
 from studies.advise.reverse import kept_errors, reverse_text
-from studies.advise.words import advice_text, claim, settings_text
-from studies.drawing.kept import Pictures
+from studies.advise.words import ASK, claim, settings_text, tables
+from studies.drawing.kept import WIDTH, Pictures, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (
-    BadInputError,
     NotNegative,
     Place,
     Positive,
@@ -30,22 +29,13 @@ from studies.kit.arguments import (
     several,
     several_or_none,
 )
-from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
 from studies.kit.tables import read_table
-from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.published import PUBLISHED
+from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
-
-NOTE = (
-    "* other outcomes or larger errors, of cases that were run at this very step; a step counts\n"
-    "  only where it and every finer published one keep the error, on random cases with "
-    f"κ < {WELL_CONDITIONED:g} too"
-)
-"""Under the table of advice."""
 
 
 def command(
@@ -74,7 +64,8 @@ def command(
     error
         Largest relative errors [-] of the peak rotation that are to be kept.
     engines
-        Names of engines, without a preset; by default all in the published tables.
+        Names of engines, without a preset; by default all in the published tables. Of one alone
+        the settings are written out.
     dt
         Your step [s], instead of errors: which error each preset with equal steps keeps with it,
         and its settings as formulas of the step DT, with their values.
@@ -95,54 +86,48 @@ def command(
         given = None if error is TARGETS else error[0]
         refuse_given({"error": given, "out": out}, "only without --dt")
         check_written(dt)
-    tables = published or PUBLISHED
     block = posed_block(width, height)
-    if missing := [name for name in TABLES if not (tables / name).is_file()]:
-        raise BadInputError(f"--published is {str(tables)!r}; it must hold {missing[0]}")
-    check(tables, TABLES, "--published")
-    asked = published_engines(tables) if engines is None else engines
+    kept = published_in(published, TABLES)
+    asked = published_engines(kept) if engines is None else engines
     check_engines(asked)
     with as_bad_input():
         if dt is not None:
-            print(_reverse(tables, asked, block, dt, friction))
+            print(_reverse(kept, asked, block, dt, friction))
             return 0
-        lines = advice(tables, asked, error, block)
-        text = _text(lines, block, tables, friction)
+        lines = advice(kept, asked, error, block)
+        text = _text(lines, block, kept, friction)
     if out is None:
         print(text)
         return 0
     settings = {"error": error, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
 
-    def report(folder: Path) -> str:
-        from studies.drawing.figures import save_all
-
-        provenance.write_text(folder / "findings.txt", text + "\n")
-        save_all(pictures(folder), folder)
-        return text
-
-    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
+    return carry_out(
+        STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(folder, pictures(folder), text)
+    )
 
 
 def _reverse(
     published: Path, engines: Sequence[str], block: RigidBlock, dt: float, friction: float | None
 ) -> str:
-    lines = kept_errors(published, engines, block, dt)
-    text = reverse_text(lines, block, dt, friction)
-    made = fill(f"From {LADDER}, made with {_versions(published)}.", 99)
+    text = reverse_text(kept_errors(published, engines, block, dt), block, dt, friction)
+    made = fill(f"From {LADDER}, made with {_versions(published)}.", WIDTH)
     return "\n\n".join(filter(None, (text, too_slippery(friction), made)))
 
 
 def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float | None) -> str:
-    head = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s):"
-    return "\n\n".join(
-        [
-            f"{head}\n{advice_text(lines)}\n{NOTE}{_beyond(block, published)}",
-            settings_text(lines, block, friction) or "No setting to write out.",
-            *filter(None, [too_slippery(friction)]),
-            fill(f"From {listed(read_from(published))}, made with {_versions(published)}.", 99),
-        ]
-    )
+    """Return advice as tables; of one engine also the settings in the library's words."""
+    engines = lines["engine"].unique()
+    written = settings_text(lines, block, friction) or "No setting to write out."
+    made = f"From {listed(read_from(published))}, made with {_versions(published)}."
+    parts = [
+        as_text(claim(lines), tables(lines, block)),
+        _beyond(block, published),
+        written if len(engines) == 1 else f"{ASK} {engines[0]}",
+        too_slippery(friction),
+        fill(made, WIDTH),
+    ]
+    return "\n\n".join(filter(None, parts))
 
 
 def _beyond(block: RigidBlock, published: Path) -> str:
@@ -151,9 +136,7 @@ def _beyond(block: RigidBlock, published: Path) -> str:
     aspect = block.height / block.width
     if low <= aspect <= high:
         return ""
-    return (
-        f"\nIts H/B is {aspect:.3g}, and that of the published cases from {low:.3g} to {high:.3g}."
-    )
+    return f"Its H/B is {aspect:.3g}, and that of the published cases from {low:.3g} to {high:.3g}."
 
 
 def _versions(published: Path) -> str:

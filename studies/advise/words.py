@@ -14,11 +14,19 @@ from analytic.motion import SinePulse
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset
 from engines.parts.settings import given
-from studies.advise.choice import random_text
 from studies.advise.evidence import in_words, options_at
-from studies.kit.tables import in_columns
 from studies.measures.costs import LOOPS, cost_text
-from studies.measures.words import duration, listed, part, per_cent
+from studies.measures.words import duration, listed, per_cent
+
+USE = ["target", "engine", "preset"]
+SHOWN = (
+    *(*USE, "value", "dt_s", "wall_s", "driver", "runs", "max_error", "cases"),
+    *("random_off", "random_cases", "extreme_off", "extreme_cases", "cheapest"),
+)
+"""Columns of the table of what keeps an error."""
+
+ASK = "The settings in the library's words: rocking advise --engine"
+"""Where what is written out for one engine is asked, before its name."""
 
 ANY_PULSE = SinePulse(amplitude=1.0, omega=1.0)
 """Settings depend on no motion."""
@@ -49,50 +57,28 @@ def literal(
     """
     asked = options_at(preset, value)
     scene = Scene(system=block, motion=ANY_PULSE, preset=preset.name, friction=friction, **asked)
-    lines = [*_settings(engine, preset, scene), *_besides(preset)]
+    dt_s, chosen = preset.ordinary_step_s(scene), scene.choose(preset.settings)
+    if engine.script is not None:
+        lines = list(engine.script(scene, chosen, dt_s).settings)
+    else:
+        named = ", ".join(f"{name}={value!r}" for name, value in given(asdict(chosen)).items())
+        lines = [f"a step of {dt_s!r} s, and in this project's names", named]
+    if helps := "; ".join(each.value for each in preset.helped_by):
+        lines.append(f"and at every step, by no setting of the library: {helps}")
     return "\n".join(lines)
 
 
-def _settings(engine: Engine, preset: Preset, scene: Scene) -> list[str]:
-    dt_s = preset.ordinary_step_s(scene)
-    chosen = scene.choose(preset.settings)
-    if engine.script is not None:
-        return list(engine.script(scene, chosen, dt_s).settings)
-    named = ", ".join(f"{name}={value!r}" for name, value in given(asdict(chosen)).items())
-    return [f"a step of {dt_s!r} s, and in this project's names", named]
-
-
-def _besides(preset: Preset) -> list[str]:
-    """Say what an adapter does that no setting of the library does."""
-    helps = [help_.value for help_ in preset.helped_by]
-    if not helps:
-        return []
-    words = "and at every step, by no setting of the library: "
-    return [f"{words}{'; '.join(helps)}"]
-
-
-def advice_text(lines: pd.DataFrame) -> str:
-    """Return advice as an aligned table."""
-    shown = pd.DataFrame(
-        {
-            "error": lines["target"].map("{:g}".format),
-            "engine": lines["engine"],
-            "preset": lines["preset"],
-            "setting": [_setting(line) for _, line in lines.iterrows()],
-            "step here": lines["dt_s"].map(_time),
-            "a case": list(map(cost_text, lines["wall_s"], lines["runs"])),
-            "loop": lines["driver"].where(lines["driver"] != "", "-"),
-            "largest error": lines["max_error"].map(part),
-            "cases": lines["cases"].map("{:d}".format),
-            "off at this step*": [off_text(line) for _, line in lines.iterrows()],
-            "": lines["message"].where(lines["message"] != "", lines["cheapest"].map(_mark)),
-        }
-    )
-    return in_columns(shown.astype(str))
-
-
-def _mark(cheapest: bool) -> str:
-    return "the engine's cheapest" if cheapest else ""
+def tables(lines: pd.DataFrame, block: RigidBlock) -> dict[str, pd.DataFrame]:
+    """Return what keeps each error, and why nothing keeps the largest that a preset misses."""
+    found = lines["message"] == ""
+    here = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s)"
+    return {
+        f"{here} the cheapest setting that keeps each error\nwith every finer one, and how many "
+        "random and extreme cases are off at this very step": lines.loc[found, list(SHOWN)],
+        "The largest error that nothing keeps of a preset, and why": (
+            lines.loc[~found, [*USE, "message"]].drop_duplicates(USE[1:])
+        ),
+    }
 
 
 def preset_of(line: pd.Series[Any]) -> Preset:
@@ -100,30 +86,13 @@ def preset_of(line: pd.Series[Any]) -> Preset:
     return ENGINES[str(line["engine"])].preset(str(line["preset"]))
 
 
-def _setting(line: pd.Series[Any]) -> str:
-    return "-" if line["message"] else in_words(preset_of(line), float(line["value"]))
-
-
-def _time(value: float) -> str:
-    return "-" if math.isnan(value) else duration(value)
-
-
-def off_text(line: pd.Series[Any]) -> str:
-    """Return how many random and extreme cases are off with the very setting that is advised."""
-    if line["message"]:
-        return "-"
-    random = random_text(line) or "no random case was run"
-    extreme = f", {line['extreme_off']} of {line['extreme_cases']} extreme"
-    return f"{random}{extreme if line['extreme_cases'] else ''}"
-
-
 def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None = None) -> str:
     """Return the settings of the lines that found one, each once, in the libraries' words."""
     chosen = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
     parts = []
     for _, line in chosen.iterrows():
-        engine = ENGINES[str(line["engine"])]
-        preset, value = engine.preset(str(line["preset"])), float(line["value"])
+        engine, preset = ENGINES[str(line["engine"])], preset_of(line)
+        value = float(line["value"])
         here = "" if math.isnan(line["dt_s"]) else f", here {duration(float(line['dt_s']))}"
         head = f"{engine.title}, {preset.title}, {in_words(preset, value)}{here}"
         parts.append(f"{head}\n{indent(literal(engine, preset, block, value, friction), '  ')}")

@@ -47,8 +47,13 @@ def tell(
     str
         The text.
     """
+    return keep(folder, drawn, as_text(finding, tables), name)
+
+
+def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
+    """Return a finding and, under their titles, the tables that have rows."""
     shown = [f"{title}:\n{in_columns(table)}" for title, table in tables.items() if len(table)]
-    return keep(folder, drawn, "\n\n".join([fill(finding, WIDTH), *shown]), name)
+    return "\n\n".join([fill(finding, WIDTH), *shown])
 
 
 def keep(folder: Path, drawn: Pictures, text: str, name: str = FINDINGS) -> str:

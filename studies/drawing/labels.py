@@ -82,30 +82,6 @@ def breadth(names: Sequence[str], size: float = 8.0) -> float:
     return 0.12 + LETTER * size * max(map(len, names)) / 72.0
 
 
-BEYOND = 10.0
-"""Distance of a name from the point that it stands before or after [points]."""
-
-
-def beyond(axes: Axes, names: Sequence[Name], side: int = 1, size: float = 8.0) -> None:
-    """Write names after their points, those of one abscissa moved apart; before them on side -1."""
-    axes.set(xlim=axes.get_xlim(), ylim=axes.get_ylim())
-    scale = 72.0 / axes.figure.dpi
-    for x in dict.fromkeys(name.x for name in names):
-        mine = [name for name in names if name.x == x]
-        own = scale * axes.transData.transform([(name.x, name.y) for name in mine])[:, 1]
-        for name, moved in zip(mine, spread(own.tolist(), LINE_HEIGHT * size) - own, strict=True):
-            line = {
-                "arrowstyle": "-",
-                "color": name.colour,
-                "linewidth": 0.5,
-                "relpos": (0.0 if side > 0 else 1.0, 0.5),
-            }
-            axes.annotate(name.text, (name.x, name.y), (side * BEYOND, moved),
-                          textcoords="offset points", ha="left" if side > 0 else "right",
-                          va="center", color=name.colour, fontsize=size, arrowprops=line,
-                          path_effects=[withStroke(linewidth=2.5, foreground="white")])  # fmt: skip
-
-
 def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """Write names near their points, clear of each other and of the lines and words there.
 

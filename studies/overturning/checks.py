@@ -7,6 +7,7 @@ be read, so no number of theirs stands here.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -44,13 +45,10 @@ def checks(window: Window) -> pd.DataFrame:
     """
     middle = np.array(0.5 * (window.low + window.high))
     alpha = float(window.alpha(middle))
-    rows = []
-    for half_cycles in (1, 2):
-        for model in (name for name, declared in MODELS.items() if declared.linear):
-            rows += [without_impact(model, alpha, ratio, half_cycles) for ratio in RATIOS]
-    rows += [housner(ratio) for ratio in RATIOS]
-    rows.append(short_pulse(alpha))
-    return pd.DataFrame(rows)
+    linear = [name for name, model in MODELS.items() if model.linear]
+    posed = itertools.product((1, 2), linear, RATIOS)
+    rows = [without_impact(model, alpha, ratio, cycles) for cycles, model, ratio in posed]
+    return pd.DataFrame([*rows, *map(housner, RATIOS), short_pulse(alpha)])
 
 
 def without_impact(model: str, alpha: float, ratio: float, half_cycles: int) -> dict[str, object]:
@@ -72,13 +70,11 @@ def housner(ratio: float) -> dict[str, object]:
     """Return Housner's linearization under a half-sine, beside Housner's own formula."""
     alpha = 0.1
     expected = math.hypot(1.0, ratio)
-    found = threshold(
-        lambda onsets: bool(
-            overturning_modes(alpha, onsets * alpha, ratio, 1, "housner").mode >= 0
-        ),
-        1.0,
-        expected * 1.01,
-    )
+
+    def overturns(onsets: float) -> bool:
+        return bool(overturning_modes(alpha, onsets * alpha, ratio, 1, "housner").mode >= 0)
+
+    found = threshold(overturns, 1.0, expected * 1.01)
     name = f"housner, half-sine, ω/p = {ratio:g}, over the onset"
     return {"check": name, "found": found, "against": HOUSNER_1963, "expected": expected}
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from textwrap import fill
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from scipy.ndimage import distance_transform_edt
 
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
+from studies.drawing.facets import key, panels
 from studies.drawing.styles import name_of, style_of
 from studies.measures.differences import conditioning_of
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
@@ -25,22 +26,17 @@ AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
 LETTERS = 32
 """In a line of a title, for each panel under it."""
 PIXELS = 900
+ACROSS = 3
+"""Panels in a row."""
 KAPPA_SHOWN = 1e2
 """Upper end of the colours of κ: what is beyond needs no telling apart."""
 # the palette of Okabe and Ito, lightened where a whole area is filled
-MODE_COLOURS = {
+MODES = {
     "survives": "#FFFFFF",
-    "no impact": "#8CC7EE",
-    "after 1": "#F5D58A",
-    "after 2": "#7FCDB8",
-    "after 3 or more": "#CC79A7",
-}
-MODE_WORDS = {
-    "survives": "survives",
-    "no impact": "overturns at once",
-    "after 1": "overturns after 1 impact",
-    "after 2": "overturns after 2",
-    "after 3 or more": "overturns after 3 or more",
+    "overturns at once": "#8CC7EE",
+    "overturns after 1 impact": "#F5D58A",
+    "overturns after 2": "#7FCDB8",
+    "overturns after 3 or more": "#CC79A7",
 }
 CELLS = ("false", "missed", REST, NO_ANSWER)
 """Verdicts on cells that are wrong, in the order of their colours below."""
@@ -62,27 +58,19 @@ def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
     axes = drawing.subplots()
     exact = areas[areas["model"] == "exact"]
     codes = np.clip(picture(exact, window), -1, 3) + 1
-    shown = _paint(axes, codes, MODE_COLOURS, window)
+    shown = _paint(axes, codes, MODES, window)
     named = _name_the_areas(axes, codes, window)
-    handles: list[Line2D | Patch] = [
-        Patch(facecolor=colour, edgecolor="#888888", label=MODE_WORDS[name])
-        for name, colour in MODE_COLOURS.items()
-        if name in shown - named
-    ]
+    handles: list[Line2D | Patch] = [*_patches(MODES, shown - named)]
     for model, part in areas.groupby("model", sort=False):
-        over = part[part["mode"] >= 0].groupby("x")["low"].min()
-        style = style_of(str(model))
-        line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
-        axes.plot(over.index, over, **line)  # type: ignore[arg-type]
-        handles.append(Line2D([], [], label=f"{model}: least that overturns", **line))  # type: ignore[arg-type]
+        least, style = part[part["mode"] >= 0].groupby("x")["low"].min(), style_of(str(model))
+        handles += axes.plot(least.index, least, style.line, color=style.colour, lw=style.width,
+                             label=f"{model}: least that overturns")  # fmt: skip
     x = window.centres(200)
-    axes.plot(x, no_impact_line(x, window, "housner"), color="#D55E00", linewidth=0.8)
-    handles.append(
-        Line2D([], [], color="#D55E00", linewidth=0.8, label="housner: no impact, closed form")
-    )
+    handles += axes.plot(x, no_impact_line(x, window, "housner"), color="#D55E00", lw=0.8,
+                         label="housner: no impact, closed form")  # fmt: skip
     _frame(axes, window)
     axes.set_title(f"Which pulses overturn a block: {window.title}", fontsize=11)
-    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    key(drawing, handles, 3)
     return drawing
 
 
@@ -90,13 +78,13 @@ def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[str]:
     """Write what happens in the middle of each area that has room for it; return these modes."""
     named = set()
     x, y = window.centres(codes.shape[0]), window.amplitudes(codes.shape[1])
-    for code, (mode, words) in enumerate(MODE_WORDS.items()):
+    for code, mode in enumerate(MODES):
         # what is beyond the picture is another area
         size = tuple(1.0 / count for count in codes.shape)
         depth = distance_transform_edt(np.pad(codes == code, 1), sampling=size)[1:-1, 1:-1]
         column, row = np.unravel_index(int(depth.argmax()), depth.shape)
         if depth.max() > ROOM:
-            axes.text(x[column], y[row], words.replace(" ", "\n", 1), ha="center", va="center",
+            axes.text(x[column], y[row], mode.replace(" ", "\n", 1), ha="center", va="center",
                       fontsize=11, color="#333333")  # fmt: skip
             named.add(mode)
     return named
@@ -114,12 +102,10 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     drawn = [*models, *(name for name in parts if off[name])]
     # without any that differs, the first shows what all of them say
     drawn += list(parts)[:1] if not any(off.values()) else []
-    across = min(len(drawn), 3)
-    down = math.ceil(len(drawn) / across)
-    drawing = Figure(figsize=(3.0 * across, 2.8 * down + 0.9), layout="constrained")
-    panels = list(drawing.subplots(down, across, squeeze=False).flat)
+    drawing, grid = panels(len(drawn), ACROSS, (3.0, 2.8), 0.9)
+    across = min(len(drawn), ACROSS)
     right = picture(areas[areas["model"] == "exact"], window)
-    for place, (axes, source) in enumerate(zip(panels, drawn, strict=False)):
+    for place, (axes, source) in enumerate(zip(grid, drawn, strict=True)):
         if source in models:
             found = picture(areas[areas["model"] == source], window)
             codes = np.where(found >= 0, np.where(right >= 0, 1, 2), np.where(right >= 0, 3, 0))
@@ -130,37 +116,21 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
         axes.set_title(f"{name_of(source)}:\n{wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + across >= len(drawn), left=False)
-    for axes in panels[len(drawn) :]:
-        axes.set_visible(False)
     alike = [name_of(str(name)) for name in parts if not off[name]]
     words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
     drawing.supylabel(AMPLITUDE, fontsize=10)
     title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * across)
     drawing.suptitle(title, fontsize=11)
-    seen = set(cells["verdict"]) if len(cells) else set()
-    left_out = {WORDS[kind] for kind in (REST, NO_ANSWER) if kind not in seen}
-    shown = [name for name in DIFFERENCE_COLOURS if name not in left_out]
-    drawing.legend(
-        handles=[
-            Patch(facecolor=DIFFERENCE_COLOURS[name], edgecolor="#888888", label=name)
-            for name in shown
-        ],
-        loc="outside lower center",
-        ncols=len(shown),
-        frameon=False,
-        fontsize=9,
-    )
+    seen = set(cells.get("verdict", ()))
+    unseen = {WORDS[kind] for kind in (REST, NO_ANSWER) if kind not in seen}
+    key(drawing, _patches(DIFFERENCE_COLOURS, set(DIFFERENCE_COLOURS) - unseen))
     return drawing
 
 
 def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
-    """Draw by how much a small error grows into one of the exact peak, where the block survives.
+    """Draw by how much a small error grows into one of the exact peak, from conditioning.csv.
 
-    Parameters
-    ----------
-    table : DataFrame
-        The columns of conditioning.csv.
-    window : Window
+    Grey where the block does not survive.
     """
     drawing = Figure(figsize=(8.6, 5.8), layout="constrained")
     axes = drawing.subplots()
@@ -168,15 +138,7 @@ def draw_conditioning(table: pd.DataFrame, window: Window) -> Figure:
         index="x", columns="onsets", values="kappa"
     )
     axes.set_facecolor("#d9d9d9")
-    shown = axes.imshow(
-        values.to_numpy().T,
-        origin="lower",
-        aspect="auto",
-        interpolation="nearest",
-        extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
-        cmap="viridis",
-        norm=LogNorm(1.0, KAPPA_SHOWN),
-    )
+    shown = _fill(axes, values.to_numpy(), window, "viridis", LogNorm(1.0, KAPPA_SHOWN))
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
     _frame(axes, window)
     title = f"How sensitive a peak is: {window.title}; grey: it overturns or stays at rest"
@@ -199,17 +161,28 @@ def _cell_codes(cells: pd.DataFrame) -> FloatArray:
 
 def _paint(axes: Axes, codes: FloatArray, colours: dict[str, str], window: Window) -> set[str]:
     """Fill the panel with coded cells; return the names of the colours that it shows."""
-    axes.imshow(
-        codes.T,
-        origin="lower",
-        aspect="auto",
-        interpolation="nearest",
-        extent=(window.low, window.high, LEAST_ONSETS, window.onsets),
-        cmap=ListedColormap(list(colours.values())),
-        norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
-    )
+    norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
+    _fill(axes, codes, window, ListedColormap(list(colours.values())), norm)
     names = list(colours)
     return {names[int(code)] for code in np.unique(codes)}
+
+
+def _fill(
+    axes: Axes, values: FloatArray, window: Window, colours: Colormap | str, norm: Normalize
+) -> AxesImage:
+    """Fill the panel with the values of its cells, a row of them for each abscissa."""
+    extent = (window.low, window.high, LEAST_ONSETS, window.onsets)
+    return axes.imshow(values.T, origin="lower", aspect="auto", interpolation="nearest",
+                       extent=extent, cmap=colours, norm=norm)  # fmt: skip
+
+
+def _patches(colours: dict[str, str], shown: set[str]) -> list[Patch]:
+    """Return what stands in a key for those of the colours that are shown."""
+    return [
+        Patch(facecolor=colour, edgecolor="#888888", label=name)
+        for name, colour in colours.items()
+        if name in shown
+    ]
 
 
 def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True) -> None:

@@ -1,54 +1,64 @@
-"""What an overturning map says: who differs from the exact solution, and where; as text."""
+"""What an overturning map says: who differs from the exact solution, and where."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import write_table
-from studies.measures.differences import scientific
 from studies.measures.words import gathered, in_kinds, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
 
+NAMES = dict(
+    enumerate(("survives", "no_impact", "after_1", "after_2", "after_3", "after_more"), -1)
+)
+"""Modes of overturning."""
+
+DIFFERENCES = (
+    *("source", "false", "missed", "other_mode", "cells", REST, NO_ANSWER),
+    *("false_from", "false_to", "missed_from", "missed_to"),
+)
+"""Columns of differences.csv."""
+
 
 def report(folder: Path) -> str:
-    """Reduce and draw a folder's tables; return the summary and the findings as text."""
-    window = window_of(folder)
-    areas = read(folder, "map")
-    engines = read(folder, "engines")
-    differences = pd.DataFrame(
-        [*model_differences(areas, window), *engine_differences(engines, window)]
-    )
-    checked = checks(window)
-    if len(differences):
-        write_table(folder / "differences.csv", differences)
+    """Reduce and draw a folder's tables; write and return what they show."""
+    window, areas = window_of(folder), read(folder, "map")
+    compared, checked = differences(areas, read(folder, "engines"), window), checks(window)
     write_table(folder / "checks.csv", checked)
-    text = "\n".join(
-        [
-            f"Overturning map: {window.title}; parts of the area of the map, exact mode by mode:",
-            modes_text(areas, window),
-            "\nAgainst the exact solution, parts of the area (engines: of the cells of a coarse",
-            "grid): false overturning, missed overturning, overturning after other impacts; and",
-            "between which abscissae nine tenths of each lie:",
-            differences_text(differences),
-            "\nEdges of the models:",
-            edges_text(read(folder, "boundaries"), list(areas["model"].unique())),
-            *engine_text(read(folder, "edges"), read(folder, "thresholds")),
-            "\nChecks against closed forms and the literature:",
-            checks_text(checked),
-        ]
-    )
-    return keep(folder, pictures(folder), text)
+    if len(compared):
+        write_table(folder / "differences.csv", compared)
+    shown, of_models = compared.astype({"cells": "Int64"}), compared["cells"].isna()
+    tables = {
+        f"Parts of the map by the impacts after which a block overturns, {window.title}": (
+            modes(areas, window)
+        ),
+        "Parts of the map that a model gets wrong, and where nine tenths of each lie": (
+            shown[of_models].dropna(axis=1, how="all")
+        ),
+        "Parts of the cells of a coarse grid that an engine gets wrong": (
+            shown[~of_models].dropna(axis=1, how="all")
+        ),
+        "Edges of each model, and by what they were found": (
+            edges(read(folder, "boundaries"), list(areas["model"].unique()))
+        ),
+        "Parts of an engine's outcomes that are right, by the relative distance from an edge": (
+            beside_edges(read(folder, "edges"))
+        ),
+        "Thresholds of an engine over the exact ones, less 1, where they are within 3 %": (
+            shifts(read(folder, "thresholds"))
+        ),
+        "Thresholds over those of closed forms and the literature, less 1": apart(checked),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def pictures(folder: Path) -> Pictures:
@@ -61,7 +71,7 @@ def pictures(folder: Path) -> Pictures:
         "map": draw_map(areas, window),
         "conditioning": draw_conditioning(read(folder, "conditioning"), window),
     }
-    if len(areas["model"].unique()) > 1 or len(engines):
+    if areas["model"].nunique() > 1 or len(engines):
         drawn["differences"] = draw_differences(areas, engines, window)
     return drawn
 
@@ -69,6 +79,8 @@ def pictures(folder: Path) -> Pictures:
 def headline(folder: Path) -> str:
     """Say how much of the map the linearizations get wrong, and how many cells engines do."""
     lines = read(folder, "differences")
+    if lines.empty:
+        return "The exact map stands alone: no other source was asked."
     models, engines = lines[lines["cells"].isna()], lines[lines["cells"].notna()]
     shares = [
         f"{row['source']} {part(row['false'] + row['missed'])}" for _, row in models.iterrows()
@@ -86,153 +98,102 @@ def _kinds(line: pd.Series[Any]) -> dict[str, int]:
     return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}
 
 
-def model_differences(areas: pd.DataFrame, window: Window) -> list[dict[str, object]]:
-    """Return the parts of the area in which each model differs from the exact one.
+def differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window) -> pd.DataFrame:
+    """Return the columns of differences.csv: the parts in which each source is not as exact.
 
-    Exact in the amplitude, from the intervals; the mean over the columns in the abscissa.
+    Of models parts of the area, exact in the amplitude, from the intervals; the mean over the
+    columns in the abscissa. Of engines parts of the cells; their runs end when the outcome is
+    decided, so their number of impacts is not held against the mode.
     """
-    exact = dict(iter(areas[areas["model"] == "exact"].groupby("x")))
-    rows: list[dict[str, object]] = []
-    for model, area in areas.groupby("model", sort=False):
-        if model == "exact":
-            continue
-        x = np.unique(area["x"])
-        shares = np.array([_compare(exact[at], group) for at, group in area.groupby("x")])
-        false, missed, other = shares.mean(axis=0) / (window.onsets - LEAST_ONSETS)
-        counts = {"source": model, "false": false, "missed": missed, "other_mode": other}
-        places = {
-            f"{name}_{end}": _quantile(x, shares[:, i], share)
-            for i, name in enumerate(("false", "missed"))
+    exact = areas.loc[areas["model"] == "exact", ["x", "low", "mode"]]
+    others = areas[areas["model"] != "exact"].groupby("model", sort=False)
+    rows = [{"source": model, **_of_model(exact, area, window)} for model, area in others]
+    if len(engines):
+        cells = with_verdicts(engines, window).groupby("source", sort=False)["verdict"]
+        rows += [{"source": source, **_of_engine(verdict)} for source, verdict in cells]
+    return pd.DataFrame(rows, columns=DIFFERENCES)
+
+
+def _of_model(exact: pd.DataFrame, area: pd.DataFrame, window: Window) -> dict[str, float]:
+    both = exact.merge(area[["x", "low", "mode"]], on=["x", "low"], how="outer")
+    column = both.groupby("x")
+    right, found = (column[f"mode_{side}"].ffill() for side in "xy")
+    length = column["low"].shift(-1).fillna(window.onsets) - both["low"]
+    where = {
+        "false": (right < 0) & (found >= 0),
+        "missed": (right >= 0) & (found < 0),
+        "other_mode": (right >= 0) & (found >= 0) & (right != found),
+    }
+    whole = window.onsets - LEAST_ONSETS
+    lengths = pd.DataFrame({kind: length.where(at, 0.0) for kind, at in where.items()})
+    shares = lengths.groupby(both["x"]).sum()
+    return {
+        **dict(zip(where, np.ascontiguousarray(shares).mean(axis=0) / whole, strict=True)),
+        **{"cells": math.nan, REST: 0, NO_ANSWER: 0},
+        **{
+            f"{kind}_{end}": _reached(shares[kind], share)
+            for kind in ("false", "missed")
             for end, share in (("from", 0.05), ("to", 0.95))
-        }
-        rows.append({**counts, "cells": math.nan, REST: 0, NO_ANSWER: 0, **places})
-    return rows
+        },
+    }
 
 
-def _quantile(x: FloatArray, weights: FloatArray, part: float) -> float:
+def _reached(weights: pd.Series[float], share: float) -> float:
     """Return the abscissa up to which a part of the weights lies; nan without any."""
-    total = np.cumsum(weights)
-    return float(x[np.searchsorted(total, part * total[-1])]) if total[-1] > 0.0 else math.nan
+    total = weights.cumsum().to_numpy()
+    place = np.searchsorted(total, share * total[-1])
+    return float(weights.index[place]) if total[-1] > 0.0 else math.nan
 
 
-def _compare(exact: pd.DataFrame, model: pd.DataFrame) -> tuple[float, float, float]:
-    """Return the lengths of amplitude of a column in which a model is false, misses, differs."""
-    ends = np.unique(np.concatenate([exact["low"], model["low"], exact["high"]]))
-    middle, length = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
-    right, found = (
-        part["mode"].to_numpy()[np.searchsorted(part["low"].to_numpy(), middle, "right") - 1]
-        for part in (exact, model)
+def _of_engine(verdict: pd.Series[str]) -> dict[str, float]:
+    return {
+        **{kind: float((verdict == kind).mean()) for kind in ("false", "missed")},
+        **{"other_mode": math.nan, "cells": len(verdict)},
+        **{kind: int((verdict == kind).sum()) for kind in (REST, NO_ANSWER)},
+    }
+
+
+def modes(areas: pd.DataFrame, window: Window) -> pd.DataFrame:
+    """Return the part of the area of each mode, a row a model."""
+    whole = areas["x"].nunique() * (window.onsets - LEAST_ONSETS)
+    parts = areas.assign(
+        mode=areas["mode"].clip(-1, 4), part=(areas["high"] - areas["low"]) / whole
     )
-    false = (right < 0) & (found >= 0)
-    missed = (right >= 0) & (found < 0)
-    other = (right >= 0) & (found >= 0) & (right != found)
-    return tuple(float(length[where].sum()) for where in (false, missed, other))  # type: ignore[return-value]
+    table = parts.pivot_table("part", "model", "mode", aggfunc="sum", fill_value=0.0)
+    return table.rename(columns=NAMES).reset_index()
 
 
-def engine_differences(engines: pd.DataFrame, window: Window) -> list[dict[str, object]]:
-    """Return the parts of the cells in which each engine differs from the exact solution.
+def edges(found: pd.DataFrame, models: list[str]) -> pd.DataFrame:
+    """Return how many edges each model has, how wide at most, and how many each search found.
 
-    An engine's run ends when its outcome is decided, so its number of impacts is not held against
-    the mode.
+    An edge between two modes is an island too narrow to be seen.
     """
-    if not len(engines):
-        return []
-    compared = with_verdicts(engines, window)
-    return [
-        {
-            "source": source,
-            "false": float((group["verdict"] == "false").mean()),
-            "missed": float((group["verdict"] == "missed").mean()),
-            "other_mode": math.nan,
-            "cells": len(group),
-            **{kind: int((group["verdict"] == kind).sum()) for kind in (REST, NO_ANSWER)},
-        }
-        for source, group in compared.groupby("source", sort=False)
-    ]
+    islands = (found["below"] >= 0) & (found["above"] >= 0)
+    each = found.assign(width=found["high"] - found["low"], islands=islands).groupby("model")
+    table = each.agg(edges=("low", "size"), width=("width", "max"), islands=("islands", "sum"))
+    counts = pd.crosstab(found["model"], found["found"])
+    return table.join(counts).reindex(models, fill_value=0).reset_index()
 
 
-def modes_text(areas: pd.DataFrame, window: Window) -> str:
-    """Return the part of the area of each mode as an aligned table, a row a model."""
-    length = (areas["high"] - areas["low"]) / (window.onsets - LEAST_ONSETS)
-    mode = areas["mode"].clip(-1, 4).map(lambda m: NAMES.get(int(m), "after 4 or more"))
-    total = areas["x"].nunique()
-    table = areas.assign(length=length, name=mode).pivot_table(
-        index="model", columns="name", values="length", aggfunc="sum", sort=False
-    )
-    names = [name for name in (*NAMES.values(), "after 4 or more") if name in table]
-    return (table[names].fillna(0.0) / total).to_string(float_format="{:.4f}".format)
+def beside_edges(cases: pd.DataFrame) -> pd.DataFrame:
+    """Return the part of each engine's outcomes that are right at each distance from an edge."""
+    if cases.empty:
+        return cases
+    above = (cases["offset"] > 0.0) == (cases["overturns"] == "above")
+    right = (cases["outcome"] == "overturned") == above
+    distance = cases["offset"].abs().map("{:g}".format)
+    return right.groupby([cases["source"], distance], sort=False).mean().unstack().reset_index()
 
 
-NAMES = {-1: "survives", 0: "no impact", 1: "after 1", 2: "after 2", 3: "after 3"}
-"""Modes of overturning."""
+def shifts(thresholds: pd.DataFrame) -> pd.DataFrame:
+    """Return how many of each engine's thresholds were found, and how far from the exact ones."""
+    if thresholds.empty:
+        return thresholds
+    found = thresholds["shift"].abs().groupby(thresholds["source"], sort=False)
+    return found.agg(asked="size", found="count", median="median", largest="max").reset_index()
 
 
-def differences_text(differences: pd.DataFrame) -> str:
-    """Return the differences as an aligned table."""
-    if not len(differences):
-        return "  no other source"
-    shown = differences.copy()
-    for name in ("false", "missed", "other_mode"):
-        shown[name] = shown[name].map(lambda share: "-" if math.isnan(share) else f"{share:.4%}")
-    for name in ("false_from", "false_to", "missed_from", "missed_to"):
-        if name in shown:
-            shown[name] = shown[name].map(lambda x: "-" if math.isnan(x) else f"{x:.2f}")
-    shown["cells"] = shown["cells"].map(lambda count: "-" if math.isnan(count) else f"{count:.0f}")
-    return shown.to_string(index=False)
-
-
-def edges_text(edges: pd.DataFrame, models: Sequence[str]) -> str:
-    """Return how many edges each model has, and how they were found."""
-    lines = []
-    for model in models:
-        group = edges[edges["model"] == model]
-        if not len(group):
-            lines.append(f"  {model}: none")
-            continue
-        found = group["found"].value_counts()
-        direct = int(((group["below"] >= 0) & (group["above"] >= 0)).sum())
-        width = (group["high"] - group["low"]).max()
-        between, inside = found.get("mode", 0), found.get("margin", 0)
-        lines.append(
-            f"  {model}: {len(group)} within {width:.1e}; {between} by a change of the mode and "
-            f"{inside} by the margin between neighbours of the grid; {direct} narrower islands"
-        )
-    return "\n".join(lines)
-
-
-def engine_text(edges: pd.DataFrame, thresholds: pd.DataFrame) -> list[str]:
-    """Return what the engines say beside the exact edges, as lines."""
-    if not len(edges):
-        return []
-    over = (edges["outcome"] == "overturned").to_numpy()
-    expected = (edges["offset"] > 0.0) == (edges["overturns"] == "above")
-    marked = edges.assign(right=over == expected, distance=edges["offset"].abs())
-    table = marked.pivot_table(index="source", columns="distance", values="right", sort=False)
-    lines = [
-        "\nEngines beside exact edges: parts of the outcomes that are right, by relative distance:",
-        table.to_string(float_format="{:.3f}".format),
-        "\nThresholds of the engines, relative to the exact ones:",
-    ]
-    for source, group in thresholds.groupby("source", sort=False):
-        shifts = group["shift"].dropna().abs()
-        lost = f", {len(group) - len(shifts)} not within 3 %" if len(shifts) < len(group) else ""
-        if len(shifts):
-            lines.append(
-                f"  {source}: median {scientific(float(shifts.median()))}, largest "
-                f"{scientific(float(shifts.max()))} of {len(shifts)}{lost}"
-            )
-        else:
-            lines.append(f"  {source}: none of {len(group)} within 3 %")
-    return lines
-
-
-def checks_text(checked: pd.DataFrame) -> str:
-    """Return the checks as lines, a line for each thing that they are held against."""
-    lines = []
-    apart = checked["found"] / checked["expected"] - 1.0
-    for against, group in checked.assign(apart=apart).groupby("against", sort=False):
-        parts = ", ".join(scientific(part) for part in group["apart"])
-        worst = scientific(float(group["apart"].abs().max()))
-        several = f"{len(group)} thresholds, within {worst}" if len(group) > 4 else parts
-        lines.append(f"  {against}: {several}")
-    return "\n".join(lines)
+def apart(checked: pd.DataFrame) -> pd.DataFrame:
+    """Return the least and the largest difference from each thing that is held against."""
+    off = (checked["found"] / checked["expected"] - 1.0).groupby(checked["against"], sort=False)
+    return off.agg(thresholds="size", least="min", largest="max").reset_index()

@@ -34,7 +34,7 @@ from studies.measures.words import (
 from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
 from studies.page.markdown import table
-from studies.precision.choices import NEAR, TYPICAL, Choice, choices
+from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
 from studies.sweep.claims import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -237,28 +237,31 @@ def choices_text(lines: pd.DataFrame) -> str:
         *("largest error", "steps", "cheapest on typical cases", "a case", "its largest error"),
         *("near overturning", "cheapest on all cases", "a case"),
     )
+    found = {loop: choices(lines, loop) for loop in LOOPS}
     rows = [
-        (per_cent(chosen.target), words, *_typical(chosen.typical), *_cheapest(chosen.everywhere))
-        for pair in zip(*(choices(lines, loop) for loop in LOOPS), strict=True)
-        for chosen, words in zip(pair, LOOPS.values(), strict=True)
+        (
+            *(per_cent(target), words),
+            *_typical(found[loop].get((target, TYPICAL))),
+            *_cheapest(found[loop].get((target, ALL))),
+        )
+        for target in TARGETS
+        for loop, words in LOOPS.items()
     ]
     return table(heads, rows)
 
 
-def _cheapest(chosen: Choice | None) -> tuple[str, str]:
-    return (chosen.setting, cost_text(chosen.wall_s, chosen.runs)) if chosen else ("none", "–")
+def _cheapest(chosen: Mapping[str, Any] | None) -> tuple[str, str]:
+    if chosen is None:
+        return "none", "–"
+    return chosen["setting"], cost_text(chosen["wall_s"], chosen["runs"])
 
 
-def _typical(chosen: Choice | None) -> tuple[str, str, str, str]:
+def _typical(chosen: Mapping[str, Any] | None) -> tuple[str, str, str, str]:
     if chosen is None:
         return "none", "-", "-", "-"
-    near = chosen.near_error
-    return (
-        chosen.setting,
-        cost_text(chosen.wall_s, chosen.runs),
-        part(chosen.typical_error),
-        "an outcome wrong" if near == float("inf") else part(near),
-    )
+    near = chosen["near_error"]
+    wrong = "an outcome wrong" if near == float("inf") else part(near)
+    return (*_cheapest(chosen), part(chosen["typical_error"]), wrong)
 
 
 def hero_lines(published: Path) -> dict[str, str]:

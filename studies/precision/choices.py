@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from studies.measures.finer import with_every_finer
+from studies.measures.finer import cheapest_kept
+from studies.measures.finer import joint as joint
 from studies.precision.methods import METHODS
 from studies.sources.registry import resolve
 
-TYPICAL, NEAR = "typical", "near overturning"
-"""The sets of cases."""
+TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
+"""The sets of cases, and both together."""
 
 TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
 """Errors that somebody may ask for."""
@@ -23,50 +24,8 @@ EXACT = "Taylor series"
 """The method to whose time the others are compared."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """The cheapest setting of an engine below a target.
-
-    Attributes
-    ----------
-    method : str
-    value : float
-    setting : str
-        Both in words.
-    wall_s : float
-        Mean time of a case [s], over the cases among which it was chosen.
-    over_exact : float
-        That over the exact solution's.
-    runs : int
-        How often a case was timed at least.
-    loop : str
-        Who took the steps: compiled, or python.
-    typical_error, near_error : float
-        Its largest error on typical cases and near overturning; inf where an outcome is wrong.
-    """
-
-    method: str
-    value: float
-    setting: str
-    wall_s: float
-    over_exact: float
-    runs: int
-    loop: str
-    typical_error: float
-    near_error: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Choices:
-    """What to choose for a target on typical cases, and on all; None where nothing reaches it."""
-
-    target: float
-    typical: Choice | None
-    everywhere: Choice | None
-
-
-def choices(table: pd.DataFrame, loop: str = "") -> tuple[Choices, ...]:
-    """Return what to choose for each target.
+def choices(table: pd.DataFrame, loop: str = "") -> dict[tuple[float, str], dict[str, Any]]:
+    """Return the cheapest setting of an engine below each target, on typical cases and on all.
 
     Parameters
     ----------
@@ -74,39 +33,39 @@ def choices(table: pd.DataFrame, loop: str = "") -> tuple[Choices, ...]:
         The columns of work-precision.csv.
     loop : str, optional
         compiled or python, for the engines alone that are stepped so; by default all.
+
+    Returns
+    -------
+    dict
+        (target, TYPICAL or ALL) -> value, and setting: it and its method in words; wall_s: mean
+        time of a case [s], and over_exact: that over the exact solution's, both over these cases;
+        runs, driver; typical_error, near_error: its largest errors, inf where an outcome is wrong.
+        Nothing where no setting reaches the target.
     """
-    typical, engines = table[table["set"] == TYPICAL], engines_of(table)
+    engines = engines_of(table)
     if loop:
         engines = engines[engines["driver"] == loop]
-    return tuple(
-        Choices(
-            target=target,
-            typical=_choice(engines, engines[engines["set"] == TYPICAL], target, typical),
-            everywhere=_choice(engines, joint(engines), target, table),
-        )
-        for target in TARGETS
-    )
-
-
-def _choice(
-    engines: pd.DataFrame, among: pd.DataFrame, target: float, timed: pd.DataFrame
-) -> Choice | None:
-    best = cheapest_below(among, target)
-    if best is None:
-        return None
-    same = (engines["method"] == best["method"]) & (engines["value"] == best["value"])
-    errors = dict(zip(engines.loc[same, "set"], engines.loc[same, "max_error"], strict=True))
-    return Choice(
-        method=str(best["method"]),
-        value=float(best["value"]),
-        setting=setting_of(best),
-        wall_s=float(best["wall_s"]),
-        over_exact=float(best["wall_s"]) / exact_cost(timed),
-        runs=int(best["runs"]),
-        loop=str(best["driver"]),
-        typical_error=float(errors.get(TYPICAL, math.nan)),
-        near_error=float(errors.get(NEAR, math.nan)),
-    )
+    errors = engines.set_index(["method", "value", "set"])["max_error"]
+    among = {
+        TYPICAL: (engines[engines["set"] == TYPICAL], table[table["set"] == TYPICAL]),
+        ALL: (joint(engines), table),
+    }
+    found = {}
+    for target, (cases, (lines, timed)) in itertools.product(TARGETS, among.items()):
+        best = cheapest_below(lines, target)
+        if best is not None:
+            typical, near = (
+                float(errors.get((best["method"], best["value"], name), math.nan))
+                for name in (TYPICAL, NEAR)
+            )
+            found[target, cases] = {
+                **best[["value", "wall_s", "runs", "driver"]],
+                "setting": setting_of(best),
+                "over_exact": best["wall_s"] / exact_cost(timed),
+                "typical_error": typical,
+                "near_error": near,
+            }
+    return found
 
 
 def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
@@ -121,8 +80,7 @@ def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
     target : float
     """
     keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
-    good = lines[keeps.groupby(lines["method"], sort=False).transform(with_every_finer)]
-    return None if good.empty else good.sort_values("wall_s").iloc[0]
+    return cheapest_kept(lines, keeps, lines["method"])
 
 
 def engines_of(table: pd.DataFrame) -> pd.DataFrame:
@@ -133,20 +91,6 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
         if method.stepping and resolve(method.source).kind == "engine"
     }
     return table[table["method"].isin(stepping)]
-
-
-def joint(table: pd.DataFrame) -> pd.DataFrame:
-    """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
-    total = table.assign(wall_s=table["wall_s"] * table["cases"])
-    found = total.groupby(["method", "value"], sort=False).agg(
-        cases=("cases", "sum"),
-        failed=("failed", "sum"),
-        max_error=("max_error", "max"),
-        wall_s=("wall_s", "sum"),
-        runs=("runs", "min"),
-        driver=("driver", "first"),
-    )
-    return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()
 
 
 def exact_cost(lines: pd.DataFrame) -> float:

@@ -1,4 +1,4 @@
-"""Work-precision diagrams: error against run time, a panel for each engine, one for all else."""
+"""Work-precision diagrams, and what each thing put back into a scene costs and changes."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.drawing.facets import error_scale, strip_beyond
 from studies.drawing.labels import Name, around
-from studies.drawing.styles import LOWEST, Style, title_of
+from studies.drawing.styles import LOWEST, Style, engine_style, title_of
+from studies.measures.finer import joint
 from studies.measures.presets import in_order, told
 from studies.measures.words import capital, duration, out_of, per_cent
-from studies.precision.choices import EXACT, cheapest_below, exact_cost, joint
+from studies.precision.choices import EXACT, cheapest_below, exact_cost
 
 STYLES = {
     EXACT: Style("#000000", "-", "o", 2.2),
@@ -166,9 +167,35 @@ def _names(lines: pd.DataFrame) -> Sequence[Name]:
     return names
 
 
-def pareto(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows that no other row beats in both time and error, by rising time."""
-    ordered = table[np.isfinite(table["median_error"])].sort_values("wall_s")
-    best = ordered["median_error"].cummin().shift(fill_value=np.inf)
-    front: pd.DataFrame = ordered[ordered["median_error"] < best]
-    return front
+def draw_scenes(scenes: pd.DataFrame) -> Figure:
+    """Draw what each thing put back into a scene costs and changes, a dot for each engine.
+
+    Parameters
+    ----------
+    scenes : DataFrame
+        The columns of scenes.csv.
+    """
+    names = list(scenes["scene"].unique())
+    engines = list(scenes["engine"].unique())
+    drawing = Figure(figsize=(9.6, 1.4 + 0.4 * len(names)), layout="constrained")
+    costs, errors = drawing.subplots(1, 2, sharey=True)
+    for number, engine in enumerate(engines):
+        rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
+        places = np.arange(len(names)) + 0.7 * ((number + 0.5) / len(engines) - 0.5)
+        # what an engine has not takes no time
+        taken = rows["wall_s"].where(rows["error"].notna())
+        factor, look = taken / taken.iloc[0], engine_style(engine, "").points(6.5)
+        costs.hlines(places, 1.0, factor, color=look["color"], linewidth=1.2)
+        costs.plot(factor, places, **look)
+        errors.plot(rows["error"].abs().clip(lower=LOWEST), places, **look, label=title_of(engine))
+    costs.set_yticks(range(len(names)), names)
+    costs.invert_yaxis()
+    costs.set(xscale="log", xlabel="run time over the scene as it is  [–]")
+    costs.axvline(1.0, color="#555555", linewidth=0.8)
+    costs.set_xticks([0.5, 1, 2, 5, 10, 20], ["½", "1", "2", "5", "10", "20"])
+    costs.set_xticks([], minor=True)
+    errors.set(xscale="log", xlabel="relative error of the peak  [–]")
+    for axes in (costs, errors):
+        axes.grid(alpha=0.25)
+    drawing.legend(loc="outside lower center", ncols=len(engines), frameon=False)
+    return drawing

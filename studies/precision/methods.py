@@ -21,8 +21,6 @@ class Method:
         Name of the open option; empty for a model in closed form, which has none.
     values : tuple
         What the option runs through, from cheap to dear.
-    stepping : bool
-        Whether the setting is a step, of which the error is a power.
     of_engine : bool
         Whether the setting is one of an engine's own.
     options : mapping
@@ -32,9 +30,13 @@ class Method:
     source: str
     setting: str = ""
     values: tuple[float, ...] = (0.0,)
-    stepping: bool = False
     of_engine: bool = False
     options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def stepping(self) -> bool:
+        """Whether the setting is a step, of which the error is a power."""
+        return self.setting == "step"
 
     def options_at(self, value: float) -> dict[str, Any]:
         """Return the options with the open one at a value."""
@@ -52,26 +54,22 @@ ENGINE_STEPS = (0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)
 ITERATIONS = (2.0, 5.0, 10.0, 50.0, 200.0)
 
 
-def _along_step(source: str, **options: Any) -> Method:
-    steps = STEPS if options else ENGINE_STEPS
-    return Method(source=source, setting="step", values=steps, stepping=True, options=options)
+def _along_step(source: str, event_tolerance: float) -> Method:
+    options = {"event_tolerance": event_tolerance}
+    return Method(source=source, setting="step", values=STEPS, options=options)
 
 
 def _of_preset(engine: str, preset: Preset) -> Method:
-    source = f"{engine}:{preset.name}"
-    if preset.dial is None:
-        return _along_step(source)
-    setting, values = preset.dial
-    return Method(source=source, setting=setting, values=values, of_engine=True)
+    """Return a preset along its steps, or its dial."""
+    setting, values = preset.dial or ("step", ENGINE_STEPS)
+    source, own = f"{engine}:{preset.name}", preset.dial is not None
+    return Method(source=source, setting=setting, values=values, of_engine=own)
 
 
 def _of_iterations(engine: str, preset: Preset) -> Method:
+    options, source = {"step": 1e-3}, f"{engine}:{preset.name}"
     return Method(
-        source=f"{engine}:{preset.name}",
-        setting="iterations",
-        values=ITERATIONS,
-        of_engine=True,
-        options={"step": 1e-3},
+        source=source, setting="iterations", values=ITERATIONS, of_engine=True, options=options
     )
 
 
@@ -83,9 +81,9 @@ OF_NO_ENGINE = {
         f"SciPy {name}": Method(source=name.lower(), setting="rtol", values=TOLERANCES)
         for name in ("RK45", "DOP853", "Radau", "LSODA")
     },
-    "RK4": _along_step("rk4", event_tolerance=1e-13),
-    "RK4, contact to 1e-6": _along_step("rk4", event_tolerance=1e-6),
-    "average acceleration": _along_step("average-acceleration", event_tolerance=1e-13),
+    "RK4": _along_step("rk4", 1e-13),
+    "RK4, contact to 1e-6": _along_step("rk4", 1e-6),
+    "average acceleration": _along_step("average-acceleration", 1e-13),
     **{
         f"{name}, closed form": Method(source=name)
         for name in ("housner", "modified", "onset-matched")

@@ -1,29 +1,27 @@
-"""Error against run time, reported: errors, orders, cheapest settings, from the CSV alone."""
+"""Error against run time: errors, orders and cheapest settings, from the CSV alone."""
 
 from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from scipy.stats import linregress
 
 from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
-from studies.measures.differences import scientific
 from studies.measures.words import duration, listed, times
-from studies.precision import cost_report
-from studies.precision.choices import TYPICAL, cheapest_below, choices, exact_cost
-from studies.precision.methods import METHODS
-from studies.precision.orders import observed_order
+from studies.precision import cost
+from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
+from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,23 +33,27 @@ STRICT = "RK4"
 CASE = ("figure", "aspect", "width_m", "omega_over_p")
 """Columns that tell one case from another."""
 
+FINEST = (
+    *("method", "value", "median_error", "max_error", "impact_error", "energy_drift"),
+    *("steps", "wall_s", "runs", "driver", "setup_s"),
+)
+"""Columns of the table of the finest settings."""
+
 
 def report(folder: Path) -> str:
-    """Reduce and draw a folder's precision.csv; return tables and findings as text."""
+    """Reduce and draw a folder's precision.csv; write and return what it shows."""
     rows = pd.read_csv(folder / "precision.csv", dtype={"message": str})
     table = work_precision(with_errors(rows))
     write_table(folder / "work-precision.csv", table)
-    typical = table[table["set"] == "typical"]
-    text = "\n".join(
-        [
-            "Cheapest setting whose largest error of the peak stays below a target, as every finer",
-            "one's does, typical cases; cost over that of the Taylor series at its tightest:",
-            cheapest(typical).to_string(index=False),
-            "\nErrors at the finest setting, where they stop falling, and the observed order:",
-            floor_text(typical),
-        ]
-    )
-    return keep(folder, {"precision": drawn(folder)}, text)
+    typical = table[table["set"] == TYPICAL]
+    costs = cheapest(typical)
+    tables = {
+        "Cheapest setting with which, as with every finer one, the largest error of a typical "
+        "case stays below": over_targets(costs, "value"),
+        f"Its cost over that of the {EXACT} at its tightest": over_targets(costs, "cost"),
+        "Typical cases at the setting with the smallest median error": finest(typical),
+    }
+    return tell(folder, {"precision": drawn(folder)}, first_claim(table), tables)
 
 
 def headline(folder: Path) -> str:
@@ -61,31 +63,29 @@ def headline(folder: Path) -> str:
 
 def first_claim(table: pd.DataFrame) -> str:
     """Say what the smallest of the targets costs with an engine, and with the paper's solver."""
-    reached = [chosen for chosen in choices(table) if chosen.typical is not None]
+    found = choices(table)
+    reached = [target for target, cases in found if cases == TYPICAL]
     if not reached:
         return "No engine setting reaches any of the errors asked for on every typical case."
-    last = reached[-1]
+    asked = {TYPICAL: "on typical cases", ALL: "with those near overturning"}
     engines = [
-        f"{times(chosen.over_exact)} that {words}, {LOOPS[chosen.loop]}"
-        for chosen, words in (
-            (last.typical, "on typical cases"),
-            (last.everywhere, "with those near overturning"),
-        )
-        if chosen is not None
+        f"{times(chosen['over_exact'])} that {words}, {LOOPS[chosen['driver']]}"
+        for cases, words in asked.items()
+        if (chosen := found.get((reached[-1], cases)))
     ]
     typical = table[table["set"] == TYPICAL]
     own = exact_cost(typical)
-    best = cheapest_below(typical[typical["method"] == STRICT], last.target)
+    best = cheapest_below(typical[typical["method"] == STRICT], reached[-1])
     rival = "" if best is None else f", and RK4 {times(best['wall_s'] / own)} it"
     return (
-        f"The exact solution takes {duration(own)} a case; an error below {last.target:g} costs "
+        f"The exact solution takes {duration(own)} a case; an error below {reached[-1]:g} costs "
         f"an engine {listed(engines)}{rival}."
     )
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
-    return {"precision": drawn(folder), **cost_report.pictures(folder)}
+    return {"precision": drawn(folder), **cost.pictures(folder)}
 
 
 def drawn(folder: Path) -> Figure:
@@ -100,39 +100,39 @@ def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    exact = {}
-    for case in (case for cases in chosen_cases(quick=False).values() for case in cases):
-        window = free_rocking_window(case.block, case.motion)
-        exact[tuple(asdict(case)[name] for name in CASE)] = (
-            simulate(case.block, case.motion, duration=window),
-            case,
-        )
-    names = list(rows[list(CASE)].itertuples(index=False, name=None))
-    peaks = np.array([exact[name][0].peak_ratio for name in names])
+    exact = {
+        tuple(getattr(case, name) for name in CASE): (case, _windowed(case))
+        for cases in chosen_cases(quick=False).values()
+        for case in cases
+    }
+    posed = [exact[case] for case in rows[list(CASE)].itertuples(index=False, name=None)]
+    peaks = np.array([response.peak_ratio for _, response in posed])
     failed = rows["outcome"] == Outcome.FAILED.value
     error = (rows["peak_ratio"] / peaks - 1.0).abs()
     finest = rows.groupby(["method", "figure", "aspect", "set"])["peak_ratio"].transform("last")
     own = (rows["peak_ratio"] / finest - 1.0).abs()
-    late = [
-        _impact_error(json.loads(found), *exact[name])
-        for found, name in zip(rows["impact_times"], names, strict=True)
-    ]
+    found = map(json.loads, rows["impact_times"])
+    late = [_impact_error(each, *asked) for each, asked in zip(found, posed, strict=True)]
     return rows.assign(
         error=error.mask(failed),
         own_error=own.mask(failed),
         impact_error=pd.Series(late, index=rows.index).mask(failed),
         failed=failed,
-        pulse_s=[exact[name][1].motion.duration for name in names],
+        pulse_s=[case.motion.duration for case, _ in posed],
     )
 
 
-def _impact_error(found: list[float], response: Response, case: Case) -> float:
+def _windowed(case: Case) -> Response:
+    window = free_rocking_window(case.block, case.motion)
+    return simulate(case.block, case.motion, duration=window)
+
+
+def _impact_error(found: list[float], case: Case, exact: Response) -> float:
     """Return the largest error of the first impact times [1/p]; inf where one is missing."""
-    wanted = [impact.time * case.block.p for impact in response.impacts[:COMPARED_IMPACTS]]
+    wanted = [impact.time * case.block.p for impact in exact.impacts[:COMPARED_IMPACTS]]
     if len(found) < len(wanted):
         return math.inf
-    pairs = zip(found, wanted, strict=False)
-    return max((abs(a - b) for a, b in pairs), default=0.0)
+    return max((abs(a - b) for a, b in zip(found, wanted, strict=False)), default=0.0)
 
 
 def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
@@ -158,46 +158,54 @@ def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
-    """Return, for each method and target, the cheapest setting that stays below with all finer.
+    """Return for methods and targets the cheapest setting that stays below with all finer ones.
 
-    Costs are over that of the Taylor series at its tightest tolerance.
+    Returns
+    -------
+    DataFrame
+        method, target, value, and cost: over that of the Taylor series at its tightest tolerance.
     """
-    unit = table[table["method"] == "Taylor series"]["wall_s"].iloc[-1]
+    unit = table[table["method"] == EXACT]["wall_s"].iloc[-1]
+    return pd.DataFrame(
+        {"method": name, "target": target, "value": best["value"], "cost": best["wall_s"] / unit}
+        for name, group in table.groupby("method", sort=False)
+        for target in TARGETS
+        if (best := cheapest_below(group, target)) is not None
+    )
+
+
+def over_targets(costs: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return a column of `cheapest` as a table: a row for each method, a column for each target."""
+    if costs.empty:
+        return costs
+    found = costs.set_index(["method", "target"])[name].unstack("target", sort=False)
+    shown = found.sort_index(axis=1, ascending=False).rename(columns="{:g}".format)
+    return shown.reset_index()
+
+
+def finest(table: pd.DataFrame) -> pd.DataFrame:
+    """Return each method at its smallest median error, with its order and how many cases failed."""
     lines = []
     for name, group in table.groupby("method", sort=False):
-        line: dict[str, object] = {"method": name}
-        for target in TARGETS:
-            best = cheapest_below(group, target)
-            if best is None:
-                line[f"{target:.0e}"] = "-"
-                continue
-            setting = f" at {best['value']:.0e}" if METHODS[str(name)].setting else ""
-            line[f"{target:.0e}"] = f"{best['wall_s'] / unit:.3g} x{setting}"
-        lines.append(line)
+        order, spread = observed_order(group, METHODS[str(name)])
+        best = group.sort_values("median_error").iloc[0]
+        found = {"order": order, "order_error": spread, "failed": group["failed"].sum()}
+        lines.append({**best[list(FINEST)], **found})
     return pd.DataFrame(lines)
 
 
-def floor_text(table: pd.DataFrame) -> str:
-    """Return for each method its smallest median error, its order and the errors beside it."""
-    lines = []
-    for name, group in table.groupby("method", sort=False):
-        best = group.sort_values("median_error").iloc[0]
-        order, spread = observed_order(group, METHODS[str(name)])
-        lines.append(
-            {
-                "method": name,
-                "best setting": f"{best['value']:.0e}" if METHODS[str(name)].setting else "-",
-                "median": scientific(best["median_error"]),
-                "max": scientific(best["max_error"]),
-                "impact times": scientific(best["impact_error"]),
-                "energy": scientific(best["energy_drift"]),
-                "order": "-" if math.isnan(order) else f"{order:.2f} ± {spread:.2f}",
-                "steps": f"{best['steps']:.0f}",
-                "time": f"{best['wall_s'] * 1e6:.0f} µs",
-                "runs": int(best["runs"]),
-                "loop": str(best["driver"] or "-"),
-                "set-up": f"{best['setup_s'] * 1e6:.0f} µs",
-                "failed": int(group["failed"].sum()),
-            }
-        )
-    return pd.DataFrame(lines).to_string(index=False)
+def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
+    """Return the order of the median error in the step with its standard error; nan if unclear.
+
+    A line through the logarithms, over the settings whose error is above three times the floor, and
+    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
+    """
+    usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
+    floor = usable["median_error"].min()
+    reached = usable["value"][usable["median_error"] == floor].max()
+    usable = usable[usable["median_error"].between(3.0 * floor, 0.3, inclusive="neither")]
+    usable = usable[usable["value"] > reached]
+    if not method.stepping or len(usable) < 3:
+        return math.nan, math.nan
+    fit = linregress(np.log(usable["value"]), np.log(usable["median_error"]))
+    return float(fit.slope), float(fit.stderr)

@@ -70,21 +70,6 @@ def start_table(quick: bool) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
-def starts_text(starts: pd.DataFrame) -> str:
-    """Return the times [s], and in units of R."""
-    shown = pd.DataFrame(
-        {
-            "command": starts["command"],
-            "cold s": starts["cold_s"].map("{:.2f}".format),
-            "warm s": starts["warm_s"].map("{:.2f}".format),
-            "cold R": starts["cold_ratio"].map("{:.2f}".format),
-            "warm R": starts["warm_ratio"].map("{:.2f}".format),
-        }
-    )
-    unit = f"R = {starts['unit_s'].iloc[0]:.3f} s, in which Python loads numba and pandas"
-    return f"{shown.to_string(index=False)}\n{unit}"
-
-
 def _shaking() -> str:
     """Return an artificial record of 40 s as PEER's files hold one."""
     record = kanai_tajimi(1, peak=4.0, duration=40.0, omega=12.0, rise=5.0, fall=15.0)

@@ -23,7 +23,7 @@ from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.energy import SAMPLES, energy_drift
-from studies.precision import STUDY, cost, cost_report
+from studies.precision import STUDY, cost
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
 from studies.precision.report import headline, pictures, report
@@ -66,7 +66,7 @@ def command(
 
 def both_reports(folder: Path) -> str:
     """Write and return what a folder says of errors, and of what a scene costs."""
-    return f"{report(folder)}\n\n{cost_report.report(folder)}"
+    return f"{report(folder)}\n\n{cost.report(folder)}"
 
 
 def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from studies.drawing.facets import key
 from studies.drawing.styles import name_of
 from studies.measures.verdicts import ACCEPTED, Verdict
 
@@ -73,111 +75,79 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
     rows : DataFrame
         The columns of stability.csv.
     """
-    cases = rows[["group", "case"]].drop_duplicates()
-    names, sources = list(cases["case"]), list(rows["source"].unique())
+    cases, sources = rows.drop_duplicates("case"), list(rows["source"].unique())
+    names = list(cases["case"])
     many = len(sources) > MANY
-    each = 0.3 if many else 0.5
-    width, height = 3.0 + each * len(sources) + 2.2, 0.235 * len(names) + 3.6
+    width, height = 5.2 + (0.3 if many else 0.5) * len(sources), 0.235 * len(names) + 3.6
     drawing = Figure(figsize=(max(width, 7.5), height), layout="constrained")
     axes = drawing.subplots()
     for row in rows.itertuples():
         place = (sources.index(str(row.source)), names.index(str(row.case)))
         _cell(axes, place, Verdict(row.verdict), math.nan if many else float(str(row.error)))
-    _label_methods(axes, sources)
-    _label_cases(axes, rows, names)
-    _separate_groups(axes, list(cases["group"]), len(sources))
-    _score(axes, rows, sources, len(names))
+    _label_methods(axes, rows, sources, len(names))
+    _label_cases(axes, cases)
+    for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
+        if before != after:
+            axes.plot([-0.2, len(sources) + 0.2], [j, j], color="#666666", lw=0.8, clip_on=False)
     axes.set(xlim=(0, len(sources)), ylim=(len(names) + 1, 0))
     axes.tick_params(length=0)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
+    axes.spines[:].set_visible(False)
     drawing.suptitle("Extreme cases: what each method's answer is worth", fontsize=12)
-    _legend(drawing, {Verdict(value) for value in rows["verdict"]}, many)
+    handles = [
+        Patch(fc=mark.colour, ec="#888888", hatch=mark.hatch,
+              label=f"{mark.symbol}  {verdict.sentence}")
+        for verdict, mark in MARKS.items()
+        if verdict.value in set(rows["verdict"])
+    ]  # fmt: skip
+    handles.append(Patch(fc="white", ec="#888888", label="    does not apply"))
+    if not many:
+        handles.append(Patch(alpha=0.0, label="1e-3  error of the peak below"))
+    key(drawing, handles, 3, fontsize=8)
     return drawing
 
 
 def _cell(axes: Axes, place: tuple[int, int], verdict: Verdict, error: float) -> None:
+    """Draw the mark of a verdict, and the size of an error as a power of ten, rounded up."""
     mark, (i, j) = MARKS[verdict], place
-    look = {"facecolor": mark.colour, "edgecolor": "#cccccc", "hatch": mark.hatch}
-    axes.add_patch(Rectangle((i, j), 1, 1, linewidth=0.0, **look))  # type: ignore[arg-type]
-    axes.add_patch(Rectangle((i, j), 1, 1, fill=False, edgecolor="white", linewidth=1.2))
-    exponent = _exponent(error)
-    style = {"ha": "center", "va": "center_baseline", "color": mark.ink}
-    axes.text(i + (0.3 if exponent else 0.5), j + 0.52, mark.symbol, fontsize=10, **style)  # type: ignore[arg-type]
-    if exponent:
-        axes.text(i + 0.68, j + 0.53, exponent, fontsize=7, **style)  # type: ignore[arg-type]
+    axes.add_patch(Rectangle(place, 1, 1, lw=0.0, fc=mark.colour, ec="#cccccc", hatch=mark.hatch))
+    axes.add_patch(Rectangle(place, 1, 1, fill=False, ec="white", lw=1.2))
+    sized = abs(error) > 0.0
+    axes.text(i + (0.3 if sized else 0.5), j + 0.52, mark.symbol, fontsize=10, ha="center",
+              va="center_baseline", color=mark.ink)  # fmt: skip
+    if sized:
+        size = f"1e{max(math.ceil(math.log10(abs(error))), -16):d}"
+        axes.text(i + 0.68, j + 0.53, size, fontsize=7, ha="center", va="center_baseline",
+                  color=mark.ink)  # fmt: skip
 
 
-def _exponent(error: float) -> str:
-    """Return the size of an error as a power of ten, rounded up; empty if there is none."""
-    if math.isnan(error) or error == 0.0:
-        return ""
-    return f"1e{max(math.ceil(math.log10(abs(error))), -16):d}"
-
-
-def _label_methods(axes: Axes, sources: list[str]) -> None:
+def _label_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
+    """Name each method above its cases; write below how many are right, of those valid."""
     axes.xaxis.tick_top()
     labels = [name_of(source).replace("average-acc", "average-\nacc") for source in sources]
-    turned = 70 if len(sources) > MANY else 40
-    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8)
-    for label in axes.get_xticklabels():
-        label.set(rotation=turned, ha="left", rotation_mode="anchor", linespacing=0.9)
+    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8, ha="left",
+                    rotation=70 if len(sources) > MANY else 40, rotation_mode="anchor",
+                    linespacing=0.9)  # fmt: skip
+    valid = rows["verdict"] != Verdict.INVALID.value
+    right = rows["verdict"].isin([verdict.value for verdict in ACCEPTED]) & valid
+    score: dict[str, Any] = {"va": "center", "fontsize": 8, "color": "#333333", "linespacing": 0.9}
+    axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **score)
+    between = "\n" if len(sources) > MANY else "/"
+    for i, source in enumerate(sources):
+        mine = rows["source"] == source
+        text = f"{(right & mine).sum()}{between}{(valid & mine).sum()}"
+        axes.text(i + 0.5, level + 0.6, text, ha="center", **score)
 
 
-def _label_cases(axes: Axes, rows: pd.DataFrame, names: list[str]) -> None:
-    words = [WORDS.get(name, name) for name in names]
-    axes.set_yticks([j + 0.5 for j in range(len(names))], words, fontsize=8.5)
-    first = rows.drop_duplicates("case")
+def _label_cases(axes: Axes, cases: pd.DataFrame) -> None:
+    """Name each case, and write at the right the exact peak, or what happens instead."""
+    places = [j + 0.5 for j in range(len(cases))]
+    axes.set_yticks(places, [WORDS.get(name, name) for name in cases["case"]], fontsize=8.5)
     exact = [
-        _reference(str(outcome), float(peak))
-        for outcome, peak in zip(first["exact_outcome"], first["exact_peak"], strict=True)
+        f"{peak:.3g} θcr" if outcome == "rocked" else outcome
+        for outcome, peak in zip(cases["exact_outcome"], cases["exact_peak"], strict=True)
     ]
     right = axes.secondary_yaxis("right")
-    right.set_yticks(
-        [j + 0.5 for j in range(len(names))],
-        exact,
-        fontsize=7.5,
-        color="#555555",
-    )
+    right.set_yticks(places, exact, fontsize=7.5, color="#555555")
     right.tick_params(length=0)
     right.spines["right"].set_visible(False)
     axes.text(1.02, 1.005, "exact peak", transform=axes.transAxes, fontsize=7.5, color="#555555")
-
-
-def _reference(outcome: str, peak: float) -> str:
-    return f"{peak:.3g} θcr" if outcome == "rocked" else outcome
-
-
-def _score(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
-    """Write under each method how many of its cases are right, of those that are valid."""
-    style = {"va": "center", "fontsize": 8, "color": "#333333"}
-    axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **style)  # type: ignore[arg-type]
-    for i, source in enumerate(sources):
-        found = [Verdict(value) for value in rows.loc[rows["source"] == source, "verdict"]]
-        valid = [verdict for verdict in found if verdict is not Verdict.INVALID]
-        right = sum(verdict in ACCEPTED for verdict in valid)
-        score = f"{right}/{len(valid)}" if len(sources) <= MANY else f"{right}\n{len(valid)}"
-        axes.text(i + 0.5, level + 0.6, score, ha="center", linespacing=0.9, **style)  # type: ignore[arg-type]
-
-
-def _separate_groups(axes: Axes, groups: list[str], width: int) -> None:
-    for j, (before, after) in enumerate(itertools.pairwise(groups), start=1):
-        if before != after:
-            axes.plot([-0.2, width + 0.2], [j, j], color="#666666", linewidth=0.8, clip_on=False)
-
-
-def _legend(drawing: Figure, present: set[Verdict], many: bool) -> None:
-    handles = [
-        Patch(
-            facecolor=mark.colour,
-            edgecolor="#888888",
-            hatch=mark.hatch,
-            label=f"{mark.symbol}  {verdict.sentence}",
-        )
-        for verdict, mark in MARKS.items()
-        if verdict in present
-    ]
-    handles.append(Patch(facecolor="white", edgecolor="#888888", label="    does not apply"))
-    if not many:
-        handles.append(Patch(alpha=0.0, label="1e-3  error of the peak below"))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)

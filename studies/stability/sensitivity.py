@@ -120,13 +120,10 @@ def with_growth(rows: pd.DataFrame) -> pd.DataFrame:
     answer moves as κ says, change_over_exact where it moves as far as the exact solution does.
     nan without a perturbation.
     """
-    names = ["case", "source", "quantity"]
-    plain = rows[rows["delta"] == 0.0].set_index(names)["peak_ratio"]
-    before = [float(plain[tuple(row)]) for row in rows[names].to_numpy()]
-    change = pd.Series(
-        [_log_ratio(*pair) for pair in zip(rows["peak_ratio"], before, strict=True)],
-        index=rows.index,
-    ).where(rows["delta"] > 0.0)
+    uses = [rows[name] for name in ("case", "source", "quantity")]
+    plain = rows["peak_ratio"].where(rows["delta"] == 0.0).groupby(uses).transform("first")
+    logs = pd.Series(map(_log_ratio, rows["peak_ratio"], plain), rows.index)
+    change = logs.where(rows["delta"] > 0.0)
     growth = change.abs() / rows["delta"].where(rows["delta"] > 0.0)
     kappa = rows["kappa"].abs()
     exact = rows["exact_change"].abs()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,16 +16,7 @@ from studies.kit.journal import Row
 from studies.kit.tables import read_table
 from studies.measures.formulas import at_step, by_step
 from studies.symptoms.patch import own_step_s, patch
-from studies.symptoms.seen import (
-    BOUNCE,
-    HULL,
-    STEP,
-    STUDIES,
-    SYMPTOMS,
-    THREADS,
-    UNMOVED,
-    Symptom,
-)
+from studies.symptoms.seen import BOUNCE, HULL, MEASURED, STEP, SYMPTOMS, UNMOVED, Symptom
 
 VARIANTS, OWN = "contact/variants.csv", "contact/own-steps.csv"
 LADDER, BOUNCES = "precision/work-precision.csv", "restitution/corners.csv"
@@ -38,6 +29,15 @@ QUOTED_E = 0.6
 HELPS = 0.5
 """A setting helps if it leaves no more than this part of what there is by default, both at the
 p dt of all and at the library's own step."""
+
+NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
+"""Columns of sizes: by default, with one setting, and with all; the first two at the own step."""
+
+COLUMNS = (
+    *("symptom", "engine", "measure", "shown_by", "before", "setting", "formula", "dt_s"),
+    *("literal", *NUMBERS[1:], "asked_in", "command"),
+)
+"""Columns of symptoms.csv."""
 
 
 def lines_of(
@@ -69,71 +69,65 @@ def lines_of(
     ladder, bounces = (pd.read_csv(published / name) for name in (LADDER, BOUNCES))
     rows: list[Row] = []
     for engine in engines:
-        mine = table[table["engine"] == engine]
-        if len(mine):
-            dt = dt_s or own_step_s(engine)
-            at_own = own[own["engine"] == engine]
-            rows += [_measured(mine, at_own, engine, symptom, dt, friction) for symptom in SYMPTOMS]
-            rows += [*_unmoved(mine, engine), *_hull(mine, engine), *_stepped(ladder, engine)]
-            rows += _bouncing(bounces, engine, dt)
-    order = [*(symptom.name for symptom in SYMPTOMS), *THREADS]
-    ordered = [row for name in order for row in rows if row["symptom"] == name]
-    return pd.DataFrame(ordered)
+        mine, at_own = (part[part["engine"] == engine] for part in (table, own))
+        if mine.empty:
+            continue
+        dt = dt_s or own_step_s(engine)
+        changes = partial(patch, engine, friction=friction)
+        found = {each: _measured(mine, at_own, each.column, dt, changes) for each in MEASURED}
+        found |= {
+            UNMOVED: _unmoved(mine, engine),
+            HULL: _hull(mine, engine),
+            STEP: _stepped(ladder, engine),
+            BOUNCE: _bouncing(bounces[bounces["engine"] == engine], dt),
+        }
+        rows += [_row(symptom, engine, values) for symptom, values in found.items() if values]
+    names = [symptom.name for symptom in SYMPTOMS]
+    lines = pd.DataFrame(rows, columns=COLUMNS)
+    return lines.sort_values(
+        "symptom", key=lambda said: said.map(names.index), ignore_index=True, kind="stable"
+    )
 
 
-def _row(symptom: str, engine: str, column: str, **values: Any) -> Row:
-    threads = THREADS.get(symptom) or next(s.threads for s in SYMPTOMS if s.name == symptom)
-    nothing = {"setting": "", "formula": "", "dt_s": math.nan, "literal": "", "after": math.nan}
+def _row(symptom: Symptom, engine: str, values: Row) -> Row:
     return {
-        "symptom": symptom,
+        "symptom": symptom.name,
         "engine": engine,
-        "measure": column,
+        "measure": symptom.column,
         "shown_by": "the library's defaults",
-        "before": math.nan,
-        **nothing,
-        "tuned": math.nan,
-        "landing": math.nan,
-        "before_own": math.nan,
-        "after_own": math.nan,
+        **dict.fromkeys(("setting", "formula", "literal"), ""),
         **values,
-        "asked_in": ", ".join(threads),
-        "command": f"rocking {STUDIES.get(symptom, 'contact')} --engines {engine} --out DIR",
+        "asked_in": ", ".join(symptom.threads),
+        "command": f"rocking {symptom.study} --engines {engine} --out DIR",
     }
 
 
 def _measured(
-    mine: pd.DataFrame,
-    own: pd.DataFrame,
-    engine: str,
-    symptom: Symptom,
-    dt_s: float,
-    friction: float | None,
+    mine: pd.DataFrame, own: pd.DataFrame, column: str, dt_s: float, changes: Callable[..., str]
 ) -> Row:
     """Return what a symptom measures by default, and the one setting that helps most."""
-    column = symptom.column
-    base = {name: _preset(mine, name, column) for name in (DEFAULT, BEST, "landing")}
-    values = {"before": base[DEFAULT], "tuned": base[BEST], "landing": base["landing"]}
-    values["before_own"] = _preset(own, DEFAULT, column)
+    values: Row = {
+        "before": _preset(mine, DEFAULT, column),
+        **_tuned(mine, column),
+        "before_own": _preset(own, DEFAULT, column),
+    }
     mends = _helping(mine, column).merge(
         _helping(own, column), on=["factor", "level"], suffixes=("", "_own")
     )
     if mends.empty:
-        return _row(symptom.name, engine, column, **values)
+        return values
     best = mends.iloc[int(mends[column].abs().argmin())]
     factor, level = str(best["factor"]), str(best["level"])
-    changes = partial(patch, engine, factor, level, friction=friction)
-    return _row(
-        symptom.name,
-        engine,
-        column,
+    at = partial(changes, factor, level)
+    return {
         **values,
-        setting=f"{factor}: {level}",
-        formula=by_step(changes),
-        dt_s=dt_s,
-        literal=changes(dt_s),
-        after=float(best[column]),
-        after_own=float(best[f"{column}_own"]),
-    )
+        "setting": f"{factor}: {level}",
+        "formula": by_step(at),
+        "dt_s": dt_s,
+        "literal": at(dt_s),
+        "after": float(best[column]),
+        "after_own": float(best[f"{column}_own"]),
+    }
 
 
 def _helping(mine: pd.DataFrame, column: str) -> pd.DataFrame:
@@ -154,49 +148,44 @@ def _preset(mine: pd.DataFrame, name: str, column: str) -> float:
     return math.nan if found.empty else _value(found.iloc[0], column)
 
 
-def _unmoved(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
-    """Yield what a base that moves by position alone does, and one with its velocity."""
+def _tuned(mine: pd.DataFrame, column: str = "max_error") -> Row:
+    """Return what is left where all is tuned: with equal steps, and with those that land."""
+    return {"tuned": _preset(mine, BEST, column), "landing": _preset(mine, "landing", column)}
+
+
+def _unmoved(mine: pd.DataFrame, engine: str) -> Row:
+    """Return what a base that moves by position alone does, and one with its velocity."""
     asked = mine[mine["factor"] == MOVING_BASE]
-    levels = {str(line["level"]): line for _, line in asked.iterrows()}
-    factors = [factor for factor in ENGINES[engine].factors if factor.name == MOVING_BASE]
-    names = [level.name for factor in factors for level in (factor.levels[0], factor.levels[-1])]
-    if names and set(names) <= set(levels):
-        right, wrong = (levels[name] for name in names)
-        yield _row(
-            UNMOVED,
-            engine,
-            "max_error",
-            shown_by=f"{MOVING_BASE}: {names[1]}",
-            before=_value(wrong),
-            setting=f"{MOVING_BASE}: {names[0]}",
-            after=_value(right),
-            tuned=_preset(mine, BEST, "max_error"),
-            landing=_preset(mine, "landing", "max_error"),
-        )
-
-
-def _hull(mine: pd.DataFrame, engine: str) -> Iterator[Row]:
-    """Yield the largest error of a hull, and of the box of the defaults."""
-    hulls = {
-        level.name
-        for factor in ENGINES[engine].factors
-        for level in factor.levels
-        if level.settings.get("geometry") == "hull"
+    found = {str(line["level"]): _value(line) for _, line in asked.iterrows()}
+    levels = [f.levels for f in ENGINES[engine].factors if f.name == MOVING_BASE]
+    names = [level.name for all_ in levels for level in (all_[0], all_[-1])]
+    if not names or not set(names) <= set(found):
+        return {}
+    right, wrong = names
+    return {
+        "shown_by": f"{MOVING_BASE}: {wrong}",
+        "before": found[wrong],
+        "setting": f"{MOVING_BASE}: {right}",
+        "after": found[right],
+        **_tuned(mine),
     }
+
+
+def _hull(mine: pd.DataFrame, engine: str) -> Row:
+    """Return the largest error of a hull, and of the box of the defaults."""
+    levels = [level for factor in ENGINES[engine].factors for level in factor.levels]
+    hulls = [level.name for level in levels if level.settings.get("geometry") == "hull"]
     found = mine[(mine["preset"] == DEFAULT) & mine["level"].isin(hulls)]
-    if len(found):
-        worst = found.iloc[int(found["max_error"].argmax())]
-        yield _row(
-            HULL,
-            engine,
-            "max_error",
-            shown_by=f"the library's defaults, {worst['level']}",
-            before=_value(worst),
-            setting="a box instead",
-            after=_preset(mine, DEFAULT, "max_error"),
-            tuned=_preset(mine, BEST, "max_error"),
-            landing=_preset(mine, "landing", "max_error"),
-        )
+    if found.empty:
+        return {}
+    worst = found.iloc[int(found["max_error"].argmax())]
+    return {
+        "shown_by": f"the library's defaults, {worst['level']}",
+        "before": _value(worst),
+        "setting": "a box instead",
+        "after": _preset(mine, DEFAULT, "max_error"),
+        **_tuned(mine),
+    }
 
 
 def _value(line: pd.Series[Any], column: str = "max_error") -> float:
@@ -204,44 +193,34 @@ def _value(line: pd.Series[Any], column: str = "max_error") -> float:
     return math.inf if line["failed"] else float(line[column])
 
 
-def _stepped(ladder: pd.DataFrame, engine: str) -> Iterator[Row]:
-    """Yield the largest error that is left at the finest step of each preset."""
-    left = {}
-    for preset in ENGINES[engine].presets:
-        mine = ladder[
-            (ladder["method"] == f"{engine} {preset.name}") & (ladder["set"] == "typical")
-        ]
-        if len(mine):
-            finest = mine.iloc[int(mine["value"].argmin())]
-            left[preset.name] = float(finest["max_error"])
-    if DEFAULT in left and BEST in left:
-        yield _row(
-            STEP,
-            engine,
-            "max_error",
-            before=left[DEFAULT],
-            shown_by="the library's defaults at the finest step",
-            setting="a tuned contact at the same step",
-            after=left[BEST],
-            tuned=left[BEST],
-            landing=left.get("landing", math.nan),
-        )
+def _stepped(ladder: pd.DataFrame, engine: str) -> Row:
+    """Return the largest error that is left at the finest step of each preset."""
+    typical = ladder[ladder["set"] == "typical"].sort_values("value").drop_duplicates("method")
+    left = typical.set_index("method")["max_error"]
+    before, after, landing = (
+        float(left.get(f"{engine} {preset}", math.nan)) for preset in (DEFAULT, BEST, "landing")
+    )
+    if math.isnan(before) or math.isnan(after):
+        return {}
+    return {
+        "shown_by": "the library's defaults at the finest step",
+        "before": before,
+        "setting": "a tuned contact at the same step",
+        **{"after": after, "tuned": after, "landing": landing},
+    }
 
 
-def _bouncing(bounces: pd.DataFrame, engine: str, dt_s: float) -> Iterator[Row]:
-    """Yield how far off a coefficient comes out, asked in the first way and in the best."""
-    mine = bounces[bounces["engine"] == engine]
-    if len(mine):
-        first, best = mine.iloc[0], mine.iloc[int(mine["off_over_all"].argmin())]
-        yield _row(
-            BOUNCE,
-            engine,
-            "off_over_all",
-            shown_by=f'"{first["way"]}"',
-            before=float(first["off_over_all"]),
-            setting=f'"{best["way"]}"',
-            formula=f"for {QUOTED_E:g}: {best['literal']}",
-            dt_s=dt_s,
-            literal=f"for {QUOTED_E:g}: {at_step(best['literal'], dt_s)}",
-            after=float(best["off_over_all"]),
-        )
+def _bouncing(ways: pd.DataFrame, dt_s: float) -> Row:
+    """Return how far off a coefficient comes out, asked in the first way and in the best."""
+    if ways.empty:
+        return {}
+    first, best = ways.iloc[0], ways.iloc[int(ways["off_over_all"].argmin())]
+    return {
+        "shown_by": f'"{first["way"]}"',
+        "before": float(first["off_over_all"]),
+        "setting": f'"{best["way"]}"',
+        "formula": f"for {QUOTED_E:g}: {best['literal']}",
+        "dt_s": dt_s,
+        "literal": f"for {QUOTED_E:g}: {at_step(best['literal'], dt_s)}",
+        "after": float(best["off_over_all"]),
+    }

@@ -12,22 +12,21 @@ class Symptom:
     name : str
         In a user's words.
     column : str
-        Of variants.csv: what measures it, by its size; the smaller the better.
+        What measures it, by its size; the smaller the better.
     threads : tuple of str
         Threads of trackers in which it is asked.
+    study : str
+        Which has measured it.
     """
 
     name: str
-    column: str
+    column: str = "max_error"
     threads: tuple[str, ...]
+    study: str = "contact"
 
 
-SYMPTOMS = (
-    Symptom(
-        name="it tips too early or too late",
-        column="max_error",
-        threads=("bullet3 #1485",),
-    ),
+MEASURED = (
+    Symptom(name="it tips too early or too late", threads=("bullet3 #1485",)),
     Symptom(
         name="it bounces, or loses nothing, at an impact without restitution",
         column="newton_e",
@@ -47,18 +46,19 @@ SYMPTOMS = (
 )
 """What is measured of every way to set an engine."""
 
-UNMOVED = "a moved base carries nothing"
-HULL = "a hull behaves unlike a box"
-STEP = "the step changes the answer"
-BOUNCE = "a coefficient of restitution does nothing, or too much"
+UNMOVED = Symptom(name="a moved base carries nothing", threads=("bullet3 #1204",))
+HULL = Symptom(name="a hull behaves unlike a box", threads=("bullet3 #4341",))
+STEP = Symptom(
+    name="the step changes the answer",
+    threads=("mujoco #1240", "mujoco #954"),
+    study="precision",
+)
+BOUNCE = Symptom(
+    name="a coefficient of restitution does nothing, or too much",
+    column="off_over_all",
+    threads=("bullet3 #3094", "bullet3 #1530", "mujoco #2080", "mujoco #1124"),
+    study="restitution",
+)
 
-THREADS = {
-    UNMOVED: ("bullet3 #1204",),
-    HULL: ("bullet3 #4341",),
-    STEP: ("mujoco #1240", "mujoco #954"),
-    BOUNCE: ("bullet3 #3094", "bullet3 #1530", "mujoco #2080", "mujoco #1124"),
-}
-"""What is measured by two settings that are held against each other."""
-
-STUDIES = {STEP: "precision", BOUNCE: "restitution"}
-"""What another study than that of contacts has measured."""
+SYMPTOMS = (*MEASURED, UNMOVED, HULL, STEP, BOUNCE)
+"""All of them; the last four are measured by two settings that are held against each other."""

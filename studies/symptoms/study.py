@@ -8,8 +8,7 @@ from typing import Annotated
 import pandas as pd
 
 from engines import ENGINES
-from studies.drawing.kept import Pictures
-from studies.kit import provenance
+from studies.drawing.kept import Pictures, keep
 from studies.kit.arguments import (
     BadInputError,
     NotNegative,
@@ -19,11 +18,10 @@ from studies.kit.arguments import (
     check_engines,
     several_or_none,
 )
-from studies.kit.digests import check
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import read_table
-from studies.measures.published import PUBLISHED
+from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
 from studies.symptoms import STUDY
@@ -49,7 +47,8 @@ def command(
     Parameters
     ----------
     engines
-        Names of engines, without a preset; by default all in the published tables.
+        Names of engines, without a preset; by default all in the published tables. Of one alone
+        what its settings change is written out.
     published
         Folder of the published tables; by default those that come with this project.
     dt
@@ -61,11 +60,7 @@ def command(
         Folder for a table and a figure; none by default.
     """
     check_written(dt)
-    tables = published or PUBLISHED
-    for name in TABLES:
-        if not (tables / name).is_file():
-            raise BadInputError(f"--published is {str(tables)!r}; it must hold {name}")
-    check(tables, TABLES, "--published")
+    tables = published_in(published, TABLES)
     asked = tuple(ENGINES) if engines is None else engines
     check_engines(asked)
     with as_bad_input():
@@ -79,18 +74,12 @@ def command(
         print(text)
         return 0
     settings = {"engines": list(lines["engine"].unique()), "dt": dt}
-    if friction is not None:
-        settings["friction"] = friction
+    settings |= {} if friction is None else {"friction": friction}
     plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
 
-    def report(folder: Path) -> str:
-        from studies.drawing.figures import save_all
-
-        provenance.write_text(folder / "findings.txt", text + "\n")
-        save_all(pictures(folder), folder)
-        return text
-
-    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, report)
+    return carry_out(
+        STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(folder, pictures(folder), text)
+    )
 
 
 def _read(folder: Path) -> pd.DataFrame:

@@ -2,81 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from textwrap import fill, indent
 from typing import Any
 
 import pandas as pd
 
+from studies.drawing.kept import WIDTH, as_text
 from studies.measures.columns import column_of
-from studies.measures.differences import scientific
 from studies.measures.words import listed, part
+from studies.symptoms.lines import NUMBERS
 from studies.symptoms.patch import BLOCK, named
-
-LINES: dict[str, Any] = {
-    **{"width": 99, "initial_indent": "  ", "subsequent_indent": "    "},
-    **{"break_long_words": False, "break_on_hyphens": False},
-}
-"""How a line of the page is broken: no number in two."""
 
 SHORT = 60
 """Letters up to which a sentence quotes what a setting is in the library's words."""
 
-HOW = fill(
+SHOWN = ("engine", "shown_by", "setting", *NUMBERS)
+"""Columns of a symptom's table."""
+
+HELPS = (
+    "A setting helps if it halves what there is, at the p dt of all and at the library's own step; "
+    "inf: cases fail."
+)
+"""How the tables are read."""
+
+ASK = "What the settings change in a script, line by line: rocking symptoms --engines"
+"""Where what is written out for one engine is asked, before its name."""
+
+CHANGES = (
     "A setting is what changes in the script that `rocking export` writes of the defaults: below "
     "the name of a file, lines that go (-) and lines that come (+), after those that stay. They "
     f"are those of a block of {BLOCK.width:g} by {BLOCK.height:g} m. DT is the step in seconds; "
-    "what follows it is given as a formula, then at a step. A setting helps if it halves what "
-    "there is, at the p dt of all and at the library's own step.",
-    width=99,
+    "what follows it is given as a formula, then at a step."
 )
-"""How the page is read."""
-
-
-NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
-"""Columns that a line of the page says."""
+"""How what is written out for one engine is read."""
 
 
 def page(lines: pd.DataFrame) -> str:
-    """Return the page: a paragraph for each symptom, a line for each engine."""
-    parts = [HOW]
-    for symptom, group in lines.groupby("symptom", sort=False):
-        head = f"{symptom} ({_measure(str(group.iloc[0]['measure']))})"
-        asked = f"  asked in {group.iloc[0]['asked_in']}"
-        parts.append("\n".join([head, asked, *map(_line, group.to_dict("records"))]))
-    return "\n\n".join(parts)
+    """Return the page: a table for each symptom; of one engine also what its settings change."""
+    tables = {
+        _title(symptom, group.iloc[0]): group[list(SHOWN)].dropna(axis=1, how="all")
+        for symptom, group in lines.groupby("symptom", sort=False)
+    }
+    engines = lines["engine"].unique()
+    alone = len(engines) == 1
+    changes = [fill(CHANGES, WIDTH), *_changes(lines)] if alone else [f"{ASK} {engines[0]}"]
+    return "\n\n".join([as_text(first_claim(lines), tables), fill(HELPS, WIDTH), *changes])
 
 
-def _measure(column: str) -> str:
-    return column_of("", column)[-1].partition(";")[0].replace("|", "∣")
+def _title(symptom: object, line: pd.Series[Any]) -> str:
+    meaning = column_of("", line["measure"])[-1].partition(";")[0].replace("|", "∣")
+    return fill(f"{symptom} ({meaning}; asked in {line['asked_in']})", WIDTH)
 
 
-def _line(row: Mapping[Any, Any]) -> str:
-    number = {name: float(str(row[name])) for name in NUMBERS}
-    known = {name for name in NUMBERS if number[name] == number[name]}
-    words = f"{row['engine']}: {_number(number['before'])} with {row['shown_by']}"
-    if row["setting"]:
-        words += f"; {_number(number['after'])} with {row['setting']}"
-    elif number["before"]:
-        words += "; no single setting halves it"
-    rest = [f"{_number(number[name])} {name}" for name in ("tuned", "landing") if name in known]
-    parts = [words, listed(rest)] if rest else [words]
-    if "before_own" in known:
-        parts.append(f"at the library's own step {_number(number['before_own'])}")
-        if "after_own" in known:
-            parts[-1] += f" and {_number(number['after_own'])} with it"
-    lines = [fill("; ".join(parts), **LINES)]
-    for changes in dict.fromkeys((str(row["formula"]), str(row["literal"]))):
-        if changes:
-            at = "" if changes == row["formula"] else f"at DT = {float(str(row['dt_s'])):.6g} s\n"
-            lines.append(indent(at + changes, "      "))
-    return "\n".join([*lines, f"    {row['command']}"])
-
-
-def _number(value: float) -> str:
-    if value == float("inf"):
-        return "cases that fail"
-    return scientific(value)
+def _changes(lines: pd.DataFrame) -> Iterator[str]:
+    """Yield what each setting changes, as a formula of the step and at a step; each once."""
+    for _, row in lines[lines["formula"] != ""].drop_duplicates("formula").iterrows():
+        alike = ", ".join(lines.loc[lines["formula"] == row["formula"], "symptom"])
+        parts = [f"{row['setting']} ({alike}):", indent(row["formula"], "  ")]
+        if row["literal"] != row["formula"]:
+            parts += [f"at DT = {row['dt_s']:.6g} s:", indent(row["literal"], "  ")]
+        yield "\n".join(parts)
 
 
 def first_claim(lines: pd.DataFrame) -> str:

@@ -24,8 +24,9 @@ from studies.measures.claims import (
 from studies.overturning import report as overturning
 from studies.overturning.areas import with_verdicts
 from studies.precision import report as precision
-from studies.precision.choices import cheapest_below, choices
+from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
 from studies.stability import findings as stability
+from studies.stability.report import mended, peers
 from studies.validate import claims as validate
 from studies.validity import report as validity
 
@@ -65,13 +66,13 @@ KINDS = ("typical", "near overturning")
 
 
 def test_a_target_on_typical_cases_is_not_one_on_all():
-    last = choices(precision_table())[-1]
-    assert last.target == 1e-4
-    assert (last.typical.value, last.everywhere.value) == (0.02, 0.005)
-    assert last.typical.over_exact == pytest.approx(200.0)
+    found = choices(precision_table())
+    typical, everywhere = (found[1e-4, cases] for cases in (TYPICAL, ALL))
+    assert (typical["value"], everywhere["value"]) == (0.02, 0.005)
+    assert typical["over_exact"] == pytest.approx(200.0)
     # both sets of the cheapest setting for all, over the exact solution on both
-    assert last.everywhere.over_exact == pytest.approx(750.0)
-    assert last.typical.near_error == 1e-3
+    assert everywhere["over_exact"] == pytest.approx(750.0)
+    assert typical["near_error"] == 1e-3
     text = precision.first_claim(precision_table())
     assert "200 times that on typical cases" in text
     assert "and 750 times that with those near overturning" in text
@@ -90,7 +91,8 @@ def test_each_cost_says_who_takes_the_steps():
     rows = [work("pymunk landing", 0.02, kind, 5e-5, 9e-5, 1e-2) for kind in KINDS]
     marked = pd.DataFrame(rows).assign(runs=2)
     table = pd.concat([precision_table(), marked], ignore_index=True)
-    assert choices(table, "python")[-1].typical.setting == "pymunk landing at p dt = 0.02"
+    found = choices(table, "python")
+    assert found[1e-4, TYPICAL]["setting"] == "pymunk landing at p dt = 0.02"
     assert "stepped by a compiled loop" in precision.first_claim(table)
 
 
@@ -212,8 +214,12 @@ def test_the_reference_stands_beside_independent_integrators():
     ]
     rest = {"case": "a", "remedy": "", "failure": "", "invalid": "", "friction": 1.0}
     table = pd.DataFrame(rows).assign(error=[2e-7, math.nan], slip_widths=0.0, **rest)
-    text = stability.findings(table)
-    assert "radau and dop853 have the same outcome in 1 of 2 runs, and peaks within 1.0e-07" in text
+    found = peers(table).set_index("source")
+    assert found[["runs", "same"]].to_numpy().tolist() == [[1, 1], [1, 0]]
+    assert found.loc["radau", "off"] == pytest.approx(1e-7, rel=1e-6)
+    counts = mended(table.assign(remedy="another step", failure="THROWN")).to_dict("records")
+    assert counts == [{"verdict": "fall_wrong", "failures": 1, "unbounded": 1, "mended": 1}]
+    assert mended(table)[["unbounded", "mended"]].to_numpy().tolist() == [[0, 0]]
 
 
 def test_the_census_counts_what_was_left_out():

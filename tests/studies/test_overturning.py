@@ -12,11 +12,12 @@ from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
 from studies.cases.window import AXES, LIMITS, Window
-from studies.overturning.areas import modes_at, read
+from studies.measures.published import PUBLISHED
+from studies.overturning.areas import modes_at, read, window_of
 from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
-from studies.overturning.report import model_differences
+from studies.overturning.report import apart, beside_edges, differences, edges, modes, shifts
 from studies.overturning.study import mapped
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -115,7 +116,7 @@ def test_intervals_cover_each_column_and_repeat_the_grid():
 
 def test_areas_of_difference_are_those_of_a_fine_grid():
     areas = pd.concat([mapped(WINDOW, name)[1] for name in ("exact", "housner")])
-    (row,) = model_differences(areas, WINDOW)
+    (row,) = differences(areas, pd.DataFrame(), WINDOW).to_dict("records")
     x, onsets = WINDOW.centres(12), WINDOW.amplitudes(8_000)
     exact, housner = (WINDOW.modes(x[:, None], onsets, m).mode for m in ("exact", "housner"))
     # a cell on either side of each of some 100 edges of 12 columns
@@ -145,6 +146,31 @@ def test_checks_hold():
     assert (table["found"] < table["expected"])[housner].all()
     # a pulse of ω/p = 1e5 acts in a time of order 1e-5/p
     assert (apart[~criterion & ~housner] < 3e-5).all()
+
+
+def test_what_is_told_is_counted_from_the_published_tables():
+    folder = PUBLISHED / "overturning"
+    areas, boundaries = read(folder, "map"), read(folder, "boundaries")
+    parts = modes(areas, window_of(folder)).set_index("model")
+    np.testing.assert_allclose(parts.sum(axis=1), 1.0, rtol=1e-12)
+    told = edges(boundaries, ["exact"]).iloc[0]
+    assert told["edges"] == told[["grid", "mode", "margin"]].sum()
+    assert told["edges"] == (boundaries["model"] == "exact").sum()
+    cases, thresholds = read(folder, "edges"), read(folder, "thresholds")
+    beside = beside_edges(cases).set_index("source")
+    mine = cases[(cases["source"] == "dart:naive") & (cases["offset"].abs() == 1e-3)]
+    rises = mine["overturns"].eq("above") == mine["offset"].gt(0.0)
+    assert beside.loc["dart:naive", "0.001"] == (mine["outcome"].eq("overturned") == rises).mean()
+    found = shifts(thresholds).set_index("source").loc["dart:naive"]
+    own = thresholds.loc[thresholds["source"] == "dart:naive", "shift"]
+    assert (found["asked"], found["found"]) == (len(own), own.notna().sum())
+    assert found["largest"] == own.abs().max()
+    assert apart(read(folder, "checks"))["thresholds"].tolist() == [24, 4, 1]
+    pd.testing.assert_frame_equal(
+        differences(areas, read(folder, "engines"), window_of(folder)),
+        read(folder, "differences"),
+        check_dtype=False,
+    )
 
 
 @pytest.mark.parametrize("over", AXES)
@@ -193,7 +219,7 @@ def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
 def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "20"]
     assert run([*arguments, "--pulse", "half-sine", "--sources", "exact"]) == 0
-    assert "no other source" in capsys.readouterr().out
+    assert "The exact map stands alone" in capsys.readouterr().out
     assert (tmp_path / "map.png").exists()
     assert not (tmp_path / "differences.png").exists()
 
@@ -204,9 +230,9 @@ def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
 def test_a_map_on_which_nothing_overturns(window, tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "12", *window]
     assert run([*arguments, "--quick", "--sources", "exact", "housner"]) == 0
-    text = capsys.readouterr().out
-    assert "  exact: none" in text
-    assert "  housner: none" in text
+    found = edges(read(tmp_path, "boundaries"), ["exact", "housner"])
+    assert found[["model", "edges"]].to_numpy().tolist() == [["exact", 0], ["housner", 0]]
+    assert "Edges of each model" in capsys.readouterr().out
     assert (tmp_path / "map.png").exists()
 
 

@@ -9,7 +9,6 @@ import pytest
 
 from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
-from studies.__main__ import run
 from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
 from studies.kit.options import Running
 from studies.kit.plan import fill
@@ -296,19 +295,3 @@ def test_a_folder_holds_its_tables_figure_and_findings_and_goes_on(tmp_path):
     assert set(matrix.loc[matrix["source"] == "housner", "verdict"]) != {"good"}
     assert (tmp_path / "findings.txt").read_text() == report(tmp_path) + "\n"
     assert (tmp_path / "stability.png").stat().st_size > 4_000
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--time-limit", "0"], "positive finite"),
-        (["--jobs", "0"], "positive whole"),
-        (["--sources", "nonsense"], "mujoco"),
-    ],
-)
-def test_bad_input_is_one_line(tmp_path, capsys, arguments, words):
-    assert run(["stability", "--out", str(tmp_path / "new"), *arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
-    assert not (tmp_path / "new").exists()

@@ -132,7 +132,7 @@ BAD = [
     *(([*ask, "--friction", text], f"--friction is '{text}'; it must be a finite number, 0 or more")
       for ask in (ADVISE, SYMPTOMS, ESTIMATE) for text in ("-1", *NUMBERS[2:])),
     *(([*ask, "--dt", text], f"--dt is {float(text):g}; it must be from 1e-06 to 1 s")
-      for ask in (ADVISE, SYMPTOMS) for text in ("2", "1e-9")),
+      for ask in (ADVISE, SYMPTOMS) for text in ("2", "1e-9", "1e300", "1e-300")),
     ([*ADVISE, "--dt", "0.002", "--error", "0.1"], "--error is 0.1; it may be given only without"),
     ([*ADVISE, "--dt", "0.002", "--out", "DIR"], "--out is DIR; it may be given only without --dt"),
     (["advise", "--engine", "pybullet", "--friction", "99"], "friction is 99.0; it must be from 0"),
