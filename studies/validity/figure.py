@@ -42,12 +42,11 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     """
     sources = list(beside["source"].unique())
     own = beside[beside["friction_factor"].isna()]
-    drawing, by_aspect = _panels(table["aspect"], 3.8)
+    names = ("frequency  ω/p  [–]", "amplitude  $a_p$ / (g tan α)  [–]")
+    drawing, by_aspect = _panels(table["aspect"], 3.8, *names)
     for aspect, axes in by_aspect.items():
         _map(axes, table[table["aspect"] == aspect])
         _verdicts(axes, own[own["aspect"] == aspect], sources)
-    drawing.supxlabel("frequency  ω/p  [–]", fontsize=10)
-    drawing.supylabel("amplitude  $a_p$ / (g tan α)  [–]", fontsize=10)
     drawing.suptitle(
         "Full-sine pulses: where the reference holds, and what engines do", fontsize=11
     )
@@ -65,12 +64,16 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _panels(aspects: pd.Series[float], height: float) -> tuple[Figure, dict[float, Axes]]:
-    """Return a figure with a panel for each H/B, two in a row, of a height [in]."""
+def _panels(
+    aspects: pd.Series[float], height: float, along: str, up: str
+) -> tuple[Figure, dict[float, Axes]]:
+    """Return a figure with a panel for each H/B, two in a row, of a height [in] and two axes."""
     each = sorted(aspects.unique())
     drawing, grid = panels(len(each), 2, (4.3, height), sharex=True, sharey=True)
     for axes, aspect in zip(grid, each, strict=True):
         axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+        axes.set(xlabel=along, ylabel=up)
+        axes.label_outer()
     return drawing, dict(zip(each, grid, strict=True))
 
 
@@ -92,11 +95,10 @@ def draw_friction(beside: pd.DataFrame) -> Figure:
     """
     sources = list(beside["source"].unique())
     rows = beside[beside["friction_factor"].notna()]
-    drawing, by_aspect = _panels(beside["aspect"], 3.2)
+    names = ("friction / friction needed  [–]", "slide of the pivot over B  [–]")
+    drawing, by_aspect = _panels(beside["aspect"], 3.2, *names)
     for aspect, axes in by_aspect.items():
         _slips(axes, rows[rows["aspect"] == aspect], sources)
-    drawing.supxlabel("friction / friction needed  [–]", fontsize=10)
-    drawing.supylabel("slide of the pivot over B  [–]", fontsize=10)
     drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
     handles = [
         Line2D([], [], **style_of(name).points(6.0), label=name_of(name)) for name in sources
