@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -14,8 +15,16 @@ from analytic.block import RigidBlock
 from analytic.motion import Delayed, SinePulse
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import findings, first_claim, rest_claim, rests, shares, with_verdicts
-from studies.drawing.kept import Pictures, keep
+from studies.defaults.claims import (
+    CLOSE,
+    first_claim,
+    rest_claim,
+    rests,
+    shares,
+    similarity,
+    with_verdicts,
+)
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -78,15 +87,15 @@ def plan(sources: Sequence[str], frame: str | None, quick: bool) -> Plan:
 def grid_jobs(sources: Sequence[str], frame: str | None, quick: bool) -> list[Job]:
     """Return a job for each pulse, block and source."""
     every = QUICK_EVERY if quick else 1
-    return [
-        _job(pulse, aspect, width_m, onsets, ratio, source, frame)
-        for pulse in (QUICK_PULSES if quick else PULSES)
-        for aspect in (QUICK_ASPECTS if quick else ASPECTS)
-        for width_m in WIDTHS_M
-        for onsets in ONSETS[::every]
-        for ratio in RATIOS[::every]
-        for source in sources
-    ]
+    posed = product(
+        QUICK_PULSES if quick else PULSES,
+        QUICK_ASPECTS if quick else ASPECTS,
+        WIDTHS_M,
+        ONSETS[::every],
+        RATIOS[::every],
+        sources,
+    )
+    return [_job(*case, frame) for case in posed]
 
 
 def _job(
@@ -128,9 +137,17 @@ def rest_s_of(onsets: float, ratio: float) -> float:
 def report(folder: Path) -> str:
     """Reduce and draw a folder's defaults.csv; return the findings as text."""
     rows = read(folder)
-    write_table(folder / "parts.csv", shares(rows))
-    write_table(folder / "rests.csv", rests(rows))
-    return keep(folder, pictures(folder), findings(shares(rows), rows))
+    parts, rested = shares(rows), rests(rows)
+    write_table(folder / "parts.csv", parts)
+    write_table(folder / "rests.csv", rested)
+    tables = {
+        "Pulses by the width of the block": parts,
+        "Pulses by the rest before them": rested,
+        f"Part of the pulses in which two widths differ in outcome or by {CLOSE:g}": similarity(
+            rows
+        ),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path) -> pd.DataFrame:
