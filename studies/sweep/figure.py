@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from studies.drawing.facets import error_scale
 from studies.drawing.labels import Name, beside, breadth
 from studies.drawing.styles import Style, line_of, name_of, style_of
 
@@ -16,8 +17,6 @@ TOP, ROW = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors."""
-MARKS = {1e-8: "10⁻⁸", 1e-6: "10⁻⁶", 1e-4: "10⁻⁴", 1e-2: "10⁻²", 1.0: "1"}
-"""What stands along it."""
 
 WIDTH, HEIGHT = 9.4, 6.6
 """Of a figure [in]."""
@@ -51,7 +50,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
                    ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
     grid[1, 0].set(yscale="log", ylim=(LEAST, MOST), ylabel="relative error of it  [–]")
-    grid[1, 0].set_yticks(list(MARKS), list(MARKS.values()))
+    error_scale(grid[1, 0].yaxis, LEAST, MOST)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
     _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
@@ -109,16 +108,9 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
     for number, source in enumerate(sources):
         style = style_of(source)
         points = panel[panel["source"] == source]
-        if style.line:
-            axes.plot(
-                points["x"],
-                points["survived"],
-                style.line,
-                color=style.colour,
-                linewidth=style.width,
-            )
-        else:
-            axes.plot(points["x"], points["survived"], **style.points(4.0), zorder=4)
+        line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
+        look = line if style.line else {**style.points(4.0), "zorder": 4}
+        axes.plot(points["x"], points["survived"], **look)
         _beyond_the_scale(axes, points[points["survived"] > TOP], style)
         for outcome, level, mark, size in (
             (OVERTURNED, _level(number), "s", 2.6),

@@ -122,10 +122,10 @@ def test_similarity_is_seen_to_be_kept_and_to_be_broken(exact):
     assert said(made_up(exact)) == {"exact": 0.0, "mujoco:naive": 0.0}
     large = (exact["width_m"] == study.WIDTHS_M[-1]) & (exact["outcome"] == "rocked")
     grown = exact["peak_ratio"].where(~large, 2.0 * exact["peak_ratio"])
-    rocked = (with_verdicts(exact)["verdict"] == RIGHT[0]).sum()
-    judged = (with_verdicts(exact)["verdict"] != INVALID).sum()
+    judged = verdicts(exact, made_up(exact)).query("verdict != @INVALID")
+    rocked = (judged["verdict"] == RIGHT[0]).mean()
     found = said(made_up(exact, peak_ratio=grown))
-    assert found == {"exact": 0.0, "mujoco:naive": pytest.approx(rocked / judged)}
+    assert found == {"exact": 0.0, "mujoco:naive": pytest.approx(rocked)}
 
 
 def test_a_map_shows_every_case_of_a_width(exact):
@@ -144,7 +144,7 @@ def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
     assert code == 0
     rows = pd.read_csv(out / "defaults.csv")
     assert list(rows["source"].unique()) == ["exact", "pybullet:naive"]
-    assert study.headline(out) in capsys.readouterr().out
+    assert study.headline(out) in " ".join(capsys.readouterr().out.split())
     assert study.headline(out).startswith("As documented, outcome and peak (within 10 %)")
     assert set(study.pictures(out)) == {"small", "large"}
 
