@@ -69,20 +69,14 @@ def doubts(rows: pd.DataFrame) -> list[str]:
     return [f"{int(where.sum())} of {len(cases)} {what}" for what, where in words.items()]
 
 
-def command_of(line: pd.Series[Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:
+def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:
     """Return the command that compares the sources on a case of the list."""
-    values = {
-        "width": float(line["width_m"]),
-        "height": float(line["height_m"]),
-        "record": shlex.quote(str(line["record"])),
-        "scale": float(line["scale"]),
-        "tilt": float(line["tilt"]),
-        "friction": float(line["friction"]) if any(resolve(n).engine for n in sources) else "",
-        **settings,
-    }
-    said = " ".join(f"--{name} {value}" for name, value in values.items() if _given(value))
-    return f"rocking compare {said} --sources {' '.join(sources)}"
-
-
-def _given(value: float | str) -> bool:
-    return bool(value) if isinstance(value, str) else not math.isnan(value)
+    engines = any(resolve(name).engine for name in sources)
+    asked = ("width", "width_m"), ("height", "height_m"), ("scale", "scale"), ("tilt", "tilt")
+    values = {name: line[column] for name, column in asked}
+    values["friction"] = line["friction"] if engines else math.nan
+    known = {name: value for name, value in values.items() if not math.isnan(value)}
+    known |= {name: word for name, word in settings.items() if word}
+    said = " ".join(f"--{name} {value}" for name, value in known.items())
+    record = shlex.quote(str(line["record"]))
+    return f"rocking compare {said} --record {record} --sources {' '.join(sources)}"

@@ -20,7 +20,7 @@ LEAST, MOST = 1e-8, 1e1
 
 WIDTH, HEIGHT = 9.4, 6.6
 """Of a figure [in]."""
-LEFT, BOTTOM, ABOVE = 0.67, 0.47, 0.47
+LEFT, BOTTOM, ABOVE = 0.79, 0.47, 0.47
 """What the words around the panels need [in]."""
 BETWEEN = 0.15
 """From one panel to the next [in]."""
