@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.blocks.ranking import first_words, ranked
+from studies.blocks.report import first_words, ranked
 from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS
 
 MOST_DRAWN = 60

@@ -56,15 +56,21 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(error=np.where(both_rocked, error, np.nan), verdict=verdict)
 
 
-def friction_needed(case: pd.Series[float]) -> float:
-    """Return the friction without which the block would slide; inf if it would lift off."""
-    block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
-    pulse = SinePulse(
-        amplitude=case["onsets"] * math.tan(block.alpha) * block.gravity,
-        omega=case["omega_over_p"] * block.p,
-        half_cycles=PULSES[str(case["pulse"])],
+def posed(
+    pulse: str, aspect: float, width_m: float, onsets: float, omega_over_p: float
+) -> tuple[RigidBlock, SinePulse]:
+    """Return the block and the pulse of a case, whose amplitude is so many times g tan α."""
+    block = RigidBlock(width=width_m, height=aspect * width_m)
+    return block, SinePulse(
+        amplitude=onsets * math.tan(block.alpha) * block.gravity,
+        omega=omega_over_p * block.p,
+        half_cycles=PULSES[pulse],
     )
-    found = simulate(block, pulse)
+
+
+def friction_needed(case: pd.Series[Any]) -> float:
+    """Return the friction without which the block would slide; inf if it would lift off."""
+    found = simulate(*posed(*case[CASE[:-1]]))
     return found.friction_needed if found.min_normal > 0.0 else math.inf
 
 

@@ -78,23 +78,14 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
     codes = rows.assign(code=rows["verdict"].map(names.index)).pivot(
         index="onsets", columns="omega_over_p", values="code"
     )
-    (left, right), (low, high) = (_ends(codes.columns), _ends(codes.index))
-    axes.imshow(
-        codes.to_numpy(),
-        origin="lower",
-        aspect="auto",
-        interpolation="nearest",
-        extent=(left, right, low, high),
+    axes.pcolormesh(
+        codes.columns,
+        codes.index,
+        codes,
+        shading="nearest",
         cmap=ListedColormap(list(COLOURS.values())),
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
     name = title_of(engine_of(str(rows["source"].iloc[0])))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
-
-
-def _ends(centres: pd.Index) -> tuple[float, float]:
-    """Return the ends of an axis of cells with these centres, which are equally far apart."""
-    values = centres.to_numpy(float)
-    half = 0.5 * (values[1] - values[0])
-    return float(values[0] - half), float(values[-1] + half)

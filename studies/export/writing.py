@@ -1,8 +1,6 @@
 """The files of an exported scene, as text."""
 
 import inspect
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -109,17 +107,12 @@ def block_text(what: Exported, script: Script) -> str:
         dt_s=what.preset.ordinary_step_s(what.scene),
         shaken=what.scene.motion.duration,
         watched=what.watched_s,
-        expected=_number(what.expected),
-        exact=_number(what.exact),
+        expected=repr(what.expected).replace("inf", "math.inf"),
+        exact=repr(what.exact).replace("inf", "math.inf"),
         part=script.moment.value,
         velocity=VELOCITIES[script.moment],
         turning=TURNINGS[script.moment],
     )
-
-
-def _number(value: float) -> str:
-    """Return a number as Python."""
-    return "math.inf" if value == math.inf else repr(value)
 
 
 def ground_text(motion: Motion) -> str:
@@ -129,8 +122,3 @@ def ground_text(motion: Motion) -> str:
         f"{inspect.getsource(ground)}\n\n"
         f"SEGMENTS = (\n{rows})\n\nmean_velocity = mean_velocity_of(SEGMENTS)\n"
     )
-
-
-def written_engines(engines: Mapping[str, Engine]) -> list[str]:
-    """Return the names of the engines that write scripts."""
-    return [name for name, engine in engines.items() if engine.script is not None]

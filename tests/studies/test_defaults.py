@@ -132,7 +132,7 @@ def test_a_map_shows_every_case_of_a_width(exact):
     rows = with_verdicts(pd.concat([exact, made_up(exact)], ignore_index=True))
     rows = rows[rows["width_m"] == study.WIDTHS_M[0]]
     drawing = draw_maps(rows)
-    image = drawing.axes[0].get_images()[0].get_array()
+    image = drawing.axes[0].collections[0].get_array()
     assert image.size == (rows["source"] == "mujoco:naive").sum()
     assert drawing.axes[0].get_title() == "MuJoCo: 100 % right"
 
