@@ -139,7 +139,9 @@ def pictures(folder: Path) -> Pictures:
     """Draw the ranking of a folder's blocks from its blocks.csv alone."""
     from studies.blocks.figure import draw_blocks
 
-    return {"blocks": draw_blocks(read(folder))}
+    rows = read(folder)
+    lines = ranked(rows)
+    return {"blocks": draw_blocks(rows, lines, first_words(lines))}
 
 
 def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
