@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import peak_ratios, simulate
+from analytic import simulate
 from studies.cases.drawn import LEAST_NORMAL, draw
 from studies.kit.journal import FolderError
 from studies.kit.options import EffortOptions, Running
@@ -46,20 +46,6 @@ def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
     assert table.loc["kept", "cases"] == len(errors) == 60
     assert table.loc["kept", "overturned"] == (errors["exact_outcome"] == "overturned").sum()
     assert table.loc["drawn", "cases"] == table.loc["kept":, "cases"].sum()
-
-
-def test_condition_number_is_the_derivative():
-    cases = pd.DataFrame(
-        {"aspect": [2.0, 4.0], "amplitude_g": [0.6, 0.3], "omega_over_p": [3.0, 3.5]}
-    ).assign(half_cycles=1)
-    # the same derivative from a polynomial through many amplitudes
-    scales = 1 + 1e-2 * np.polynomial.chebyshev.chebpts1(12)
-    for row, kappa in zip(cases.itertuples(), with_conditioning(cases)["kappa"], strict=True):
-        peaks, _ = peak_ratios(
-            math.atan(1 / row.aspect), row.amplitude_g * scales, row.omega_over_p, 1
-        )
-        fit = np.polynomial.Chebyshev.fit(np.log(scales), np.log(peaks), 11)
-        assert kappa == pytest.approx(fit.deriv()(0.0), rel=1e-6)
 
 
 def test_condition_number_of_a_block_that_overturns_is_no_number():
