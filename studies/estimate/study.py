@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import pandas as pd
 
@@ -150,12 +148,5 @@ def first_claim(table: pd.DataFrame) -> str:
             f"{listed(words)} (of other cases than gave the numbers {tried})"
         ]
     if not blind.empty:
-        words = [f"{line['source']} ({_ends(line)})" for line in blind.to_dict("records")]
-        said += [f"{' it' if said else ''} gives {NO_BOUND} with {listed(words)}"]
+        said += [f"{' it' if said else ''} gives {NO_BOUND} with {listed(list(blind['source']))}"]
     return f"{claim}{';'.join(said)}."
-
-
-def _ends(line: Mapping[Any, Any]) -> str:
-    """Return the interval of a factor that is no bound."""
-    low, high = line["factor_95_low"], line["factor_95_high"]
-    return f"{low:.2g} or more" if math.isinf(high) else f"{low:.2g} to {high:.3g}"

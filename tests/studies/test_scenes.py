@@ -14,7 +14,7 @@ from studies.__main__ import run
 from studies.kit.jobs import ask
 from studies.kit.tables import read_table
 from studies.scenes.cases import RIDE, floors, frames, slides, steps
-from studies.scenes.findings import floor_sentence
+from studies.scenes.findings import floor_sentence, frame_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.study import block_summary, floor_summary, reduce, tabulate
 
@@ -176,6 +176,16 @@ def test_a_floor_carries_by_its_velocity_and_not_by_its_position():
     awake = lines.loc[["pymunk"]].reset_index()
     assert "sleeps" not in floor_sentence(awake)
     assert floor_sentence(awake.iloc[:0]) == ""
+
+
+def test_a_preset_is_as_far_off_as_its_worst_engine():
+    errors = {"box2d:naive": 0.2, "mujoco:naive": 0.5, "mujoco:landing": 1e-5}
+    lines = pd.DataFrame({"source": list(errors), "largest_error": list(errors.values())})
+    assert frame_sentence(lines) == (
+        "The peak of a rocking frame is off by up to 50 % as their documentation shows them and "
+        "1.0e-05 with steps that land on impacts."
+    )
+    assert frame_sentence(lines.iloc[:0]) == ""
 
 
 def test_an_engine_is_held_against_the_floor_that_it_made():
