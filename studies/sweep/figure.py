@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import error_scale
-from studies.drawing.labels import Name, beside, breadth
+from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, line_of, name_of, style_of
 
 OVERTURNED = "overturned"
@@ -17,13 +17,6 @@ TOP, ROW = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors."""
-
-WIDTH, HEIGHT = 9.4, 6.6
-"""Of a figure [in]."""
-LEFT, BOTTOM, ABOVE = 0.79, 0.47, 0.47
-"""What the words around the panels need [in]."""
-BETWEEN = 0.15
-"""From one panel to the next [in]."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
@@ -36,16 +29,14 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     """
     first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
     sources, panels = list(rows["source"].unique()), _by_aspect(rows)
-    # places are given, of panels and titles: to find them takes longer than all that is drawn
-    drawing = Figure(figsize=(WIDTH, HEIGHT))
+    drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
     grid = drawing.subplots(
-        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0),
-        gridspec_kw=_places(len(panels), breadth([*map(name_of, sources)])),
-    )  # fmt: skip
+        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
+    )
     for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
         _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
         _errors(lower, panel, widths[0])
-        upper.set_title(f"H/B = {aspect:g}", fontsize=10, y=1.0)
+        upper.set_title(f"H/B = {aspect:g}", fontsize=10)
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
     grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
                    ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
@@ -56,7 +47,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     title = f"Figure {first['figure']}: {pulse}; {_widths(widths)}"
-    drawing.suptitle(title, fontsize=11, y=0.994)
+    drawing.suptitle(title, fontsize=11)
     return drawing
 
 
@@ -74,27 +65,6 @@ def _by_aspect(rows: pd.DataFrame) -> dict[float, pd.DataFrame]:
     )
     order = rows["omega_over_p"].argsort(kind="stable")
     return dict(list(drawn.iloc[order].groupby(rows["aspect"])))
-
-
-def _places(columns: int, beside_them: float) -> dict[str, float]:
-    """Return where the panels stand, in shares of the figure and of a panel.
-
-    Parameters
-    ----------
-    columns : int
-        How many panels stand beside each other.
-    beside_them : float
-        Width of what stands at the right of the last [in].
-    """
-    right, top = WIDTH - beside_them, HEIGHT - ABOVE
-    return {
-        "left": LEFT / WIDTH,
-        "right": right / WIDTH,
-        "bottom": BOTTOM / HEIGHT,
-        "top": top / HEIGHT,
-        "wspace": columns * BETWEEN / (right - LEFT - (columns - 1) * BETWEEN),
-        "hspace": 2 * BETWEEN / (top - BOTTOM - BETWEEN),
-    }
 
 
 def _widths(widths: Sequence[float]) -> str:
