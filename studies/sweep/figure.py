@@ -28,7 +28,12 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
         Of one figure, from `studies.measures.differences.with_reference`.
     """
     first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
-    sources, panels = list(rows["source"].unique()), _by_aspect(rows)
+    sources = list(rows["source"].unique())
+    drawn = rows.sort_values("omega_over_p", kind="stable").assign(
+        survived=rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
+        error=rows["error"].abs().clip(LEAST, MOST),
+    )
+    panels = dict(list(drawn.groupby("aspect")))
     drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
     grid = drawing.subplots(
         2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
@@ -46,32 +51,10 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
         axes.grid(alpha=0.25)
     _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    title = f"Figure {first['figure']}: {pulse}; {_widths(widths)}"
-    drawing.suptitle(title, fontsize=11)
-    return drawing
-
-
-def _by_aspect(rows: pd.DataFrame) -> dict[float, pd.DataFrame]:
-    """Return what is drawn of the rows, in the order of the frequency, for each H/B."""
-    drawn = pd.DataFrame(
-        {
-            "source": rows["source"],
-            "width_m": rows["width_m"],
-            "x": rows["omega_over_p"],
-            "outcome": rows["outcome"],
-            "survived": rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
-            "error": rows["error"].abs().clip(LEAST, MOST),
-        }
-    )
-    order = rows["omega_over_p"].argsort(kind="stable")
-    return dict(list(drawn.iloc[order].groupby(rows["aspect"])))
-
-
-def _widths(widths: Sequence[float]) -> str:
-    """Say which widths are shown."""
-    first, *others = (f"B = {width_m:g} m" for width_m in widths)
+    narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
     pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
-    return first + pale
+    drawing.suptitle(f"Figure {first['figure']}: {pulse}; {narrowest}{pale}", fontsize=11)
+    return drawing
 
 
 def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
@@ -80,13 +63,13 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
         points = panel[panel["source"] == source]
         line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
         look = line if style.line else {**style.points(4.0), "zorder": 4}
-        axes.plot(points["x"], points["survived"], **look)
+        axes.plot(points["omega_over_p"], points["survived"], **look)
         _beyond_the_scale(axes, points[points["survived"] > TOP], style)
         for outcome, level, mark, size in (
             (OVERTURNED, _level(number), "s", 2.6),
             ("failed", 0.02, "*", 6.0),
         ):
-            x = points.loc[points["outcome"] == outcome, "x"]
+            x = points.loc[points["outcome"] == outcome, "omega_over_p"]
             if len(x):
                 axes.plot(x, [level] * len(x), mark, color=style.colour, markersize=size)
     axes.axhspan(TOP, _level(len(sources) - 0.7), color="#eeeeee", zorder=0)
@@ -102,7 +85,7 @@ def _level(number: float) -> float:
 
 def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
     """Point to survivors above the scale: beyond θcr, and brought back by the ground."""
-    for x, peak in zip(survivors["x"], survivors["survived"], strict=True):
+    for x, peak in zip(survivors["omega_over_p"], survivors["survived"], strict=True):
         axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
         axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
 
@@ -113,7 +96,7 @@ def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
         source = str(name)
         look = {**style_of(source).points(3.0), "linestyle": line_of(source), "linewidth": 0.9}
         pale = {"alpha": 0.3, "zorder": 2} if width_m != narrowest else {"zorder": 3}
-        axes.plot(points["x"], points["error"], **look, **pale)
+        axes.plot(points["omega_over_p"], points["error"], **look, **pale)
 
 
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
@@ -124,7 +107,7 @@ def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequ
         upper, [Name(name_of(s), 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size
     )
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
-    last = known.groupby("source", sort=False)[["x", "error"]].last()
+    last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
     beside(
         lower,
         [Name(name_of(str(s)), x, error, colours[str(s)]) for s, x, error in last.itertuples()],

@@ -29,11 +29,9 @@ def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
 
 def first_claim(table: pd.DataFrame) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
-    rocked = table[table["outcome"] == "rocked"]
     words = [
         f"{f'from {ends:.2g} onsets' if math.isfinite(ends) else 'never'} at H/B {aspect:g}"
-        for aspect, group in rocked.groupby("aspect")
-        for ends in (group.loc[group["min_normal"] < 0.0, "onsets"].min(),)
+        for aspect, ends in needs(table).set_index("aspect")["from_onsets"].items()
     ]
     return f"An engine is right to differ, because the pivot lifts off: {listed(words)}."
 

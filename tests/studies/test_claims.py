@@ -306,6 +306,7 @@ def test_the_reference_never_ends_only_where_no_pivot_lifts():
             "aspect": [1.0, 1.0, 3.0],
             "onsets": [1.2, 1.5, 8.0],
             "min_normal": [0.1, -0.2, 0.3],
+            "friction_needed": 1.0,
         }
     )
     text = validity.first_claim(table)
