@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
@@ -17,18 +18,13 @@ def name_of(line: pd.Series[Any]) -> str:
     return f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
 
 
-def error_words(line: pd.Series[Any]) -> str:
-    """Return the largest error, and how many of all cases are wrong, in few words."""
+def error_words(line: pd.Series[Any], columns: Sequence[str] = ("max_error",)) -> str:
+    """Return the largest or other errors, and how many of all cases are wrong, in few words."""
     if line["failed"] == line["cases"]:
         return "no result"
+    errors = ", ".join(part(line[name]) for name in columns)
     broken = int(line["failed"]) + int(line["wrong"])
-    return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
-
-
-def both_errors(line: pd.Series[Any]) -> str:
-    """Return the median and the largest error in few words, and how many cases are wrong."""
-    words = error_words(line)
-    return words if line["failed"] == line["cases"] else f"{part(line['median_error'])}, {words}"
+    return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
 
 
 def first_claim(lines: pd.DataFrame) -> str:
@@ -77,7 +73,8 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
         other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
         if plain is not None and other is not None:
             pair = (plain, other) if rule.kept else (other, plain)
-            found.append((rule, both_errors(pair[0]), both_errors(pair[1])))
+            without, with_it = (error_words(one, ("median_error", "max_error")) for one in pair)
+            found.append((rule, without, with_it))
     return found
 
 

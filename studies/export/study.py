@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-from analytic.block import RigidBlock
-from analytic.motion import Motion
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from studies.cases.paper import free_rocking_window
@@ -64,8 +62,8 @@ def command(
     options = {**begin, **stepped, **yours.options([source], block)[source]}
     rows = run_jobs(
         [
-            _job("exact", block, motion, window, begin),
-            _job(source, block, motion, window, options),
+            Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)
+            for name, how in (("exact", begin), (source, options))
         ],
         executor=Local(workers=1, time_limit_s=time_limit),
         reduce=summary,
@@ -115,11 +113,3 @@ def _check_folder(out: Path) -> None:
         empty = False
     if not empty:
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
-
-
-def _job(
-    source: str, block: RigidBlock, motion: Motion, window: float, options: dict[str, Any]
-) -> Job:
-    return Job(
-        labels={}, block=block, motion=motion, source=source, duration=window, options=options
-    )

@@ -30,8 +30,8 @@ from studies.validate.claims import bands, census, first_claim, quantiles, worst
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings
 
 S_IS = (
-    "S is the largest of κ and κη, how many times as far as the pulse or an impact a peak moves, "
-    "and of the same of changes by 1e-4 and 1e-6."
+    "S is the largest of κ, κη and the sensitivity: by how many per cent a peak moves for one of "
+    "the pulse, or of the velocity ratio of impacts."
 )
 
 
