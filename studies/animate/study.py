@@ -112,7 +112,8 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
         raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
     check(results, [path.name], "--results")
     try:
-        peaks = _peaks(path)
+        rows = pd.read_csv(path)
+        peaks = rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
         missing = sorted(set(sources) - set(peaks.columns))
         if missing:
             raise ValueError(f"it lacks {', '.join(missing)}")
@@ -126,12 +127,6 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
         words = f"{problem} ({one_line(error)})"
         raise BadInputError(f"--results is {str(results)!r}; {words}") from error
     return case
-
-
-def _peaks(path: Path) -> pd.DataFrame:
-    """Return the peaks of a sweep, a row for each case and a column for each source."""
-    rows = pd.read_csv(path)
-    return rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
 
 
 def _furthest_apart(peaks: pd.DataFrame) -> Case:
@@ -153,6 +148,7 @@ def shown(
     executor: Executor,
 ) -> list[Row]:
     """Run the sources, and return their rows with the rotation [rad] at every time."""
+    begin = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     jobs = [
         Job(
             labels={},
@@ -161,7 +157,7 @@ def shown(
             source=source,
             duration=float(times[-1]),
             times=times,
-            options={} if posed.start == (0.0, 0.0) else {"start": posed.start},
+            options=begin,
         )
         for source in sources
     ]
@@ -173,10 +169,9 @@ def shown(
     for row in rows:
         history = row["history"]
         if history is not None:
-            held = np.interp(times, history.time, history.theta)
-            fallen = row["outcome"] == Outcome.OVERTURNED.value
-            beyond = times > history.time[-1]
-            # a block that is lost from sight when its outcome is decided has fallen
-            held[beyond] = math.copysign(math.pi / 2, held[beyond][0]) if beyond.any() else 0.0
-            row["theta"] = held if fallen else np.interp(times, history.time, history.theta)
+            row["theta"] = np.interp(times, history.time, history.theta)
+            if row["outcome"] == Outcome.OVERTURNED.value:
+                # a block that is lost from sight when its outcome is decided has fallen
+                beyond = times > history.time[-1]
+                row["theta"][beyond] = math.copysign(math.pi / 2, history.theta[-1])
     return rows

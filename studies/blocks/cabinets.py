@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -64,12 +64,24 @@ def read_cabinets(path: Path) -> list[Cabinet]:
         heads, rows = _table(lines)
     except (ValueError, csv.Error) as error:
         raise BadInputError(f"the list is {str(path)!r}; {error}") from error
-    bad: list[Bad] = []
-    cabinets = [cabinet for at, row in rows if (cabinet := _cabinet(at, row, heads, bad))]
-    bad += _repeated(rows, heads)
+    cells = [dict(zip(heads, row, strict=False)) for _, row in rows]
+    names = [each.get("name", "") for each in cells]
+    bad = [
+        problem
+        for place, (at, row) in enumerate(rows)
+        for problem in _problems(at, row, heads, repeated=names[place] in names[:place])
+    ]
     if bad:
         raise BadInputError(f"the list is {str(path)!r}; {_said(bad)}")
-    return cabinets
+    return [
+        Cabinet(
+            name=each["name"],
+            width_m=float(each["width"]),
+            height_m=float(each["height"]),
+            **{name: float(each[name]) for name in ("friction", "tilt") if each.get(name)},
+        )
+        for each in cells
+    ]
 
 
 def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -93,24 +105,14 @@ def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]
     return heads, rows[1:]
 
 
-def _cabinet(at: int, row: list[str], heads: Sequence[str], bad: list[Bad]) -> Cabinet | None:
-    """Return the block of a row; what is wrong with it is noted, and then there is none."""
+def _problems(at: int, row: list[str], heads: Sequence[str], repeated: bool) -> Iterator[Bad]:
+    """Yield what is wrong with a row, and if its name stands in one above."""
     if len(row) != len(heads):
-        bad.append(Bad("the number of values", f"{len(heads)}, one a column", at, str(len(row))))
-        return None
+        yield Bad("the number of values", f"{len(heads)}, one a column", at, str(len(row)))
+        return
     cells = dict(zip(heads, row, strict=True))
-    found = list(_problems(at, cells))
-    bad += found
-    if found:
-        return None
-    values = {name: float(cells[name]) for name in ("friction", "tilt") if cells.get(name)}
-    width_m, height_m = float(cells["width"]), float(cells["height"])
-    return Cabinet(name=cells["name"], width_m=width_m, height_m=height_m, **values)
-
-
-def _problems(at: int, cells: Mapping[str, str]) -> Iterator[Bad]:
-    if not cells["name"]:
-        yield Bad("name", "a word", at, "")
+    if not cells["name"] or repeated:
+        yield Bad("name", "each block's own" if cells["name"] else "a word", at, cells["name"])
     sizes = {name: _number(cells[name]) for name in ("width", "height")}
     for name, size in sizes.items():
         if not LEAST_M <= size <= MOST_M:
@@ -132,13 +134,6 @@ def _number(word: str) -> float:
         return number(word, 0)
     except ValueError:
         return math.nan
-
-
-def _repeated(rows: Sequence[tuple[int, list[str]]], heads: Sequence[str]) -> Iterator[Bad]:
-    place, seen = heads.index("name"), dict[str, int]()
-    for at, row in rows:
-        if place < len(row) and row[place] and seen.setdefault(row[place], at) != at:
-            yield Bad("name", "each block's own", at, row[place])
 
 
 def _said(bad: Sequence[Bad]) -> str:

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.blocks.ranking import first_words, ranked
 from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS
 
 MOST_DRAWN = 60
@@ -19,15 +18,17 @@ LONGEST_NAME = 24
 """Letters of a name."""
 
 
-def draw_blocks(rows: pd.DataFrame) -> Figure:
+def draw_blocks(rows: pd.DataFrame, lines: pd.DataFrame, title: str) -> Figure:
     """Draw, for each block and record, the factors from lifting to overturning.
 
     Parameters
     ----------
     rows : DataFrame
         The columns of blocks.csv.
+    lines : DataFrame
+        One of them for each block and record, in the order in which blocks are drawn.
+    title : str
     """
-    lines = ranked(rows)
     names = list(dict.fromkeys(lines["name"]))[:MOST_DRAWN]
     records = list(dict.fromkeys(rows["record"]))
     height = 1.9 + len(names) * max(0.21, 0.1 * len(records))
@@ -44,7 +45,7 @@ def draw_blocks(rows: pd.DataFrame) -> Figure:
     axes.set_yticklabels([_short(name) for name in names], fontsize=8, parse_math=False)
     axes.grid(axis="y", alpha=0.2)
     kept = f"; these {MOST_DRAWN} first" if lines["name"].nunique() > MOST_DRAWN else ""
-    axes.set_title(first_words(lines) + kept, fontsize=10, wrap=True, parse_math=False)
+    axes.set_title(title + kept, fontsize=10, wrap=True, parse_math=False)
     handles = [_handle(record, place) for place, record in enumerate(records)]
     handles.append(Line2D([], [], color="#666666", linestyle=(0, (5, 4)), label="asked"))
     legend = drawing.legend(

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import math
+import shlex
 from base64 import b64encode
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader
 
 from studies.blocks import strength
-from studies.blocks.ranking import command_of, counted, doubts, first_words, ranked
+from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
-from studies.kit.tables import in_columns
-from studies.measures.words import capital, listed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.measures.words import capital, listed, out_of
+from studies.sources.registry import resolve
 
 WORDS = ("name", "record", "source", "outcome", "message", "islands")
 """Columns of text: a block may be called nan, or 007."""
-SHOWN = 20
-"""Lines of a report: the blocks that overturn first."""
+
+
+NEAR = 0.01
+"""An answer hangs on its amplitude where its scale is so near to the margin, relative to it."""
 
 
 def read(folder: Path) -> pd.DataFrame:
@@ -33,24 +34,31 @@ def read(folder: Path) -> pd.DataFrame:
 
 def report(folder: Path) -> str:
     """Draw a folder's blocks.csv, write its page and its findings; return these."""
-    from studies.drawing.figures import save_all
-
-    rows = read(folder)
-    (picture,) = save_all(pictures(folder), folder)
-    text = f"{table_text(rows)}\n\n{paragraph(folder)}"
-    provenance.write_text(folder / "findings.txt", text + "\n")
+    rows, made = read(folder), provenance.record_of(folder)
+    lines, sources = ranked(rows), list(dict.fromkeys(rows["source"]))
+    answers = answered(rows)
+    beside = [answers[pair] for pair in zip(lines["name"], lines["record"], strict=True)]
+    factors = lines[["name", "width_m", "height_m", "record", "lifts", "margin"]]
+    table = factors.reset_index(drop=True).join(pd.DataFrame(beside))
+    counts, doubt = counted(rows), doubts(rows)
+    finding = f"{headline(folder)} {capital('; '.join(counts))}. {listed(doubt)}."
+    title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
+    text = tell(folder, pictures(folder), finding, {title: table})
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
     environment.filters["shown"] = shown
     page = environment.get_template("page.html.jinja").render(
         headline=headline(folder),
-        said=[f"{capital(words)}." for words in (*counted(rows), *doubts(rows))],
-        picture=f"data:image/png;base64,{b64encode(picture.read_bytes()).decode()}",
+        said=[f"{capital(words)}." for words in (*counts, *doubt)],
+        picture=f"data:image/png;base64,{b64encode((folder / 'blocks.png').read_bytes()).decode()}",
         scales=sorted(set(rows["scale"])),
-        sources=list(dict.fromkeys(rows["source"])),
-        lines=lines_of_page(rows, provenance.record_of(folder)["settings"]),
+        sources=sources,
+        lines=[
+            {**line, "answers": found, "command": command_of(line, sources, made["settings"])}
+            for line, found in zip(lines.to_dict("records"), beside, strict=True)
+        ],
         messages=messages(rows),
         rules=strength,
-        made=provenance.record_of(folder),
+        made=made,
     )
     provenance.write_text(folder / "blocks.html", page)
     return text
@@ -61,41 +69,79 @@ def headline(folder: Path) -> str:
     return f"{first_words(ranked(read(folder)))}."
 
 
-def paragraph(folder: Path) -> str:
-    """Say the same, how each source's cases end, and what of the answers is in doubt."""
-    rows = read(folder)
-    return f"{headline(folder)} {capital('; '.join(counted(rows)))}. {listed(doubts(rows))}."
+def ranked(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each block and record, the least margin of a block first.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of blocks.csv.
+    """
+    lines = rows.drop_duplicates(["name", "record"])
+    least = lines.groupby("name")["margin"].transform("min")
+    order = lines.assign(least=least, place=range(len(lines)))
+    by = ["least", "name", "margin", "place"]
+    return order.sort_values(by, kind="stable").drop(columns=["least", "place"])
 
 
-def pictures(folder: Path) -> dict[str, Figure]:
+def first_words(lines: pd.DataFrame) -> str:
+    """Say how many blocks overturn under a record as strong as it is or less, and which first."""
+    blocks = lines["name"].nunique()
+    fallen = lines.loc[lines["margin"] <= 1.0, "name"].nunique()
+    finite = lines[lines["margin"].map(math.isfinite)]
+    if finite.empty:
+        return f"None of {blocks} blocks was found to overturn under any factor on a record"
+    first = finite.iloc[0]
+    words = f"{out_of(fallen, blocks)} blocks overturn under a record as it is, or weaker"
+    return (
+        f"{capital(words)}; "
+        f"the first is {first['name']}, at {first['margin']:.4g} times {first['record']}"
+    )
+
+
+def counted(rows: pd.DataFrame) -> list[str]:
+    """Say for each scale and source how many cases end in which way."""
+    said = []
+    for (scale, source), group in rows.groupby(["scale", "source"], sort=False):
+        counts = group["outcome"].value_counts()
+        words = [f"{count} {outcome}" for outcome, count in counts.items()]
+        said.append(f"at scale {scale:g} {source} has {listed(words)}")
+    return said
+
+
+def doubts(rows: pd.DataFrame) -> list[str]:
+    """Say how many blocks slide or lift off the pivot, and how many answers hang on a hundredth."""
+    cases = rows.drop_duplicates(["name", "record", "scale"])
+    near = (cases["scale"] / cases["margin"] - 1.0).abs() < NEAR
+    words = {
+        "slide, for they need more friction than they have": cases["friction"]
+        < cases["friction_needed"],
+        "would lift their pivot off, where no answer holds": cases["min_normal"] < 0.0,
+        f"are within {100.0 * NEAR:g} % of the factor that first overturns them": near,
+    }
+    return [f"{int(where.sum())} of {len(cases)} {what}" for what, where in words.items()]
+
+
+def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:
+    """Return the command that compares the sources on a case of the list."""
+    engines = any(resolve(name).engine for name in sources)
+    asked = ("width", "width_m"), ("height", "height_m"), ("scale", "scale"), ("tilt", "tilt")
+    values = {name: line[column] for name, column in asked}
+    values["friction"] = line["friction"] if engines else math.nan
+    known = {name: value for name, value in values.items() if not math.isnan(value)}
+    known |= {name: word for name, word in settings.items() if word}
+    said = " ".join(f"--{name} {value}" for name, value in known.items())
+    record = shlex.quote(str(line["record"]))
+    return f"rocking compare {said} --record {record} --sources {' '.join(sources)}"
+
+
+def pictures(folder: Path) -> Pictures:
     """Draw the ranking of a folder's blocks from its blocks.csv alone."""
     from studies.blocks.figure import draw_blocks
 
-    return {"blocks": draw_blocks(read(folder))}
-
-
-def table_text(rows: pd.DataFrame) -> str:
-    """Return the blocks that overturn first, a line for each record."""
+    rows = read(folder)
     lines = ranked(rows)
-    answers = answered(rows)
-    table = pd.DataFrame(
-        [
-            {
-                "block": line["name"],
-                "B × H [m]": f"{line['width_m']:g} × {line['height_m']:g}",
-                "record": line["record"],
-                "lifts": f"{line['lifts']:.4g}",
-                "overturns": shown(line["margin"], 4),
-                **answers[line["name"], line["record"]],
-            }
-            for _, line in lines.head(SHOWN).iterrows()
-        ]
-    )
-    more = len(lines) - SHOWN
-    head = "Factors on a record that lift and overturn each block, and outcomes with θmax/θcr:"
-    return "\n".join(
-        [head, in_columns(table), *([f"and {more} more in blocks.csv"] if more > 0 else [])]
-    )
+    return {"blocks": draw_blocks(rows, lines, first_words(lines))}
 
 
 def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
@@ -111,19 +157,6 @@ def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
 def shown(value: float, digits: int) -> str:
     """Return a number as the page shows it."""
     return "–" if math.isnan(value) else "∞" if math.isinf(value) else f"{value:.{digits}g}"
-
-
-def lines_of_page(rows: pd.DataFrame, settings: dict[str, str]) -> list[dict[str, Any]]:
-    """Return the lines of the page's table, each with the command that makes it again."""
-    answers, sources = answered(rows), list(dict.fromkeys(rows["source"]))
-    return [
-        {
-            **{str(name): value for name, value in line.items()},
-            "answers": answers[line["name"], line["record"]],
-            "command": command_of(line, sources, settings),
-        }
-        for _, line in ranked(rows).iterrows()
-    ]
 
 
 def messages(rows: pd.DataFrame) -> list[tuple[str, int, str]]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from analytic.frame import RockingFrame
 from analytic.frame_forces import frame_demands
@@ -13,7 +14,7 @@ from studies.kit.journal import Row
 from studies.kit.posing import Posed
 from studies.measures.differences import scientific
 
-Columns = dict[str, list[object]]
+Columns = dict[str, list[Any]]
 
 OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
 """Observable of a frame -> its column."""
@@ -22,7 +23,7 @@ OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift 
 SEEN_M = 1e-6
 """Of a floor's lag, what is shown [m]."""
 
-HOW_SURE = ("κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",)
+UNKNOWN = "unknown: there is no exact solution to tell"
 
 
 def first_line(system: System, degrees: bool) -> str:
@@ -41,32 +42,36 @@ def columns_of(
     system: System, rows: list[Row], scale: float, degrees: bool, estimates: Mapping[str, list[str]]
 ) -> Columns:
     """Return the columns of a scene; rotations are in θcr times `scale`."""
+    answers = [row["response"] for row in rows]
+    errors = [row["error"] for row in rows]
     if isinstance(system, SlidingBlock):
         return {
-            "slips [m]": [_slips(row["response"]) for row in rows],
-            "vs exact": [part(row["error"]) for row in rows],
-            "stops [s]": [_stop(row["response"]) for row in rows],
-            "lift [m]": [_observed(row["response"].observables, "lift_m") for row in rows],
+            "slips [m]": [_slips(answer) for answer in answers],
+            "vs exact": list(map(scientific, errors)),
+            "stops [s]": [
+                number(answer.slip_times[-1][1] if answer.slip_times else math.nan, ".6f")
+                for answer in answers
+            ],
+            "lift [m]": _observed(answers, "lift_m"),
         }
-    peak = "θmax [°]" if degrees else "θmax/θcr"
     seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
-    slips = [part(row["response"].slip_m / system.width) for row in rows]
-    lags = [_lag(row["response"].observables.get(LAG, 0.0)) for row in rows]
+    perhaps = {
+        "slip/B": [scientific(answer.slip_m / system.width) for answer in answers],
+        "lag [m]": _observed(answers, LAG, SEEN_M),
+    }
     return {
-        peak: [_peak(row, scale) for row in rows],
-        "vs exact": [_difference(row) for row in rows],
-        "κ": [_figures(row["kappa"]) for row in rows],
-        "sens": [_figures(row["sensitivity"]) for row in rows],
+        "θmax [°]" if degrees else "θmax/θcr": [
+            number(scale * row["peak_ratio"], ".6f") for row in rows
+        ],
+        "vs exact": [("+" if value >= 0.0 else "") + scientific(value) for value in errors],
+        "κ": [number(row["kappa"], ".2g") for row in rows],
+        "sens": [number(row["sensitivity"], ".2g") for row in rows],
         **estimates,
         "impacts": [row["impacts"] for row in rows],
-        "late·p": [part(row["impact_error"]) for row in rows],
-        "ratio": [fixed(row["velocity_ratio"]) for row in rows],
-        **({"slip/B": slips} if any(slip != "-" for slip in slips) else {}),
-        **({"lag [m]": lags} if any(lag != "-" for lag in lags) else {}),
-        **{
-            column: [_observed(row["response"].observables, name) for row in rows]
-            for name, column in seen.items()
-        },
+        "late·p": [scientific(row["impact_error"]) for row in rows],
+        "ratio": [number(row["velocity_ratio"], ".6f") for row in rows],
+        **{name: cells for name, cells in perhaps.items() if set(cells) != {"-"}},
+        **{column: _observed(answers, name) for name, column in seen.items()},
     }
 
 
@@ -74,27 +79,25 @@ def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
     """Return what the columns mean, and what the exact solution needs, a line each."""
     if isinstance(system, SlidingBlock):
         return ["vs      largest difference of a slip, over the largest slip"]
-    eta = f"η = {system.restitution:.6g}"
     if isinstance(system, RockingFrame):
-        return [
-            *HOW_SURE,
-            "late    largest error of the first five impact times, times p",
-            f"ratio   velocity after over before an impact, the median; the exact {eta}",
-            "parting largest difference of two columns' rotations; beam: its largest rotation",
-            f"valid   {frame_validity(system, posed, exact)}",
-        ]
+        whose, valid_if = "the exact", frame_validity(system, posed, exact)
+    else:
+        whose, valid_if = "Housner's", validity(exact)
+    parting = "parting largest difference of two columns' rotations; beam: its largest rotation"
     return [
-        *HOW_SURE,
+        "κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",
         "late    largest error of the first five impact times, times p",
-        f"ratio   velocity after over before an impact, the median; Housner's {eta}",
-        f"valid   {validity(exact)}",
+        f"ratio   velocity after over before an impact, the median; {whose} "
+        f"η = {system.restitution:.6g}",
+        *[parting] * isinstance(system, RockingFrame),
+        f"valid   {valid_if}",
     ]
 
 
 def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
     """Say what the exact solution of a frame needs of its contacts, or what fails in it."""
     if exact.outcome is Outcome.FAILED:
-        return "unknown: there is no exact solution to tell"
+        return UNKNOWN
     spacing, depth = SPACING * frame.height, BEAM_DEPTH * frame.height
     needs = frame_demands(frame, posed.motion, posed.start, spacing=spacing, depth=depth)
     if needs.spacing >= spacing:
@@ -121,58 +124,30 @@ def _slips(response: Response) -> str:
     return " ".join(shown) + (f" … {more} more" if more else "") or "-"
 
 
-def _stop(response: Response) -> str:
-    return f"{response.slip_times[-1][1]:.6f}" if response.slip_times else "-"
+def _observed(answers: list[Response], name: str, least: float = -math.inf) -> list[str]:
+    """Return what engines observed, a dash where one did not, or no more than `least`."""
+    values = [answer.observables.get(name, math.nan) for answer in answers]
+    return [scientific(value if value > least else math.nan) for value in values]
 
 
-def _lag(metres: float) -> str:
-    """Return how far a floor lagged, where that is more than its numbers' rounding."""
-    return part(metres) if metres > SEEN_M else "-"
-
-
-def _observed(observables: Mapping[str, float], name: str) -> str:
-    return part(observables.get(name, math.nan))
-
-
-def _figures(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.2g}"
-
-
-def _peak(row: Row, scale: float) -> str:
-    return f"{scale * row['peak_ratio']:.6f}" if math.isfinite(row["peak_ratio"]) else "-"
-
-
-def _difference(row: Row) -> str:
-    value = row["error"]
-    return ("" if value < 0 else "+") + scientific(value) if math.isfinite(value) else "-"
+def number(value: float, form: str) -> str:
+    """Return a number in a format, a dash where it is not finite."""
+    return format(value, form) if math.isfinite(value) else "-"
 
 
 def valid(exact: Response) -> bool | None:
     """Say whether the pivot stays on the base in the exact solution; None if there is none."""
-    if math.isnan(exact.min_normal):
-        return None
-    return exact.min_normal >= 0.0
+    return None if math.isnan(exact.min_normal) else exact.min_normal >= 0.0
 
 
 def validity(exact: Response) -> str:
     """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
-    holds = valid(exact)
-    if holds is None:
-        return "unknown: there is no exact solution to tell"
-    if not holds:
+    if math.isnan(exact.min_normal):
+        return UNKNOWN
+    if not valid(exact):
         return "not here: the pivot would lift off, and an engine is right to differ"
     least = f"the normal force stays above {exact.min_normal:.3g} of the weight"
     return f"with friction of {exact.friction_needed:.3g} or more; {least}"
-
-
-def fixed(value: float) -> str:
-    """Return a number with six places."""
-    return "-" if math.isnan(value) else f"{value:.6f}"
-
-
-def part(value: float) -> str:
-    """Return a part of one as readers write it."""
-    return "-" if math.isnan(value) else scientific(value)
 
 
 def duration(seconds: float) -> str:

@@ -15,9 +15,10 @@ from analytic.motion import Motion, SinePulse, Still
 from analytic.simulate import strongest
 from engines.layouts import System
 from studies.cases.paper import PULSES
-from studies.compare.columns import columns_of, duration, first_line, meanings, part, valid
+from studies.compare.columns import columns_of, duration, first_line, meanings, valid
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
+from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
 
@@ -113,14 +114,14 @@ def _estimates(rows: list[Row]) -> dict[str, list[str]]:
     """Return the columns of estimates, where they were asked for."""
     if "estimate" not in rows[0]:
         return {}
+    blind = [math.isnan(row["bound"]) and not math.isnan(row["estimate"]) for row in rows]
     return {
-        "estimate": [part(row["estimate"]) for row in rows],
-        "bound 95 %": [_bound(row["estimate"], row["bound"]) for row in rows],
+        "estimate": [scientific(row["estimate"]) for row in rows],
+        "bound 95 %": [
+            NO_BOUND if none else scientific(row["bound"])
+            for none, row in zip(blind, rows, strict=True)
+        ],
     }
-
-
-def _bound(estimate: float, bound: float) -> str:
-    return NO_BOUND if math.isnan(bound) and not math.isnan(estimate) else part(bound)
 
 
 def _start(block: System, posed: Posed, degrees: bool) -> str:
@@ -130,36 +131,28 @@ def _start(block: System, posed: Posed, degrees: bool) -> str:
     return f"θ = {theta / block.alpha:.6g} α, θ' = {rate / (block.alpha * block.p):.6g} αp"
 
 
-def pulse_name(half_cycles: int) -> str:
-    """Return what a pulse of so many half cycles is called."""
-    names = {number: f"{name} pulse" for name, number in PULSES.items()}
-    return names.get(half_cycles, f"{half_cycles} half cycles")
-
-
 def ground(motion: Motion, block: System) -> str:
     """Return a ground motion in words: its name, its peak and its details."""
     if isinstance(motion, Still):
         return motion_name(motion)
+    if isinstance(motion, SinePulse):
+        phase = f", phase {motion.phase:g} rad" if motion.phase else ""
+        details = f"{motion.omega:g} rad/s{phase}"
+    else:
+        times = np.array(motion.breakpoints)
+        speed = float(np.abs(motion.velocity(times)).max())
+        step = motion.duration / (times.size - 1)
+        details = f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s"
     peak = f"{strongest(motion) / block.gravity:.6g} g"
-    return f"{motion_name(motion)}, {peak}, {motion_details(motion)}"
+    return f"{motion_name(motion)}, {peak}, {details}, {motion.duration:.4g} s"
 
 
 def motion_name(motion: Motion) -> str:
     """Return what a ground motion is called."""
-    if isinstance(motion, Still):
-        return "at rest"
-    return pulse_name(motion.half_cycles) if isinstance(motion, SinePulse) else "record"
-
-
-def motion_details(motion: Motion) -> str:
-    """Say what a reader needs to know of a ground motion besides its name and its peak."""
-    if isinstance(motion, SinePulse):
-        phase = f", phase {motion.phase:g} rad" if motion.phase else ""
-        return f"{motion.omega:g} rad/s{phase}, {motion.duration:.4g} s"
-    times = np.array(motion.breakpoints)
-    speed = float(np.abs(motion.velocity(times)).max())
-    step = motion.duration / (times.size - 1)
-    return f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s, {motion.duration:.4g} s"
+    if not isinstance(motion, SinePulse):
+        return "at rest" if isinstance(motion, Still) else "record"
+    names = {number: f"{name} pulse" for name, number in PULSES.items()}
+    return names.get(motion.half_cycles, f"{motion.half_cycles} half cycles")
 
 
 def draw(rows: list[Row], block: Any, motion: Motion, path: Path) -> None:

@@ -4,45 +4,51 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT
+from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
 from studies.cases.variants import preset_values
-from studies.contact.claims import errors_of, findings, first_claim, name_of, variant_of
-from studies.drawing.kept import Pictures, keep
-from studies.kit.tables import in_columns, read_table, write_table
-from studies.measures.differences import scientific, with_reference
+from studies.contact.claims import first_claim
+from studies.drawing.kept import Pictures, tell
+from studies.kit.tables import read_table, write_table
+from studies.measures.differences import with_reference
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
 
+FOUND = ["failed", "wrong", "max_error"]
+"""What a variant is judged by: outcomes of all cases, peaks of typical ones."""
+
 
 def report(folder: Path) -> str:
-    """Reduce and draw a folder's contact.csv; write and return tables and findings as text."""
+    """Reduce and draw a folder's contact.csv; write and return what it shows as text."""
     rows = read(folder / "contact.csv")
     lines, own = variant_table(rows[~rows["own_step"]]), variant_table(rows[rows["own_step"]])
     for name, table in {"variants": lines, "own-steps": own}.items():
         write_table(folder / f"{name}.csv", table)
-    text = "\n".join(
-        [
-            "Every variant: errors of the peak over typical cases, outcomes over all cases.",
-            "moves: by how much it changes a peak of its preset, at most; η: the velocity ratio",
-            "over Housner's; e: Newton's coefficient; slip and sink in widths of the block.",
-            "Peaks of half-sine cases come before any impact: a wrong impact shows in η alone.",
-            "Cases near overturning, some within a few percent, count for outcomes and moves.",
-            variants_text(lines),
-            "\nFor rigid, inelastic, non-sliding contact set this:",
-            recommendation_text(lines),
-            "",
-            findings(lines),
-        ]
-    )
-    return keep(folder, pictures(folder), text)
+    plain = lines["factor"] == ""
+    measured = ["ratio_over_eta", "newton_e", "slip_widths", "sink_widths", "step_s"]
+    engines = lines["engine"].unique()
+    tables = {
+        "Presets as they are": lines.loc[
+            plain, ["engine", "preset", "cases", *FOUND, "median_error", *measured]
+        ],
+        "Defaults at their own step": lines.loc[
+            lines["factor"] == OWN_STEPS, ["engine", "level", *FOUND]
+        ],
+        **{
+            f"What to set in {engine}: left at its default, and alone": recommendation(
+                lines, engine
+            )
+            for engine in engines
+        },
+        "Traps": lines.loc[(lines["trap"] != "") & ~plain, [*KEY, *FOUND, "trap"]],
+    }
+    return tell(folder, pictures(folder), first_claim(lines), tables)
 
 
 def headline(folder: Path) -> str:
@@ -102,83 +108,22 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def variants_text(lines: pd.DataFrame) -> str:
-    """Return all variants as an aligned table."""
-    shown = pd.DataFrame(
-        {
-            "engine": lines["engine"],
-            "from": lines["preset"],
-            "variant": [name_of(line) for _, line in lines.iterrows()],
-            "failed": lines["failed"],
-            "wrong": lines["wrong"],
-            "median": lines["median_error"].map(scientific),
-            "max": lines["max_error"].map(scientific),
-            "moves": lines["moved"].map(scientific),
-            "η": lines["ratio_over_eta"].map("{:.4f}".format),
-            "e": lines["newton_e"].map("{:.3f}".format),
-            "slip": lines["slip_widths"].map(scientific),
-            "sink": lines["sink_widths"].map(scientific),
-            "drift": lines["energy_drift"].map(scientific),
-            "step µs": (1e6 * lines["step_s"]).map("{:.1f}".format),
-            "why": lines["message"].where(lines["failed"] > 0, lines["trap"]),
-        }
-    )
-    return in_columns(shown.astype(str))
+def recommendation(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
+    """Return a line for each tuned setting of an engine, the one that matters most first.
 
-
-def recommendation(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return what to set, and the errors without it and with nothing else, by importance."""
-    table = []
-    for engine in lines["engine"].unique():
-        naive = variant_of(lines, engine, DEFAULT, "")
-        for factor in ENGINES[engine].factors:
-            left = variant_of(lines, engine, BEST, factor.name, BY_DEFAULT)
-            alone = variant_of(lines, engine, DEFAULT, factor.name, AS_BEST)
-            if naive is None or alone is None:
-                continue
-            values = preset_values(engine, BEST, factor.settings)
-            table.append(
-                {
-                    "engine": engine,
-                    "set": ", ".join(f"{name} {value}" for name, value in values.items()),
-                    "moves": math.nan if left is None else left["moved"],
-                    "turns": math.nan if left is None else left["ratio_moved"],
-                    "without": "-" if left is None else errors_of(left),
-                    "defaults": _with_ratio(naive),
-                    "alone": _with_ratio(alone),
-                    "weight": _weight(left, alone),
-                }
-            )
-    return pd.DataFrame(table).sort_values(
-        ["engine", "weight"], ascending=[False, False], ignore_index=True
-    )
-
-
-def _with_ratio(line: pd.Series[Any]) -> str:
-    ratio = float(line["ratio_over_eta"])
-    return errors_of(line) + (f" ({ratio:.3f} η)" if math.isfinite(ratio) else "")
-
-
-def _weight(*found: pd.Series[Any] | None) -> float:
-    """Return by how much a setting matters: what it moves, all where it breaks something."""
-    lines = [line for line in found if line is not None]
-    if any(line["worse"] for line in lines):
-        return math.inf
-    return max(float(line[name]) for line in lines for name in ("moved", "ratio_moved"))
-
-
-def recommendation_text(lines: pd.DataFrame) -> str:
-    """Return the recommendation as an aligned table."""
-    table = recommendation(lines)
-    shown = pd.DataFrame(
-        {
-            "engine": table["engine"].mask(table["engine"].duplicated(), ""),
-            "set": table["set"],
-            "left at its default it moves a peak by": table["moves"].map(scientific),
-            "a velocity ratio by": table["turns"].map(scientific),
-            "and the largest error is": table["without"],
-            "set alone, the defaults' largest error (ratio)": table["defaults"],
-            "becomes": table["alone"],
-        }
-    )
-    return in_columns(shown.astype(str))
+    What it moves and what errors it leaves where the tuned preset has it at the library's default;
+    and, in columns that end in alone, where it is all that is tuned of the defaults. What breaks a
+    case matters most, then what moves a peak or an impact.
+    """
+    lines = lines[lines["engine"] == engine].set_index("factor")
+    left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
+    alone = lines[(lines["preset"] == DEFAULT) & (lines["level"] == AS_BEST)]
+    both = alone.merge(left, "left", on="factor", suffixes=("_alone", ""))
+    breaks = both[["worse", "worse_alone"]].eq(True).any(axis=1)
+    matter = both.filter(like="moved").max(axis=1).mask(breaks, math.inf)
+    names = {factor.name: factor.settings for factor in ENGINES[engine].factors}
+    values = [preset_values(engine, BEST, names[factor]) for factor in both.index]
+    tuned = [", ".join(f"{name} {value}" for name, value in each.items()) for each in values]
+    shown = ["moved", "ratio_moved", *FOUND, *(f"{name}_alone" for name in FOUND)]
+    table = both[shown].set_axis(pd.Index(tuned, name="set"))
+    return table.iloc[(-matter).argsort(kind="stable")].reset_index()

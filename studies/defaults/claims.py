@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from pandas.core.groupby import DataFrameGroupBy
 
 from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.measures.presets import engine_of
-from studies.measures.words import alike, listed, part
-from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
+from studies.measures.words import listed, part
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
 
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""
@@ -54,15 +56,21 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(error=np.where(both_rocked, error, np.nan), verdict=verdict)
 
 
-def friction_needed(case: pd.Series[float]) -> float:
-    """Return the friction without which the block would slide; inf if it would lift off."""
-    block = RigidBlock(width=case["width_m"], height=case["aspect"] * case["width_m"])
-    pulse = SinePulse(
-        amplitude=case["onsets"] * math.tan(block.alpha) * block.gravity,
-        omega=case["omega_over_p"] * block.p,
-        half_cycles=PULSES[str(case["pulse"])],
+def posed(
+    pulse: str, aspect: float, width_m: float, onsets: float, omega_over_p: float
+) -> tuple[RigidBlock, SinePulse]:
+    """Return the block and the pulse of a case, whose amplitude is so many times g tan α."""
+    block = RigidBlock(width=width_m, height=aspect * width_m)
+    return block, SinePulse(
+        amplitude=onsets * math.tan(block.alpha) * block.gravity,
+        omega=omega_over_p * block.p,
+        half_cycles=PULSES[pulse],
     )
-    found = simulate(block, pulse)
+
+
+def friction_needed(case: pd.Series[Any]) -> float:
+    """Return the friction without which the block would slide; inf if it would lift off."""
+    found = simulate(*posed(*case[CASE[:-1]]))
     return found.friction_needed if found.min_normal > 0.0 else math.inf
 
 
@@ -79,33 +87,42 @@ def shares(rows: pd.DataFrame) -> pd.DataFrame:
 
     Of pulses under which the block neither slides nor lifts off.
     """
-    asked = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
-    groups = asked.groupby(["source", "width_m"], sort=False)
-    kinds = pd.DataFrame(counted(found.map(KIND)) for _, found in groups["verdict"])
-    table = groups.agg(
-        cases=("verdict", "size"),
-        close=("verdict", lambda found: int(found.isin(RIGHT).sum())),
-        far=("verdict", lambda found: int((found == OFF).sum())),
-        false_overturnings=("verdict", lambda found: int((found == FALSE).sum())),
-        missed_overturnings=("verdict", lambda found: int((found == MISSED).sum())),
-        median_error=("error", lambda error: error.abs().median()),
-        p90_error=("error", lambda error: error.abs().quantile(0.9)),
-        wall_s=("wall_s", "sum"),
+    return (
+        _judged(rows, "width_m")
+        .agg(
+            cases=("close", "size"),
+            **_sums("close", "far", "false_overturnings", "missed_overturnings"),
+            median_error=("size", "median"),
+            p90_error=("size", lambda size: size.quantile(0.9)),
+            **_sums("wall_s", *KINDS),
+        )
+        .reset_index()
     )
-    return pd.concat([table.reset_index(), kinds], axis=1)
 
 
 def rests(rows: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each engine and rest before the pulse: how many pulses by verdict."""
-    asked = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
-    lines = []
-    for (source, rest_s), found in asked.groupby(["source", "rest_s"], sort=False):
-        close = int(found["verdict"].isin(RIGHT).sum())
-        lines.append(
-            {"source": source, "rest_s": rest_s, "cases": len(found), "close": close}
-            | counted(found["verdict"].map(KIND))
-        )
-    return pd.DataFrame(lines)
+    counts = _judged(rows, "rest_s").agg(cases=("close", "size"), **_sums("close", *KINDS))
+    return counts.reset_index()
+
+
+def _judged(rows: pd.DataFrame, by: str) -> DataFrameGroupBy[Any, Any]:
+    """Return the engines' rows that are judged, their verdicts as columns, by source and `by`."""
+    rows = rows[(rows["source"] != "exact") & (rows["verdict"] != INVALID)]
+    verdict = rows["verdict"]
+    judged = rows.assign(
+        close=verdict.isin(RIGHT),
+        far=verdict == OFF,
+        false_overturnings=verdict == FALSE,
+        missed_overturnings=verdict == MISSED,
+        size=rows["error"].abs(),
+        **{kind: verdict.map(KIND) == kind for kind in KINDS},
+    )
+    return judged.groupby(["source", by], sort=False)
+
+
+def _sums(*names: str) -> dict[str, tuple[str, str]]:
+    return {name: (name, "sum") for name in names}
 
 
 def rest_claim(table: pd.DataFrame) -> str:
@@ -138,32 +155,21 @@ def _whole(value: float) -> str:
     return "all" if value == 1.0 else f"{min(value, 0.99):.0%}".replace("%", " %")
 
 
-def similarity(rows: pd.DataFrame) -> str:
-    """Say in what part of the pulses the smallest and the largest block answer differently."""
+def similarity(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: the part of pulses in which two blocks answer differently.
+
+    The smallest and the largest, which by similarity answer alike; outcomes differ, or peaks by
+    more than CLOSE.
+    """
     rows = rows[rows["verdict"] != INVALID]
-    widths = sorted(rows["width_m"].unique())
+    widths = rows["width_m"]
     pair = [
-        rows[rows["width_m"] == width].set_index(ALIKE)["peak_ratio"]
-        for width in (widths[0], widths[-1])
+        rows[widths == width].set_index(ALIKE)["peak_ratio"]
+        for width in (widths.min(), widths.max())
     ]
     small, large = pair[0].align(pair[1], join="inner")
     both = np.isfinite(small) & np.isfinite(large)
     differ = (small != large) & ~(both & ((small - large).abs() <= CLOSE * small.abs()))
     differ &= ~(small.isna() & large.isna())
-    of = differ.groupby(level="source", sort=False).mean()
-    engines = of[of.index != "exact"]
-    words = alike([f"{engine_of(name)} {value:.0%}" for name, value in engines.items()])
-    return (
-        f"By similarity a block of {widths[-1]:g} m answers as one of {widths[0]:g} m: the exact "
-        f"solution does; as documented an outcome differs, or a peak by more than "
-        f"{part(CLOSE)}, in {words} of the pulses.".replace("%", " %").replace("  %", " %")
-    )
-
-
-def findings(table: pd.DataFrame, rows: pd.DataFrame) -> str:
-    """Return the claims and the table as text."""
-    shown = table.assign(
-        median_error=table["median_error"].map(part), p90_error=table["p90_error"].map(part)
-    )
-    claims = filter(None, (first_claim(table), rest_claim(rests(rows)), similarity(rows)))
-    return f"{' '.join(claims)}\n\n{shown.to_string(index=False)}"
+    parts = differ.groupby(level="source", sort=False).mean()
+    return pd.DataFrame({"source": parts.index, "differ": parts.to_numpy()})

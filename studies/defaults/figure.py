@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -12,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from studies.defaults.claims import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.drawing.facets import key, panels
 from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of
 from studies.measures.words import part
@@ -53,35 +52,24 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
     shown = (rows["pulse"] == SHOWN_PULSE) & (rows["aspect"] == SHOWN_ASPECT)
     rows = rows[shown & (rows["source"] != "exact")]
     sources = list(rows["source"].unique())
-    across = min(ACROSS, len(sources))
-    down = math.ceil(len(sources) / across)
-    drawing = Figure(figsize=(2.3 * across + 0.4, 2.4 * down + 1.3), layout="constrained")
-    panels = list(drawing.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat)
-    for place, (axes, source) in enumerate(zip(panels, sources, strict=False)):
+    drawing, grid = panels(len(sources), ACROSS, (2.4, 2.4), 1.3, sharex=True, sharey=True)
+    for axes, source in zip(grid, sources, strict=True):
         _map(axes, rows[rows["source"] == source])
-        if place % across == 0:
-            axes.set_ylabel("amplitude  $a_p$ / (g tan α)")
-        if place + across >= len(sources):
-            axes.set_xlabel("frequency  ω/p")
-            axes.tick_params(labelbottom=True)
-    for axes in panels[len(sources) :]:
-        axes.set_visible(False)
+    for axes in grid[::ACROSS]:
+        axes.set_ylabel("amplitude  $a_p$ / (g tan α)")
+    for axes in grid[-ACROSS:]:
+        axes.set_xlabel("frequency  ω/p")
     width = rows["width_m"].iloc[0]
     drawing.suptitle(
         f"As documented: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m",
         fontsize=11,
     )
-    drawing.legend(
-        handles=[
-            Patch(facecolor=colour, edgecolor="#888888", label=LABELS[name])
-            for name, colour in COLOURS.items()
-            if name in set(rows["verdict"])
-        ],
-        loc="outside lower center",
-        ncols=3 if across == ACROSS else 2,
-        frameon=False,
-        fontsize=9,
-    )
+    seen = {name: colour for name, colour in COLOURS.items() if name in set(rows["verdict"])}
+    handles = [
+        Patch(facecolor=colour, edgecolor="#888888", label=LABELS[name])
+        for name, colour in seen.items()
+    ]
+    key(drawing, handles, 3 if len(sources) >= ACROSS else 2)
     return drawing
 
 
@@ -90,23 +78,14 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
     codes = rows.assign(code=rows["verdict"].map(names.index)).pivot(
         index="onsets", columns="omega_over_p", values="code"
     )
-    (left, right), (low, high) = (_ends(codes.columns), _ends(codes.index))
-    axes.imshow(
-        codes.to_numpy(),
-        origin="lower",
-        aspect="auto",
-        interpolation="nearest",
-        extent=(left, right, low, high),
+    axes.pcolormesh(
+        codes.columns,
+        codes.index,
+        codes,
+        shading="nearest",
         cmap=ListedColormap(list(COLOURS.values())),
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
     name = title_of(engine_of(str(rows["source"].iloc[0])))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
-
-
-def _ends(centres: pd.Index) -> tuple[float, float]:
-    """Return the ends of an axis of cells with these centres, which are equally far apart."""
-    values = centres.to_numpy(float)
-    half = 0.5 * (values[1] - values[0])
-    return float(values[0] - half), float(values[-1] + half)

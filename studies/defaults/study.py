@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 import pandas as pd
 
-from analytic.block import RigidBlock
-from analytic.motion import Delayed, SinePulse
+from analytic.motion import Delayed
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
-from studies.defaults.claims import findings, first_claim, rest_claim, rests, shares, with_verdicts
-from studies.drawing.kept import Pictures, keep
+from studies.defaults.claims import (
+    CLOSE,
+    first_claim,
+    posed,
+    rest_claim,
+    rests,
+    shares,
+    similarity,
+    with_verdicts,
+)
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -26,9 +35,9 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
 ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
-RATIOS = tuple(0.5 * np.arange(1, 17))
+RATIOS = tuple((0.5 * np.arange(1, 17)).tolist())
 """ω/p."""
-ONSETS = tuple(1.0 + 0.6 * (np.arange(15) + 0.5))
+ONSETS = tuple((1.0 + 0.6 * (np.arange(15) + 0.5)).tolist())
 """Amplitudes over g tan α."""
 REST_S = 1.0
 """For how long all is at rest before every other pulse [s], in which an engine may fall asleep."""
@@ -78,45 +87,32 @@ def plan(sources: Sequence[str], frame: str | None, quick: bool) -> Plan:
 def grid_jobs(sources: Sequence[str], frame: str | None, quick: bool) -> list[Job]:
     """Return a job for each pulse, block and source."""
     every = QUICK_EVERY if quick else 1
-    return [
-        _job(pulse, aspect, width_m, onsets, ratio, source, frame)
-        for pulse in (QUICK_PULSES if quick else PULSES)
-        for aspect in (QUICK_ASPECTS if quick else ASPECTS)
-        for width_m in WIDTHS_M
-        for onsets in ONSETS[::every]
-        for ratio in RATIOS[::every]
-        for source in sources
-    ]
-
-
-def _job(
-    pulse: str,
-    aspect: float,
-    width_m: float,
-    onsets: float,
-    ratio: float,
-    source: str,
-    frame: str | None,
-) -> Job:
-    block = RigidBlock(width=width_m, height=aspect * width_m)
-    amplitude_g = float(onsets) * math.tan(block.alpha)
-    labels = {
-        "pulse": pulse,
-        "aspect": aspect,
-        "width_m": width_m,
-        "amplitude_g": amplitude_g,
-        "onsets": float(onsets),
-        "omega_over_p": float(ratio),
-        "rest_s": rest_s_of(onsets, ratio),
-    }
-    pulse_alone = SinePulse(
-        amplitude=amplitude_g * block.gravity,
-        omega=float(ratio) * block.p,
-        half_cycles=PULSES[pulse],
+    cases = product(
+        QUICK_PULSES if quick else PULSES,
+        QUICK_ASPECTS if quick else ASPECTS,
+        WIDTHS_M,
+        ONSETS[::every],
+        RATIOS[::every],
     )
-    motion = Delayed(pulse_alone, REST_S) if labels["rest_s"] else pulse_alone
-    options = {"frame": frame} if frame and resolve(source).engine else {}
-    return Job(labels=labels, block=block, motion=motion, source=source, options=options)
+    jobs = []
+    for pulse, aspect, width_m, onsets, ratio in cases:
+        block, motion = posed(pulse, aspect, width_m, onsets, ratio)
+        labels = {
+            "pulse": pulse,
+            "aspect": aspect,
+            "width_m": width_m,
+            "amplitude_g": onsets * math.tan(block.alpha),
+            "onsets": onsets,
+            "omega_over_p": ratio,
+            "rest_s": rest_s_of(onsets, ratio),
+        }
+        shaken = Delayed(motion, REST_S) if labels["rest_s"] else motion
+        for source in sources:
+            options = {"frame": frame} if frame and resolve(source).engine else {}
+            jobs.append(
+                Job(labels=labels, block=block, motion=shaken, source=source, options=options)
+            )
+    return jobs
 
 
 def rest_s_of(onsets: float, ratio: float) -> float:
@@ -128,9 +124,17 @@ def rest_s_of(onsets: float, ratio: float) -> float:
 def report(folder: Path) -> str:
     """Reduce and draw a folder's defaults.csv; return the findings as text."""
     rows = read(folder)
-    write_table(folder / "parts.csv", shares(rows))
-    write_table(folder / "rests.csv", rests(rows))
-    return keep(folder, pictures(folder), findings(shares(rows), rows))
+    parts, rested = shares(rows), rests(rows)
+    write_table(folder / "parts.csv", parts)
+    write_table(folder / "rests.csv", rested)
+    tables = {
+        "Pulses by the width of the block": parts,
+        "Pulses by the rest before them": rested,
+        f"Part of the pulses in which two widths differ in outcome or by {CLOSE:g}": similarity(
+            rows
+        ),
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def read(folder: Path) -> pd.DataFrame:

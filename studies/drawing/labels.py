@@ -19,8 +19,6 @@ from studies.drawing.figures import lay_out
 
 LINE_HEIGHT = 1.25
 """Distance of two names over the size of their letters."""
-LETTER = 0.62
-"""Width of a letter over the size of letters, about."""
 BEGINNING = 1.03
 """Where names beside axes begin, over the width of these."""
 
@@ -75,11 +73,6 @@ def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
                                clip_on=False))  # fmt: skip
         axes.text(BEGINNING, level, name.text, color=name.colour, fontsize=size, va="center",
                   transform=axes.transAxes)  # fmt: skip
-
-
-def breadth(names: Sequence[str], size: float = 8.0) -> float:
-    """Return about how much room [in] names need beside axes of a few inches."""
-    return 0.12 + LETTER * size * max(map(len, names)) / 72.0
 
 
 def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:

@@ -1,21 +1,50 @@
-"""Estimates beside the true errors, and by how much they are to be multiplied."""
+"""Random cases that survive; estimates beside their true errors, and the factors on them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
 
 import pandas as pd
 
-from studies.estimate.cases import CALIBRATE, TEST
+from analytic import simulate
+from analytic.response import Outcome
+from studies.cases.drawn import RandomCase, draw
 from studies.measures.differences import with_reference
 from studies.measures.halving import BOUNDED, estimates_of
 from studies.measures.wrongness import FALL, REST, wrong_in
+
+CALIBRATE, TEST = "calibrate", "test"
+"""What a case is for: to find the factors, or to hold them against errors that they never saw."""
 
 RESOLVED = 1e-9
 """Errors below are as good as none: no estimate has to bound them."""
 
 CONFIDENCE = 0.95
 """Of the interval of a factor."""
+
+
+def survivors(seed: int) -> Iterator[RandomCase]:
+    """Yield without end the random cases in which the exact solution rocks and survives."""
+    kept = (
+        drawn
+        for drawn in draw(seed)
+        if simulate(drawn.block, drawn.motion).outcome is Outcome.ROCKED
+    )
+    for number, drawn in enumerate(kept):
+        yield replace(drawn, case=number)
+
+
+def both_sets(cases: int, tests: int, seed: int) -> Iterator[tuple[str, RandomCase]]:
+    """Yield so many cases that test and so many that calibrate, each with what it is for.
+
+    Those that test are drawn with the seed, those that calibrate with the next one.
+    """
+    for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
+        for case in islice(survivors(first), count):
+            yield use, case
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, replace
 from pathlib import Path
-from textwrap import fill as wrapped
 from typing import Annotated
 
 import pandas as pd
 
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.estimate import STUDY
-from studies.estimate.calibration import beside_errors, factors
-from studies.estimate.cases import CALIBRATE, both_sets
-from studies.estimate.words import factors_text, first_claim
+from studies.estimate.calibration import CALIBRATE, beside_errors, both_sets, factors
 from studies.kit.arguments import BadInputError, Count, Place, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
@@ -28,7 +25,8 @@ from studies.kit.options import (
 )
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
-from studies.measures.halving import halved
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, halved
+from studies.measures.words import listed, out_of, part
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 
@@ -120,19 +118,8 @@ def report(folder: Path) -> str:
     table = factors(lines)
     for name, kept in (("estimates", lines), ("factors", table)):
         write_table(folder / f"{name}.csv", kept)
-    text = "\n".join(
-        [
-            "An estimate is the relative difference of a peak from that at half the step. Medians",
-            "of estimate and error; the factors on estimates that bound half of the errors, 95 %",
-            "(with the ends of its 95 % interval) and all; the part of the errors within 3 and 10",
-            "estimates; wrong outcomes that half the step tells by another one; and what the upper",
-            "end bounds of the errors of other cases, which it was not found on:",
-            factors_text(table),
-            "",
-            wrapped(headline(folder), 99),
-        ]
-    )
-    return keep(folder, pictures(folder), text)
+    title = "Estimates, errors, and the factors between them"
+    return tell(folder, pictures(folder), first_claim(table), {title: table})
 
 
 def headline(folder: Path) -> str:
@@ -146,3 +133,20 @@ def pictures(folder: Path) -> Pictures:
 
     lines = pd.read_csv(folder / "estimates.csv")
     return {"estimate": draw_estimates(lines[lines["set"] == CALIBRATE])}
+
+
+def first_claim(table: pd.DataFrame) -> str:
+    """Say whose estimates bound the error, how many on other cases, and whose give no bound."""
+    bound = table["factor_95_high"] <= MOST_TRUSTED
+    good, blind = table[bound], table[~bound]
+    claim, said = "The difference from half the step", []
+    if not good.empty:
+        words = [f"{line['source']} ({line['factor_95_high']:.2g})" for _, line in good.iterrows()]
+        tried = out_of(int(good["bounded"].sum()), int(good["tested"].sum()))
+        said += [
+            f", times the number in brackets, bounds {part(BOUNDED)} of the errors of "
+            f"{listed(words)} (of other cases than gave the numbers {tried})"
+        ]
+    if not blind.empty:
+        said += [f"{' it' if said else ''} gives {NO_BOUND} with {listed(list(blind['source']))}"]
+    return f"{claim}{';'.join(said)}."

@@ -3,12 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from analytic.block import RigidBlock
-from analytic.motion import Motion
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from studies.cases.paper import free_rocking_window
-from studies.export.writing import Exported, files, written_engines
+from studies.export.writing import Exported, files
 from studies.kit.arguments import BadInputError, Place, Positive, Step
 from studies.kit.drafts import write_all
 from studies.kit.executors import Local
@@ -64,8 +62,8 @@ def command(
     options = {**begin, **stepped, **yours.options([source], block)[source]}
     rows = run_jobs(
         [
-            _job("exact", block, motion, window, begin),
-            _job(source, block, motion, window, options),
+            Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)
+            for name, how in (("exact", begin), (source, options))
         ],
         executor=Local(workers=1, time_limit_s=time_limit),
         reduce=summary,
@@ -93,7 +91,8 @@ def command(
 def _asked(engine: str, preset: str | None) -> tuple[Engine, Preset]:
     """Return an engine and its preset, which must be ones that can be written out."""
     name, colon, after = engine.partition(":")
-    if name not in (able := written_engines(ENGINES)):
+    able = [name for name, engine in ENGINES.items() if engine.script is not None]
+    if name not in able:
         words = f"it must be one that can be written out: {', '.join(able)}"
         raise BadInputError(f"--engine is {engine!r}; {words}")
     if colon and preset is not None:
@@ -114,11 +113,3 @@ def _check_folder(out: Path) -> None:
         empty = False
     if not empty:
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
-
-
-def _job(
-    source: str, block: RigidBlock, motion: Motion, window: float, options: dict[str, Any]
-) -> Job:
-    return Job(
-        labels={}, block=block, motion=motion, source=source, duration=window, options=options
-    )

@@ -1,8 +1,6 @@
 """The files of an exported scene, as text."""
 
 import inspect
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -12,26 +10,11 @@ from engines import Scene
 from engines.declaration import Engine, Preset
 from engines.parts.script import Script
 from engines.run import ground
-from engines.world import Moment
 from studies.kit.provenance import project_version, version_of
 from studies.measures.words import listed
 
 BLOCK, GROUND = "block.py", "ground.py"
 """Files of every exported scene."""
-
-VELOCITIES = {
-    Moment.MIDDLE: "mean_velocity(begin, time)",
-    Moment.END: "mean_velocity(time, time)",
-    Moment.NEXT: "mean_velocity(time, time + DT)",
-}
-"""The base's velocity that belongs to the block's after a step."""
-
-TURNINGS = {
-    Moment.MIDDLE: "0.5 * (last_rate + rate)",
-    Moment.END: "last_rate",
-    Moment.NEXT: "1.5 * last_rate - 0.5 * rate",
-}
-"""The angular velocity at the end of the last step."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,32 +77,15 @@ def block_text(what: Exported, script: Script) -> str:
         trim_blocks=True,
         keep_trailing_newline=True,
     )
-    packages = {name: version_of(name) for name in what.engine.packages}
     return environment.get_template(f"{BLOCK}.jinja").render(
-        title=what.engine.title,
-        preset=what.preset.title,
-        version=project_version(),
-        versions=listed([" ".join(pair) for pair in packages.items()]),
-        packages=packages,
-        beside="".join(f", {name}" for name in script.files),
-        script=script,
-        moves=what.preset.posed(what.scene).frame == "world",
-        block=what.scene.system,
-        start=what.scene.start,
+        what=what,
+        posed=what.preset.posed(what.scene),
         dt_s=what.preset.ordinary_step_s(what.scene),
-        shaken=what.scene.motion.duration,
-        watched=what.watched_s,
-        expected=_number(what.expected),
-        exact=_number(what.exact),
-        part=script.moment.value,
-        velocity=VELOCITIES[script.moment],
-        turning=TURNINGS[script.moment],
+        script=script,
+        version=project_version(),
+        packages={name: version_of(name) for name in what.engine.packages},
+        listed=listed,
     )
-
-
-def _number(value: float) -> str:
-    """Return a number as Python."""
-    return "math.inf" if value == math.inf else repr(value)
 
 
 def ground_text(motion: Motion) -> str:
@@ -129,8 +95,3 @@ def ground_text(motion: Motion) -> str:
         f"{inspect.getsource(ground)}\n\n"
         f"SEGMENTS = (\n{rows})\n\nmean_velocity = mean_velocity_of(SEGMENTS)\n"
     )
-
-
-def written_engines(engines: Mapping[str, Engine]) -> list[str]:
-    """Return the names of the engines that write scripts."""
-    return [name for name, engine in engines.items() if engine.script is not None]

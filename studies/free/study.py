@@ -1,24 +1,26 @@
 """Free rocking: the period and the decay of each source against the closed forms."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
+import pandas as pd
 
 from analytic import RigidBlock, Still
 from analytic.criteria import quarter_period
+from studies.drawing.kept import Pictures, tell
 from studies.free import STUDY
-from studies.free.errors import SWINGS, reduce, swing_times
-from studies.free.report import headline, pictures, report
+from studies.free.errors import IMPACTS, SWINGS, reduce, swing_times
 from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import read_table
+from studies.measures.differences import scientific
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
-
-__all__ = ["command", "headline", "pictures", "report"]
 
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -93,3 +95,35 @@ def released(aspect: float, tilt: float, source: str) -> Job:
         times=np.linspace(0.0, sampled, SAMPLES),
         options={"start": (theta, 0.0)},
     )
+
+
+def report(folder: Path) -> str:
+    """Reduce and draw a folder's free.csv; write and return the text."""
+    rows = read_table(folder / "free.csv")
+    tables = {
+        f"Largest relative error of the time between impacts and of the next rotation, and drift "
+        f"over up to {IMPACTS} impacts [1/p]": errors(rows, ["source", "tilt"]).reset_index()
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
+
+
+def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return the largest errors of each group of rows."""
+    sizes = rows.assign(drift_p=rows["drift_p"].abs())
+    return sizes.groupby(by, sort=False)[["period_error", "decay_error", "drift_p"]].max()
+
+
+def headline(folder: Path) -> str:
+    """Say to what each source follows the closed forms of its model, at worst."""
+    worst = errors(read_table(folder / "free.csv"), ["source"])[
+        ["period_error", "decay_error"]
+    ].max(axis=1)
+    words = [f"{name} {scientific(value)}" for name, value in worst.items()]
+    return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the errors of a folder from its free.csv alone."""
+    from studies.free.figure import draw_free
+
+    return {"free": draw_free(read_table(folder / "free.csv"))}

@@ -139,27 +139,6 @@ def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
     return worst[[*columns, "kappa", "kappa_eta", "sensitivity"]]
 
 
-def worst_text(worst: pd.DataFrame) -> str:
-    """Return the worst cases as an aligned table."""
-    shown = worst.assign(
-        exact_peak=worst["exact_peak"].map("{:.4f}".format),
-        error=worst["error"].map(scientific),
-        kappa=worst["kappa"].map("{:.3g}".format),
-        kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
-        sensitivity=worst["sensitivity"].map("{:.3g}".format),
-    )
-    return shown.rename(
-        columns={
-            "aspect": "H/B",
-            "width_m": "B m",
-            "omega_over_p": "ω/p",
-            "exact_peak": "θmax/θcr",
-            "kappa": "κ",
-            "kappa_eta": "κη",
-        }
-    ).to_string(index=False)
-
-
 def _word(outcome: object) -> str:
     return str(getattr(outcome, "value", outcome))
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from studies.drawing.facets import key, preset_dots
 from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of, in_order, preset_of, told
 
@@ -31,20 +31,16 @@ def draw_frames(lines: pd.DataFrame) -> Figure:
     lines : DataFrame
         The columns of frame-summary.csv.
     """
-    title = "A rocking frame: how far off its peak is, median to largest"
-    figure, axes, heights = _rows(lines, title)
-    for row in lines.to_dict("records"):
-        median, most = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
-        colour, y = told(preset_of(row["source"])).colour, heights[row["source"]]
-        axes.plot([median, most], [y, y], color=colour, linewidth=5, solid_capstyle="round")
-        axes.plot(median, y, "o", color=colour, markersize=7)
-        if row["wrong"]:
-            words = f"   {row['wrong']} of {row['frames']} fall wrongly"
-            axes.text(most, y, words, va="center", fontsize=8, color=colour, clip_on=False)
-    if lines["wrong"].any():
-        axes.set_xlim(right=ROOM * axes.get_xlim()[1])
-    axes.set_xlabel("error of the largest rotation of a column, relative  [–]")
-    return figure
+    bars = lines.assign(
+        low=lines["median_error"],
+        high=lines["largest_error"],
+        said=lines["wrong"].astype(str) + " of " + lines["frames"].astype(str) + " fall wrongly",
+    )
+    return _draw(
+        bars.assign(said=bars["said"].where(bars["wrong"] > 0, "")),
+        "A rocking frame: how far off its peak is, median to largest",
+        "error of the largest rotation of a column, relative  [–]",
+    )
 
 
 def draw_slides(lines: pd.DataFrame) -> Figure:
@@ -55,14 +51,12 @@ def draw_slides(lines: pd.DataFrame) -> Figure:
     lines : DataFrame
         The columns of slide-summary.csv.
     """
-    figure, axes, heights = _rows(lines, "A sliding block: the largest error of a slip")
-    for row in lines.to_dict("records"):
-        if not pd.isna(row["largest_slip_error_m"]):
-            colour = told(preset_of(row["source"])).colour
-            value = max(1e3 * row["largest_slip_error_m"], LOWEST)
-            axes.plot(value, heights[row["source"]], "o", color=colour, markersize=8)
-    axes.set_xlabel("largest error of a slip  [mm]")
-    return figure
+    off = 1e3 * lines["largest_slip_error_m"]
+    return _draw(
+        lines.assign(low=off, high=off, said=""),
+        "A sliding block: the largest error of a slip",
+        "largest error of a slip  [mm]",
+    )
 
 
 def draw_floors(lines: pd.DataFrame) -> Figure:
@@ -89,24 +83,35 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
     return figure
 
 
-def _rows(lines: pd.DataFrame, title: str) -> tuple[Figure, Axes, dict[str, float]]:
-    """Return a figure with a row for each engine, and the height of each source's bar in it."""
+def _draw(lines: pd.DataFrame, title: str, along: str) -> Figure:
+    """Draw a row for each engine, in it a bar for each preset from low to high, and what is said.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        Columns source, low, high and said, which stands behind the bar.
+    title, along : str
+        What stands above, and along the axis.
+    """
     engines = list(dict.fromkeys(map(engine_of, lines["source"])))
     presets = in_order(map(preset_of, lines["source"]))
     each = 0.25 + 0.12 * len(presets)
     figure = Figure(figsize=(8.0, 1.3 + each * len(engines)), layout="constrained")
     axes = figure.subplots()
-    apart = 0.6 / max(len(presets), 1)
-    heights = {
-        source: engines.index(engine_of(source))
-        + apart * (presets.index(preset_of(source)) - 0.5 * (len(presets) - 1))
-        for source in lines["source"]
-    }
+    for row in lines.to_dict("records"):
+        place = presets.index(preset_of(row["source"])) - 0.5 * (len(presets) - 1)
+        y = engines.index(engine_of(row["source"])) + 0.6 * place / len(presets)
+        ends = [max(row[name], LOWEST) for name in ("low", "high")]
+        colour = told(preset_of(row["source"])).colour
+        axes.plot(ends, [y, y], color=colour, linewidth=5, solid_capstyle="round")
+        axes.plot(ends[0], y, "o", color=colour, markersize=7)
+        axes.text(ends[1], y, f"   {row['said']}", va="center", fontsize=8, color=colour,
+                  clip_on=False)  # fmt: skip
     axes.set_yticks(range(len(engines)), [title_of(name) for name in engines])
-    axes.set(xscale="log", ylim=(len(engines) - 0.5, -0.5))
+    axes.set(xscale="log", ylim=(len(engines) - 0.5, -0.5), xlabel=along)
+    if lines["said"].any():
+        axes.set_xlim(right=ROOM * axes.get_xlim()[1])
     axes.grid(axis="x", alpha=0.25)
-    for preset in presets:
-        axes.plot([], [], "o", color=told(preset).colour, label=told(preset).short)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4, frameon=False)
+    key(figure, preset_dots(presets), 4, fontsize=10)
     axes.set_title(title, fontsize=12)
-    return figure, axes, heights
+    return figure

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pandas as pd
 
 from engines import ENGINES
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
-from studies.measures.words import listed
-from studies.measures.words import part as share
+from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.words import listed, part
 
 LATE_M = 1e-4
 """From which lag on a floor is late [m]."""
@@ -17,33 +16,25 @@ RIDES = 0.9
 
 
 def frame_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the engines' frames are."""
-    if lines.empty:
-        return "No engine that was asked is built for frames."
-    said = [
-        f"{in_words(preset)} by up to {share(found['largest_error'].max())} "
-        f"(median {share(found['median_error'].median())}{_wrong(found)})"
-        for preset, found in _by_preset(lines)
-    ]
-    return f"The peak of a rocking frame is off {', '.join(said)}."
+    """Say for each preset how far off the engines' frames are; empty without any."""
+    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
+    return f"The peak of a rocking frame is off by up to {listed(said)}." if said else ""
 
 
 def slide_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the slips are, and who creeps or lifts."""
-    if lines.empty:
-        return "No engine was asked about slides."
-    said = [
-        f"{in_words(preset)} by up to {_mm(part['largest_slip_error_m'].max())}"
-        for preset, part in _by_preset(lines)
+    """Say for each preset how far off the slips are; empty without any."""
+    largest = _largest(lines, "largest_slip_error_m")
+    said = [f"{1e3 * most:.2g} mm {words}" for words, most in largest]
+    return f"The slips of a block are off by up to {listed(said)}." if said else ""
+
+
+def _largest(lines: pd.DataFrame, column: str) -> list[tuple[str, float]]:
+    """Return each preset in words, with the largest value of its engines."""
+    presets = lines["source"].map(preset_of)
+    return [
+        (in_words(preset), float(lines.loc[presets == preset, column].max()))
+        for preset in in_order(presets)
     ]
-    creeps, lifts = (
-        lines.sort_values(name).dropna(subset=[name]).iloc[-1] for name in ("creep_m", "lift_m")
-    )
-    return (
-        f"The slips of a block are off {', '.join(said)}; held at nine tenths of its friction "
-        f"for two seconds it creeps by up to {_mm(creeps['creep_m'])} ({creeps['source']}), and "
-        f"one launched along its base lifts by up to {_mm(lifts['lift_m'])} ({lifts['source']})."
-    )
 
 
 def floor_sentence(lines: pd.DataFrame) -> str:
@@ -54,41 +45,8 @@ def floor_sentence(lines: pd.DataFrame) -> str:
     left = lines[~alone & (lines["carried"] > RIDES) & ~(lines["carried_after_rest"] > RIDES)]
     asleep = [ENGINES[str(name)].title for name in left["engine"].unique()]
     slept = f"; after a second of rest it sleeps on in {listed(asleep)}" if asleep else ""
-    most = share(float(lines.loc[alone, "carried"].abs().max()))
-    engines = lines.loc[alone, "engine"].nunique()
-    least = lines.loc[~alone, "carried"].min()
+    most, least = lines.loc[alone, "carried"].abs().max(), lines.loc[~alone, "carried"].min()
     return (
-        f"A floor that is moved by position alone carries a block by no more than {most} of its "
-        f"way in any of {engines} engines, one moved by the other ways by {share(least)} and "
-        f"more{slept}."
+        f"A floor that is moved by position alone carries a block by no more than {part(most)} of "
+        f"its way, one moved by the other ways by {part(least)} and more{slept}."
     )
-
-
-def block_sentence(lines: pd.DataFrame) -> str:
-    """Say what floors that lag cost a block's peak; empty where none does."""
-    late = lines[lines["floor_lag_m"] > LATE_M]
-    said = [
-        f"{row['source']}, whose floor lags by up to {_mm(row['floor_lag_m'])}, errs by "
-        f"{share(row['median_error'])}, "
-        f"on the floor as it moved by {share(row['median_own_error'])}"
-        for row in late.to_dict("records")
-    ]
-    return f"In the median {'; '.join(said)}." if said else ""
-
-
-def _wrong(part: pd.DataFrame) -> str:
-    wrong = part[part["wrong"] > 0]
-    named = [
-        f"{engine_of(row['source'])} {row['wrong']} of {row['frames']}"
-        for row in wrong.to_dict("records")
-    ]
-    return f"; the outcome wrong: {', '.join(named)}" if named else ""
-
-
-def _by_preset(lines: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    presets = lines["source"].map(preset_of)
-    return [(preset, lines[presets == preset]) for preset in in_order(presets)]
-
-
-def _mm(metres: float) -> str:
-    return f"{1e3 * metres:.2g} mm"

@@ -23,7 +23,7 @@ from studies.kit.tables import read_table
 from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
-from studies.scenes.findings import block_sentence, floor_sentence, frame_sentence, slide_sentence
+from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.sources.groups import core_sources
 
@@ -233,13 +233,10 @@ def engines_in(folder: Path) -> list[pd.DataFrame]:
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames, the slides, the floors and the blocks on them show."""
-    frames, slides, floors, blocks = engines_in(folder)
-    said = (
-        *(frame_sentence(frames), slide_sentence(slides)),
-        *(floor_sentence(floors), block_sentence(blocks)),
-    )
-    return " ".join(filter(None, said))
+    """Say what the frames, the slides and the floors show."""
+    frames, slides, floors, _ = engines_in(folder)
+    said = (frame_sentence(frames), slide_sentence(slides), floor_sentence(floors))
+    return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
 
 
 def pictures(folder: Path) -> Pictures:

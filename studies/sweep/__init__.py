@@ -2,6 +2,9 @@
 
 from studies.kit.study import Chapter, Study
 
+PULSES = {6: "half-sine", 7: "half-sine", 8: "full-sine", 9: "full-sine"}
+"""Figure of the paper -> its pulses."""
+
 STUDY = Study(
     name="sweep",
     module="studies.sweep.study",
@@ -17,15 +20,8 @@ once: a run that was interrupted goes on where it stopped when the same command 
         "summary.csv",
         "findings.csv",
         "findings.txt",
-        "figure-6.png",
-        "figure-7.png",
-        "figure-8.png",
-        "figure-9.png",
         "overview.png",
-        "presets-6.png",
-        "presets-7.png",
-        "presets-8.png",
-        "presets-9.png",
+        *(f"{kind}-{number}.png" for kind in ("figure", "presets") for number in PULSES),
     ),
     chapters=(
         Chapter(
@@ -61,49 +57,22 @@ once: a run that was interrupted goes on where it stopped when the same command 
             "error of the peak over all cases, with how many outcomes are wrong, and beside it "
             "the run time of a case."
         ),
-        "figure-6": (
-            "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
-            "and in the band who overturns; below, the relative error of it; a column for each "
-            "H/B."
-        ),
-        "figure-7": (
-            "Above, the largest rotation over the frequency of the half-sine pulses of figure 7, "
-            "and in the band who overturns; below, the relative error of it; a column for each "
-            "H/B."
-        ),
-        "figure-8": (
-            "Above, the largest rotation over the frequency of the full-sine pulses of figure 8, "
-            "and in the band who overturns; below, the relative error of it; a column for each "
-            "H/B."
-        ),
-        "figure-9": (
-            "Above, the largest rotation over the frequency of the full-sine pulses of figure 9, "
-            "and in the band who overturns; below, the relative error of it; a column for each "
-            "H/B."
-        ),
-        "presets-6": (
-            "Relative error of the largest rotation over the frequency of the half-sine pulses of "
-            "figure 6 as colour, a strip for each engine and preset, a column for each H/B; marked "
-            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
-            "answer (a cross)."
-        ),
-        "presets-7": (
-            "Relative error of the largest rotation over the frequency of the half-sine pulses of "
-            "figure 7 as colour, a strip for each engine and preset, a column for each H/B; marked "
-            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
-            "answer (a cross)."
-        ),
-        "presets-8": (
-            "Relative error of the largest rotation over the frequency of the full-sine pulses of "
-            "figure 8 as colour, a strip for each engine and preset, a column for each H/B; marked "
-            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
-            "answer (a cross)."
-        ),
-        "presets-9": (
-            "Relative error of the largest rotation over the frequency of the full-sine pulses of "
-            "figure 9 as colour, a strip for each engine and preset, a column for each H/B; marked "
-            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
-            "answer (a cross)."
-        ),
+        **{
+            f"figure-{number}": (
+                f"Above, the largest rotation over the frequency of the {pulse} pulses of figure "
+                f"{number}, and in the band who overturns; below, the relative error of it; a "
+                "column for each H/B."
+            )
+            for number, pulse in PULSES.items()
+        },
+        **{
+            f"presets-{number}": (
+                f"Relative error of the largest rotation over the frequency of the {pulse} pulses "
+                f"of figure {number} as colour, a strip for each engine and preset, a column for "
+                "each H/B; marked in red what outcomes are wrong: the fall (a square), at rest for "
+                "rocked (a dash), no answer (a cross)."
+            )
+            for number, pulse in PULSES.items()
+        },
     },
 )

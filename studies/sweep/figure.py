@@ -8,7 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.labels import Name, beside, breadth
+from studies.drawing.facets import error_scale
+from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, line_of, name_of, style_of
 
 OVERTURNED = "overturned"
@@ -16,15 +17,6 @@ TOP, ROW = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 LEAST, MOST = 1e-8, 1e1
 """Ends of the scale of errors."""
-MARKS = {1e-8: "10⁻⁸", 1e-6: "10⁻⁶", 1e-4: "10⁻⁴", 1e-2: "10⁻²", 1.0: "1"}
-"""What stands along it."""
-
-WIDTH, HEIGHT = 9.4, 6.6
-"""Of a figure [in]."""
-LEFT, BOTTOM, ABOVE = 0.67, 0.47, 0.47
-"""What the words around the panels need [in]."""
-BETWEEN = 0.15
-"""From one panel to the next [in]."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
@@ -36,95 +28,48 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
         Of one figure, from `studies.measures.differences.with_reference`.
     """
     first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
-    sources, panels = list(rows["source"].unique()), _by_aspect(rows)
-    # places are given, of panels and titles: to find them takes longer than all that is drawn
-    drawing = Figure(figsize=(WIDTH, HEIGHT))
+    sources = list(rows["source"].unique())
+    drawn = rows.sort_values("omega_over_p", kind="stable").assign(
+        survived=rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
+        error=rows["error"].abs().clip(LEAST, MOST),
+    )
+    panels = dict(list(drawn.groupby("aspect")))
+    drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
     grid = drawing.subplots(
-        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0),
-        gridspec_kw=_places(len(panels), breadth([*map(name_of, sources)])),
-    )  # fmt: skip
+        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
+    )
     for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
         _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
         _errors(lower, panel, widths[0])
-        upper.set_title(f"H/B = {aspect:g}", fontsize=10, y=1.0)
+        upper.set_title(f"H/B = {aspect:g}", fontsize=10)
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
     grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
                    ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
     grid[1, 0].set(yscale="log", ylim=(LEAST, MOST), ylabel="relative error of it  [–]")
-    grid[1, 0].set_yticks(list(MARKS), list(MARKS.values()))
+    error_scale(grid[1, 0].yaxis, LEAST, MOST)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
     _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    title = f"Figure {first['figure']}: {pulse}; {_widths(widths)}"
-    drawing.suptitle(title, fontsize=11, y=0.994)
-    return drawing
-
-
-def _by_aspect(rows: pd.DataFrame) -> dict[float, pd.DataFrame]:
-    """Return what is drawn of the rows, in the order of the frequency, for each H/B."""
-    drawn = pd.DataFrame(
-        {
-            "source": rows["source"],
-            "width_m": rows["width_m"],
-            "x": rows["omega_over_p"],
-            "outcome": rows["outcome"],
-            "survived": rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
-            "error": rows["error"].abs().clip(LEAST, MOST),
-        }
-    )
-    order = rows["omega_over_p"].argsort(kind="stable")
-    return dict(list(drawn.iloc[order].groupby(rows["aspect"])))
-
-
-def _places(columns: int, beside_them: float) -> dict[str, float]:
-    """Return where the panels stand, in shares of the figure and of a panel.
-
-    Parameters
-    ----------
-    columns : int
-        How many panels stand beside each other.
-    beside_them : float
-        Width of what stands at the right of the last [in].
-    """
-    right, top = WIDTH - beside_them, HEIGHT - ABOVE
-    return {
-        "left": LEFT / WIDTH,
-        "right": right / WIDTH,
-        "bottom": BOTTOM / HEIGHT,
-        "top": top / HEIGHT,
-        "wspace": columns * BETWEEN / (right - LEFT - (columns - 1) * BETWEEN),
-        "hspace": 2 * BETWEEN / (top - BOTTOM - BETWEEN),
-    }
-
-
-def _widths(widths: Sequence[float]) -> str:
-    """Say which widths are shown."""
-    first, *others = (f"B = {width_m:g} m" for width_m in widths)
+    narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
     pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
-    return first + pale
+    drawing.suptitle(f"Figure {first['figure']}: {pulse}; {narrowest}{pale}", fontsize=11)
+    return drawing
 
 
 def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
     for number, source in enumerate(sources):
         style = style_of(source)
         points = panel[panel["source"] == source]
-        if style.line:
-            axes.plot(
-                points["x"],
-                points["survived"],
-                style.line,
-                color=style.colour,
-                linewidth=style.width,
-            )
-        else:
-            axes.plot(points["x"], points["survived"], **style.points(4.0), zorder=4)
+        line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
+        look = line if style.line else {**style.points(4.0), "zorder": 4}
+        axes.plot(points["omega_over_p"], points["survived"], **look)
         _beyond_the_scale(axes, points[points["survived"] > TOP], style)
         for outcome, level, mark, size in (
             (OVERTURNED, _level(number), "s", 2.6),
             ("failed", 0.02, "*", 6.0),
         ):
-            x = points.loc[points["outcome"] == outcome, "x"]
+            x = points.loc[points["outcome"] == outcome, "omega_over_p"]
             if len(x):
                 axes.plot(x, [level] * len(x), mark, color=style.colour, markersize=size)
     axes.axhspan(TOP, _level(len(sources) - 0.7), color="#eeeeee", zorder=0)
@@ -140,7 +85,7 @@ def _level(number: float) -> float:
 
 def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
     """Point to survivors above the scale: beyond θcr, and brought back by the ground."""
-    for x, peak in zip(survivors["x"], survivors["survived"], strict=True):
+    for x, peak in zip(survivors["omega_over_p"], survivors["survived"], strict=True):
         axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
         axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
 
@@ -151,7 +96,7 @@ def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
         source = str(name)
         look = {**style_of(source).points(3.0), "linestyle": line_of(source), "linewidth": 0.9}
         pale = {"alpha": 0.3, "zorder": 2} if width_m != narrowest else {"zorder": 3}
-        axes.plot(points["x"], points["error"], **look, **pale)
+        axes.plot(points["omega_over_p"], points["error"], **look, **pale)
 
 
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
@@ -162,7 +107,7 @@ def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequ
         upper, [Name(name_of(s), 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size
     )
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
-    last = known.groupby("source", sort=False)[["x", "error"]].last()
+    last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
     beside(
         lower,
         [Name(name_of(str(s)), x, error, colours[str(s)]) for s, x, error in last.itertuples()],

@@ -5,27 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from textwrap import fill
 from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.paper import sweep_cases
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
-from studies.measures.claims import findings_text, write_findings
-from studies.measures.differences import (
-    summarize,
-    summary_text,
-    with_reference,
-    worst_cases,
-    worst_text,
-)
+from studies.measures.claims import write_findings
+from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
 from studies.measures.posed import posed
 from studies.measures.words import capital
@@ -82,29 +75,23 @@ def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -
 
 
 def report(folder: Path) -> str:
-    """Reduce and draw a folder's sweep.csv; return the summary and the findings as text."""
+    """Reduce and draw a folder's sweep.csv; return what it shows, and what of the paper holds."""
     rows = read(folder)
     compared = with_reference(rows)
-    table = summarize(compared)
+    table, found = summarize(compared), findings(compared)
     write_table(folder / "summary.csv", table)
-    found = findings(compared)
     write_findings(folder, found)
-    conclusions = findings_text(found)
-    keep(folder, drawn(compared, table), conclusions)
-    return "\n".join(
-        [
-            "Difference from exact: errors of the peak θmax/θcr are relative, over cases that both",
-            "survive, S being the largest of |∂ln θmax/∂ln a_p|, |∂ln θmax/∂ln η| and the change",
-            "of the peak over that of a_p or η when one of these moves by ±1e-4 or ±1e-6; outcomes",
-            "right; wrong in three kinds: the fall (overturned falsely + overturning missed), at",
-            "rest for rocked or the reverse, and none, no answer.",
-            fill(f"{capital(posed(rows).words)}:", 99),
-            summary_text(table),
-            "\nThe case where each source errs most; κ = ∂ln θmax/∂ln a_p, κη = ∂ln θmax/∂ln η:",
-            worst_text(worst_cases(compared)),
-            f"\nThe paper's conclusions:\n{conclusions}",
-        ]
-    )
+    tables = {
+        "All figures": over_all(table),
+        "The case where each source errs most": worst_cases(compared),
+        "The paper's conclusions": pd.DataFrame(
+            {
+                "holds": [item.verdict for item in found],
+                "statement": [item.statement for item in found],
+            }
+        ),
+    }
+    return tell(folder, drawn(compared, table), headline(folder), tables)
 
 
 def pictures(folder: Path) -> Pictures:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -9,7 +10,6 @@ import pandas as pd
 
 from studies.kit.jobs import Job
 from studies.measures.halving import estimates_of, halved, published_trust
-from studies.measures.words import out_of
 
 HALVES = "halves"
 """Table of the rows at half the step."""
@@ -34,23 +34,24 @@ def with_bounds(compared: pd.DataFrame, finer: pd.DataFrame) -> pd.DataFrame:
         The same cases at half the step.
     """
     found = compared.assign(estimate=estimates_of(compared, finer))
-    trusts = {source: published_trust(str(source)) for source in compared["source"].unique()}
-    factors = {source: trust.factor for source, trust in trusts.items() if trust is not None}
-    return found.assign(bound=found["estimate"] * found["source"].map(factors).astype(float))
+    return found.assign(bound=found["estimate"] * found["source"].map(_factors(found)))
 
 
-def bounds_text(compared: pd.DataFrame) -> str:
-    """Say of every source how many of its errors the published factor bounds."""
-    lines = []
-    for source, rows in compared.groupby("source", sort=False):
-        known = rows.dropna(subset=["error", "estimate"])
-        if known.empty:
-            continue
-        trust = published_trust(str(source))
-        if trust is None:
-            lines.append(f"{source}: its estimates were never held against errors")
-            continue
-        bounded = int((known["error"].abs() <= known["bound"]).sum())
-        words = trust.warning() or f"times {trust.factor:.3g} bounds {out_of(bounded, len(known))}"
-        lines.append(f"{source}: {words}")
-    return "\n".join(lines)
+def bounded(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return of every source with estimates its factor, and how many errors that bounds.
+
+    The factor is nan of a source whose estimates were never held against errors.
+    """
+    known = compared.dropna(subset=["error", "estimate"])
+    known = known.assign(
+        factor=known["source"].map(_factors(known)), within=known["error"].abs() <= known["bound"]
+    )
+    groups = known.groupby("source", sort=False)
+    return groups.agg(
+        factor=("factor", "first"), survivors=("within", "size"), bounded=("within", "sum")
+    ).reset_index()
+
+
+def _factors(rows: pd.DataFrame) -> dict[str, float]:
+    trusts = {source: published_trust(str(source)) for source in rows["source"].unique()}
+    return {source: math.nan if trust is None else trust.factor for source, trust in trusts.items()}

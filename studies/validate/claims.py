@@ -1,13 +1,21 @@
-"""What random cases say, and what was left out of them."""
+"""What random cases say, in tables and a sentence, and what was left out of them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf
 
 import pandas as pd
 
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
-from studies.measures.differences import WELL_CONDITIONED, sensitivity_of
+from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
 from studies.measures.words import NAMED, gathered, listed, part, right_of
+from studies.measures.wrongness import counted, wrong_in
+
+PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
+"""Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
 
 LEFT_OUT = {
     "near": f"the normal force falls to {LEAST_NORMAL:g} of the weight or less",
@@ -79,24 +87,69 @@ def _sizes(compared: pd.DataFrame) -> str:
     return listed([part(size) for size in largest])
 
 
-def drawn_text(counted: pd.DataFrame) -> str:
-    """Say how many cases were drawn and kept, which were not, and how many of each overturn.
+def quantiles(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
+    levels = {"median_error": 0.5, "p90_error": 0.9, "p99_error": 0.99, "max_error": 1.0}
+    return pd.DataFrame(
+        [
+            {
+                "source": source,
+                "cases": len(rows),
+                "agree": rows["agrees"].sum(),
+                **counted(wrong_in(rows)),
+                **{name: rows["error"].abs().quantile(level) for name, level in levels.items()},
+            }
+            for source, rows in compared.groupby("source", sort=False)
+        ]
+    )
+
+
+def worst(compared: pd.DataFrame, count: int = 5) -> pd.DataFrame:
+    """Return the cases that each source gets wrong, and then those in which it errs most."""
+    size = compared["error"].abs().where(compared["agrees"], inf)
+    order = compared.assign(size=size).sort_values("size", ascending=False)
+    first = order.groupby("source").head(count).sort_values("source", kind="stable")
+    posed = ["case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p"]
+    found = ["outcome", "exact_outcome", "exact_peak", "error"]
+    return first[["source", *posed, *found, "kappa", "kappa_eta", "sensitivity"]]
+
+
+def bands(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source and band of the cases that survive in the exact solution.
 
     Parameters
     ----------
-    counted : DataFrame
-        From `census`.
+    compared : DataFrame
+        With the columns of `studies.measures.differences.with_reference`.
+
+    Returns
+    -------
+    DataFrame
+        source, by (peak or κ), band, cases, right (outcomes), median_error and max_error, which
+        are divided by nothing.
     """
-    drawn, kept, *others = (line for _, line in counted.iterrows())
-    left = [
-        f"in {line['cases']} ({line['overturned']} overturn) {line['why']}"
-        for line in others
-        if line["cases"]
-    ]
-    return (
-        f"Of {drawn['cases']} drawn "
-        f"{part(drawn['share'])} overturn, and {part(kept['share'])} of the {kept['cases']} kept: "
-        f"those where the normal force stays above {LEAST_NORMAL:g} of the weight, of a block that "
-        "overturns until it passes θcr for good. "
-        f"Left out: {'; '.join(left) or 'none'}."
+    rocked = compared[compared["exact_outcome"] == "rocked"]
+    ways = {"peak": (rocked["exact_peak"], PEAKS), "κ": (conditioning_of(rocked), KAPPAS)}
+    return pd.concat(
+        [_in_bands(rocked.assign(by=by, band=_band(*way))) for by, way in ways.items()],
+        ignore_index=True,
     )
+
+
+def _band(values: pd.Series[float], ends: Sequence[float]) -> pd.Series[str]:
+    """Return the name of the band of each value."""
+    between = [f"from {low:g} to {high:g}" for low, high in pairwise(ends)]
+    names = [f"below {ends[0]:g}", *between, f"above {ends[-1]:g}"]
+    return pd.cut(values, [0.0, *ends, inf], right=False, labels=names)
+
+
+def _in_bands(rows: pd.DataFrame) -> pd.DataFrame:
+    sizes = rows.assign(size=rows["error"].abs()).sort_values("band", kind="stable")
+    groups = sizes.groupby(["source", "by", "band"], sort=False, observed=True)
+    table = groups.agg(
+        cases=("agrees", "size"),
+        right=("agrees", "sum"),
+        median_error=("size", "median"),
+        max_error=("size", "max"),
+    ).reset_index()
+    return table.astype({"band": str})

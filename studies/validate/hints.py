@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from engines.hints import TRUE, Hints
 from studies.kit.jobs import Job
-from studies.measures.differences import scientific, sensitivity_of
+from studies.measures.differences import sensitivity_of
 from studies.sources.registry import Effort, resolve
 
 if TYPE_CHECKING:
@@ -35,25 +35,6 @@ FALSE: Mapping[str, Hints] = {
     "fall twice as fast": Hints(fall=2.0),
 }
 """Name -> what the steps are told."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Leaning:
-    """How a source fares with a hint.
-
-    `right` and `still` count outcomes that agree, of as many cases that lift the block and of as
-    many that do not. Errors of the peak are relative, over cases that survive both; `over_kappa` is
-    the largest error over what errors are judged against.
-    """
-
-    source: str
-    hint: str
-    cases: int
-    right: int
-    still: int
-    median_error: float
-    max_error: float
-    over_kappa: float
 
 
 def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
@@ -83,7 +64,7 @@ def calm(case: RandomCase) -> RandomCase:
     return replace(case, amplitude_g=CALM / case.aspect)
 
 
-def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> list[Leaning]:
+def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> pd.DataFrame:
     """Hold rows with false hints beside those of the same cases and sources with true ones.
 
     Parameters
@@ -91,43 +72,31 @@ def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> list[Leaning]:
     known, hinted : DataFrame
         Rows with the columns of `studies.measures.differences.with_reference`, and hint in the
         second.
+
+    Returns
+    -------
+    DataFrame
+        source and hint; right and still, the outcomes that agree of so many cases that lift the
+        block and of as many that do not; the median and the largest error of the peaks that survive
+        both, and over_kappa, the largest error over what errors are judged against.
     """
     same = known["case"].isin(hinted["case"]) & known["source"].isin(hinted["source"])
     rows = pd.concat([known[same].assign(hint=KNOWN), hinted], ignore_index=True)
-    size = rows["error"].abs()
-    lifts = rows["exact_outcome"] != "at rest"
+    rows = rows.iloc[pd.factorize(rows["source"])[0].argsort(kind="stable")]
+    lifts, size = rows["exact_outcome"] != "at rest", rows["error"].abs()
     rows = rows.assign(
-        cases=lifts,
+        lifts=lifts,
         right=lifts & rows["agrees"],
         still=~lifts & rows["agrees"],
         size=size,
         scaled=size / sensitivity_of(rows),
     )
-    return [
-        Leaning(
-            source=str(source),
-            hint=str(hint),
-            **{name: int(group[name].sum()) for name in ("cases", "right", "still")},
-            median_error=float(group["size"].median()),
-            max_error=float(group["size"].max()),
-            over_kappa=float(group["scaled"].max()),
-        )
-        for source, part in rows.groupby("source", sort=False)
-        for hint, group in part.groupby("hint", sort=False)
-    ]
-
-
-def leanings_text(table: pd.DataFrame) -> str:
-    """Return leanings as an aligned table."""
-    shown = pd.DataFrame(
-        {
-            "source": table["source"].mask(table["source"].duplicated(), ""),
-            "hint": table["hint"],
-            "outcomes": table["right"].astype(str) + "/" + table["cases"].astype(str),
-            "stay": table["still"].astype(str) + "/" + table["cases"].astype(str),
-            "median": table["median_error"].map(scientific),
-            "max": table["max_error"].map(scientific),
-            "max over S": table["over_kappa"].map(scientific),
-        }
-    )
-    return shown.to_string(index=False)
+    groups = rows.groupby(["source", "hint"], sort=False)
+    return groups.agg(
+        cases=("lifts", "sum"),
+        right=("right", "sum"),
+        still=("still", "sum"),
+        median_error=("size", "median"),
+        max_error=("size", "max"),
+        over_kappa=("scaled", "max"),
+    ).reset_index()

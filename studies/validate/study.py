@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from textwrap import fill
 from typing import Annotated
 
 import pandas as pd
 
 from studies.cases.drawn import draw
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
 from studies.kit.arguments import Count, Out, check_sources
 from studies.kit.jobs import Job
@@ -22,21 +20,19 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
-from studies.measures.differences import (
-    WELL_CONDITIONED,
-    scientific,
-    sensitivity_of,
-    with_reference,
-)
+from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import ELSEWHERE
-from studies.measures.wrongness import WORDS, counted, wrong_in
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
-from studies.validate.bands import bands, bands_text
-from studies.validate.bounds import HALVES, bounds_text, half_jobs, with_bounds
-from studies.validate.claims import census, drawn_text, first_claim
-from studies.validate.hints import CALM, HINTED, hint_jobs, leanings, leanings_text
+from studies.validate.bounds import HALVES, bounded, half_jobs, with_bounds
+from studies.validate.claims import bands, census, first_claim, quantiles, worst
+from studies.validate.hints import CALM, HINTED, hint_jobs, leanings
+
+S_IS = (
+    "S is the largest of κ, κη and the sensitivity: by how many per cent a peak moves for one of "
+    "the pulse, or of the velocity ratio of impacts."
+)
 
 
 def command(
@@ -128,63 +124,39 @@ def report(folder: Path) -> str:
     hint, where hints.csv is there; drawn.csv says how many cases were drawn, kept and left out,
     and what share of each overturns.
     """
+    settings = provenance.record_of(folder)["settings"]
     compared = compare(folder, "validate")
     if halves := (folder / f"{HALVES}.csv").exists():
         compared = with_bounds(compared, compare(folder, HALVES))
-    write_table(folder / "errors.csv", compared)
-    seed = provenance.record_of(folder)["settings"]["seed"]
-    write_table(folder / "drawn.csv", census(seed, compared["case"].nunique()))
-    judged, by_band = sensitivity_of(compared), bands(compared)
-    write_table(folder / "bands.csv", by_band)
-    calm = compared[judged < WELL_CONDITIONED]
-    text = "\n".join(
-        [
-            "Relative error of the peak over cases that survive both, outcomes right:",
-            summary_text(compared),
-            "\nMedian and largest of them in bands of the exact peak over θcr, and of κ, which is",
-            "the larger of |∂ln θmax/∂ln a_p| and |∂ln θmax/∂ln η|:",
-            bands_text(by_band),
-            f"\nThe same where S is below {WELL_CONDITIONED:g}, the larger of κ and of the change",
-            "of the peak over that of a_p or η when one of these moves by ±1e-4 or ±1e-6:",
-            summary_text(calm),
-            "\nError over S, the relative error of the pulse or of the impact that does as much:",
-            summary_text(compared.assign(error=compared["error"] / judged)),
-            "\nThe largest errors:",
-            worst_text(compared),
-            *leaning_lines(folder, compared),
-            *(bounds_lines(folder, compared) if halves else ()),
-            "",
-            fill(drawn_text(pd.read_csv(folder / "drawn.csv")), 99),
-        ]
-    )
-    return keep(folder, pictures(folder), text)
+    judged = sensitivity_of(compared)
+    left, in_bands = census(settings["seed"], compared["case"].nunique()), bands(compared)
+    kept = {"errors": compared, "drawn": left, "bands": in_bands}
+    tables = {
+        "Errors of the peak where both survive": quantiles(compared),
+        f"The same where S is below {WELL_CONDITIONED:g}": quantiles(
+            compared[judged < WELL_CONDITIONED]
+        ),
+        "Errors over S": quantiles(compared.assign(error=compared["error"] / judged)),
+        **{f"In bands of {by}": rows for by, rows in in_bands.groupby("by", sort=False)},
+        "The largest errors": worst(compared),
+    }
+    if (folder / "hints.csv").exists():
+        kept["leaning"] = leanings(compared, compare(folder, "hints"))
+        title = f"False hints; still: of as many cases at {CALM:g} of what lifts the block"
+        tables[title] = kept["leaning"]
+    if halves:
+        own = Effort(step=settings["step"], accuracy=settings["accuracy"]).own
+        title = "Errors bounded by the difference from half the step, times a factor"
+        tables[title if own else f"{title} ({ELSEWHERE})"] = bounded(compared)
+    tables["Cases that were drawn"] = left
+    for name, table in kept.items():
+        write_table(folder / f"{name}.csv", table)
+    return tell(folder, pictures(folder), f"{first_claim(compared)} {S_IS}", tables)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:
     """Read a table back, and hold it against the exact solution."""
     return with_reference(pd.read_csv(folder / f"{table}.csv", dtype={"message": str}))
-
-
-def leaning_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
-    """Write leaning.csv, and return what it says; nothing where no source was given hints."""
-    if not (folder / "hints.csv").exists():
-        return []
-    table = pd.DataFrame(map(asdict, leanings(compared, compare(folder, "hints"))))
-    write_table(folder / "leaning.csv", table)
-    cases = table["cases"].max()
-    return [
-        f"\nWhat landing steps lean on: the first {cases} cases with hints that are false,",
-        f"and again at {CALM:g} of what lifts the block, where it must stay:",
-        leanings_text(table),
-    ]
-
-
-def bounds_lines(folder: Path, compared: pd.DataFrame) -> list[str]:
-    """Say what the estimates bound, and if their factors were found at other steps."""
-    settings = provenance.record_of(folder)["settings"]
-    own = Effort(step=settings["step"], accuracy=settings["accuracy"]).own
-    text = "\nOf the errors of the peak the relative difference from that at half the step,"
-    return [text, bounds_text(compared), *(() if own else (f"({ELSEWHERE})",))]
 
 
 def pictures(folder: Path) -> Pictures:
@@ -197,52 +169,3 @@ def pictures(folder: Path) -> Pictures:
 def headline(folder: Path) -> str:
     """Say how many outcomes each source gets right, and its largest errors."""
     return first_claim(pd.read_csv(folder / "errors.csv"))
-
-
-def summary_text(compared: pd.DataFrame) -> str:
-    """Return outcomes and quantiles of the error of each source as an aligned table."""
-    lines = []
-    for source, group in compared.groupby("source", sort=False):
-        errors = group["error"].abs().dropna()
-        quantiles = [float(errors.quantile(q)) for q in (0.5, 0.9, 0.99, 1.0)]
-        right = f"{int(group['agrees'].sum())}/{len(group)}"
-        wrong = counted(wrong_in(group)).values()
-        lines.append([source, right, *wrong, *(scientific(value) for value in quantiles)])
-    if not lines:
-        return "no such case"
-    columns = ["source", "outcomes", *WORDS.values(), "median", "p90", "p99", "max"]
-    return pd.DataFrame(lines, columns=columns).to_string(index=False)
-
-
-def worst_text(compared: pd.DataFrame, count: int = 5) -> str:
-    """Return the cases in which each source errs most, and those of which it gets wrong."""
-    erring = compared.assign(size=compared["error"].abs().where(compared["agrees"], math.inf))
-    worst = erring.sort_values("size", ascending=False).groupby("source", sort=False).head(count)
-    shown = worst.sort_values(["source", "size"], ascending=[True, False]).assign(
-        error=worst["error"].map(scientific),
-        aspect=worst["aspect"].map("{:.2f}".format),
-        width_m=worst["width_m"].map("{:.3g}".format),
-        amplitude=(worst["amplitude_g"] * worst["aspect"]).map("{:.3f}".format),
-        omega_over_p=worst["omega_over_p"].map("{:.3f}".format),
-        exact_peak=worst["exact_peak"].map("{:.3g}".format),
-        kappa=worst["kappa"].map("{:.3g}".format),
-        kappa_eta=worst["kappa_eta"].map("{:.3g}".format),
-        sensitivity=worst["sensitivity"].map("{:.3g}".format),
-    )
-    names = {
-        "source": "source",
-        "case": "case",
-        "aspect": "H/B",
-        "width_m": "B m",
-        "half_cycles": "n",
-        "amplitude": "a/onset",
-        "omega_over_p": "ω/p",
-        "outcome": "outcome",
-        "exact_outcome": "exact",
-        "exact_peak": "peak",
-        "error": "error",
-        "kappa": "κ",
-        "kappa_eta": "κη",
-        "sensitivity": "sensitivity",
-    }
-    return shown[list(names)].rename(columns=names).to_string(index=False)

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from studies.drawing.facets import dot, key, panels
 from studies.drawing.styles import name_of, style_of
 
 SYMBOLS = {
@@ -29,8 +30,6 @@ HOLDS, ENDS = "#e8f0f5", "#f4d3bd"
 """Colours of where the reference is valid, and of where its pivot would need to be pulled."""
 
 SMALLEST_SLIP = 1e-9
-ACROSS = 2
-"""Panels in a row."""
 
 
 def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
@@ -41,44 +40,41 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     table, beside : DataFrame
         map.csv and compared.csv.
     """
-    aspects, sources = sorted(table["aspect"].unique()), list(beside["source"].unique())
-    drawing, panels = _panels(len(aspects), 3.8)
+    sources = list(beside["source"].unique())
     own = beside[beside["friction_factor"].isna()]
-    for axes, aspect in zip(panels, aspects, strict=True):
+    names = ("frequency  ω/p  [–]", "amplitude  $a_p$ / (g tan α)  [–]")
+    drawing, by_aspect = _panels(table["aspect"], 3.8, *names)
+    for aspect, axes in by_aspect.items():
         _map(axes, table[table["aspect"] == aspect])
         _verdicts(axes, own[own["aspect"] == aspect], sources)
-        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
-    for axes in panels[-ACROSS:]:
-        axes.set_xlabel("frequency  ω/p  [–]")
-    for axes in panels[::ACROSS]:
-        axes.set_ylabel("amplitude  $a_p$ / (g tan α)  [–]")
     drawing.suptitle(
         "Full-sine pulses: where the reference holds, and what engines do", fontsize=11
     )
-    seen = [verdict for verdict in SYMBOLS if verdict in set(own["verdict"])]
     handles = [
         Patch(facecolor=HOLDS, edgecolor="#888888", label="the reference holds"),
         Patch(facecolor=ENDS, edgecolor="#888888", label="its pivot would lift off"),
         Line2D([], [], color="#444444", linestyle="--", linewidth=1.0, label="it overturns"),
         *(
-            Line2D([], [], linestyle="none", color="black", marker=f"${SYMBOLS[verdict]}$",
-                   markersize=9 if verdict != "held" else 5, label=verdict)
-            for verdict in seen
+            dot(verdict, f"${symbol}$", "black", markersize=9 if verdict != "held" else 5)
+            for verdict, symbol in SYMBOLS.items()
+            if verdict in set(own["verdict"])
         ),
-    ]  # fmt: skip
-    drawing.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False,
-                   fontsize=9, title=_whose(sources), title_fontsize=9)  # fmt: skip
+    ]
+    key(drawing, handles, 4, title=_whose(sources), title_fontsize=9)
     return drawing
 
 
-def _panels(count: int, height: float) -> tuple[Figure, list[Axes]]:
-    """Return a figure of some panels in rows of two, each of a height [inches]."""
-    down = math.ceil(count / ACROSS)
-    drawing = Figure(figsize=(8.6, height * down + 1.0), layout="constrained")
-    panels = list(drawing.subplots(down, ACROSS, sharex=True, sharey=True, squeeze=False).flat)
-    for axes in panels[count:]:
-        axes.set_visible(False)
-    return drawing, panels[:count]
+def _panels(
+    aspects: pd.Series[float], height: float, along: str, up: str
+) -> tuple[Figure, dict[float, Axes]]:
+    """Return a figure with a panel for each H/B, two in a row, of a height [in] and two axes."""
+    each = sorted(aspects.unique())
+    drawing, grid = panels(len(each), 2, (4.3, height), sharex=True, sharey=True)
+    for axes, aspect in zip(grid, each, strict=True):
+        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+        axes.set(xlabel=along, ylabel=up)
+        axes.label_outer()
+    return drawing, dict(zip(each, grid, strict=True))
 
 
 def _whose(sources: list[str]) -> str:
@@ -97,21 +93,17 @@ def draw_friction(beside: pd.DataFrame) -> Figure:
     beside : DataFrame
         compared.csv.
     """
-    aspects, sources = sorted(beside["aspect"].unique()), list(beside["source"].unique())
-    drawing, panels = _panels(len(aspects), 3.2)
+    sources = list(beside["source"].unique())
     rows = beside[beside["friction_factor"].notna()]
-    for axes, aspect in zip(panels, aspects, strict=True):
+    names = ("friction / friction needed  [–]", "slide of the pivot over B  [–]")
+    drawing, by_aspect = _panels(beside["aspect"], 3.2, *names)
+    for aspect, axes in by_aspect.items():
         _slips(axes, rows[rows["aspect"] == aspect], sources)
-        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
-    for axes in panels[-ACROSS:]:
-        axes.set_xlabel("friction / friction needed  [–]")
-    for axes in panels[::ACROSS]:
-        axes.set_ylabel("slide of the pivot over B  [–]")
     drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
     handles = [
         Line2D([], [], **style_of(name).points(6.0), label=name_of(name)) for name in sources
     ]
-    drawing.legend(handles=handles, loc="outside lower center", ncols=len(sources), frameon=False)
+    key(drawing, handles, len(sources), fontsize=10)
     return drawing
 
 
@@ -156,11 +148,7 @@ def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
         beside = 1.0 + 0.012 * (number - 0.5 * (len(sources) - 1))
         gone = group["verdict"].isin(["slid away", "flew off"])
         slip = group["slip_widths"].clip(lower=SMALLEST_SLIP).mask(gone, 0.2)
-        axes.plot(
-            beside * group["friction_factor"],
-            slip,
-            **style_of(source).points(4.5),
-        )
+        axes.plot(beside * group["friction_factor"], slip, **style_of(source).points())
     axes.axvline(1.0, color="#999999", linewidth=1.0)
     axes.set(yscale="log")
     axes.set_ylim(0.5 * SMALLEST_SLIP, 0.5)

@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import BadInputError, Out, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -24,7 +24,7 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import compared, findings, first_claim
+from studies.validity.report import CASE, compared, first_claim, needs, verdicts
 
 MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
 MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
@@ -147,18 +147,24 @@ def report(folder: Path) -> str:
     """Reduce a folder's tables to compared.csv, the drawing and the findings; return these."""
     rows = pd.read_csv(folder / "validity.csv", dtype={"message": str})
     table = pd.read_csv(folder / "map.csv")
-    exact = reference_map(_cases(rows))
-    beside = compared(rows, exact)
-    write_table(folder / "compared.csv", beside)
-    return keep(folder, pictures(folder), findings(beside, table))
-
-
-def _cases(rows: pd.DataFrame) -> list[ValidityCase]:
-    named = rows[["aspect", "onsets", "omega_over_p"]].drop_duplicates()
-    return [
+    cases = [
         ValidityCase(aspect=aspect, onsets=onsets, omega_over_p=omega)
-        for aspect, onsets, omega in named.to_numpy(float).tolist()
+        for aspect, onsets, omega in rows[CASE].drop_duplicates().to_numpy(float).tolist()
     ]
+    beside = compared(rows, reference_map(cases))
+    write_table(folder / "compared.csv", beside)
+    own = beside["friction_factor"].isna()
+    normal = pd.cut(beside["min_normal"], [-math.inf, -0.5, 0.0, 0.2, math.inf])
+    tables = {
+        "What the reference needs under full sines": needs(table),
+        "Engines that hardly slide, by the normal force over the weight": verdicts(
+            beside[own], normal[own]
+        ),
+        "Engines with a part of the friction needed": verdicts(
+            beside[~own], beside.loc[~own, "friction_factor"]
+        ),
+    }
+    return tell(folder, pictures(folder), first_claim(table), tables)
 
 
 def pictures(folder: Path) -> Pictures:

@@ -15,7 +15,7 @@ from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import Stepping
 from engines.mujoco.settings import TUNED, MujocoSettings
-from engines.parts.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEPS
+from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.run.drive import build, run
@@ -242,11 +242,13 @@ def test_a_failure_is_no_error_of_zero(small_table):
     rows.loc[left, ["outcome", "peak_ratio"]] = ["failed", math.nan]
     table = variant_table(rows)
     line = table[(table["factor"] == "damping") & (table["level"] == "default")].iloc[0]
+    alone = table[(table["factor"] == "damping") & (table["level"] == AS_BEST)].iloc[0]
     assert line["failed"] == line["cases"]
     assert math.isnan(line["max_error"])
-    first = recommendation(table).iloc[0]
+    first = recommendation(table, line["engine"]).iloc[0]
     assert first["set"] == "damping 0.0"
-    assert "failed or wrong" in first["without"]
+    assert first["failed"] == line["cases"]
+    assert first["max_error_alone"] == pytest.approx(alone["max_error"])
 
 
 def test_jobs_survive_json():

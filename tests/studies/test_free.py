@@ -15,8 +15,7 @@ from engines.scene import ACCURACIES
 from studies.free import STUDY
 from studies.free import errors as free
 from studies.free.errors import crest, next_amplitude, reduce, swing_times, turning_points
-from studies.free.report import report
-from studies.free.study import plan, released
+from studies.free.study import plan, released, report
 from studies.kit.jobs import ask
 from studies.kit.options import Running
 from studies.kit.plan import fill

@@ -11,6 +11,7 @@ from analytic.response import Reason, Response
 from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
+from studies.validity import report as validity
 from studies.validity.cases import ValidityCase, grid, reference_map
 from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
 
@@ -114,6 +115,41 @@ def test_verdicts(response, verdict, outcome):
     assert (row["verdict"], row["outcome"]) == (verdict, outcome)
 
 
+def test_what_the_reference_needs_is_told_of_survivors():
+    table = pd.DataFrame(
+        {
+            "aspect": [1.0] * 4 + [3.0],
+            "onsets": [1.2, 1.5, 2.0, 8.0, 4.0],
+            "outcome": ["rocked", "rocked", "rocked", "overturned", "rocked"],
+            "min_normal": [0.1, -0.2, -0.3, -0.4, 0.3],
+            "friction_needed": [1.1, math.inf, math.inf, math.inf, 0.4],
+        }
+    )
+    squat, slender = validity.needs(table).to_dict("records")
+    assert (squat["cases"], squat["lifted"], squat["survivors_lifted"]) == (4, 3, 2)
+    assert (squat["from_onsets"], squat["least_friction"]) == (1.5, 1.1)
+    assert math.isnan(slender["from_onsets"]) and slender["median_friction"] == 0.4
+
+
+def test_verdicts_are_counted_by_source_and_class():
+    rows = pd.DataFrame(
+        {
+            "source": "mujoco:fixed",
+            "verdict": ["held", "held", "slid"],
+            "agrees": [True, False, True],
+            "error": [-0.3, math.nan, 0.1],
+            "slip_widths": [0.0, 1e-6, 0.2],
+            "hop_widths": 0.0,
+        }
+    )
+    first, last = validity.verdicts(rows, pd.Series([0.8, 1.2, 0.8], name="factor")).to_dict(
+        "records"
+    )
+    assert (first["factor"], first["held"], first["slid"], first["agrees"]) == (0.8, 1, 1, 2)
+    assert first["median_error"] == pytest.approx(0.2) and first["slip_widths"] == 0.2
+    assert (last["held"], last["slid"], last["agrees"]) == (1, 0, 0)
+
+
 def test_the_command_refuses_what_cannot_slide(tmp_path, capsys):
     assert run(["validity", "--out", str(tmp_path / "x"), "--sources", "exact"]) == 2
     assert "--sources names 'exact'; it must name engines" in capsys.readouterr().err
@@ -127,7 +163,7 @@ def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys, monkeyp
     arguments = ["validity", "--out", str(tmp_path), "--quick", "--jobs", "1"]
     assert run([*arguments, "--sources", "pybullet:fixed"]) == 0
     text = capsys.readouterr().out
-    assert "by the reference's normal force" in text
+    assert "An engine is right to differ" in text
     rows = pd.read_csv(tmp_path / "validity.csv")
     assert len(rows) == 4 * 3
     assert set(rows.loc[~(rows["friction_factor"] < 1), "verdict"]) == {"held"}
