@@ -1,7 +1,6 @@
 """PyBullet as it comes, on a floor that a constraint holds: how far it lags, and what is set."""
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,11 +20,11 @@ ERROR_REDUCTION = 0.2
 """Part of its error that the constraint takes out of the floor's place in a step."""
 
 
-def peak() -> float:
+def peak():
     return run("pybullet", scene(MOTION, preset="naive")).peak_ratio
 
 
-def test_the_floor_lags_by_what_the_constraint_leaves() -> None:
+def test_the_floor_lags_by_what_the_constraint_leaves():
     response = run("pybullet", scene(MOTION, preset="naive"))
     assert response.driver == "python: the base is held by a constraint"
     left = (1.0 - ERROR_REDUCTION) / ERROR_REDUCTION
@@ -33,21 +32,21 @@ def test_the_floor_lags_by_what_the_constraint_leaves() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.8, -0.8])
-def test_what_stands_on_a_floor_that_lags_is_at_rest(ratio: float) -> None:
+def test_what_stands_on_a_floor_that_lags_is_at_rest(ratio):
     """A block is seen from where the floor is, not from where it should be."""
     response = run("pybullet", scene(pulse(ratio, 3.0, 2), preset="naive"))
     assert response.outcome is Outcome.AT_REST
     assert response.observables[LAG] > 1e-3
 
 
-def test_neither_mass_nor_force_of_the_floor_matters(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_neither_mass_nor_force_of_the_floor_matters(monkeypatch):
     found = peak()
     for name, value in (("FLOOR_MASSES", 1000.0), ("FLOOR_MASSES", 10.0), ("FLOOR_G", 2.0)):
         with monkeypatch.context() as patch:
             patch.setattr(calls, name, value)
             assert peak() == pytest.approx(found, rel=2e-3)
     monkeypatch.setattr(calls, "FLOOR_G", 0.9)
-    world: Any = build(HERE["pybullet"], scene(MOTION, preset="naive", frame="world"))
+    world = build(HERE["pybullet"], scene(MOTION, preset="naive", frame="world"))
     p.setGravity(0.0, 0.0, -BLOCK.gravity, physicsClientId=world._client)
     for _ in range(240):
         p.stepSimulation(physicsClientId=world._client)
@@ -59,9 +58,9 @@ def test_neither_mass_nor_force_of_the_floor_matters(monkeypatch: pytest.MonkeyP
     assert fallen < -BLOCK.height - 0.1
 
 
-def test_what_naive_does_not_set_is_the_library_s_own() -> None:
+def test_what_naive_does_not_set_is_the_library_s_own():
     """Damping cannot be read back: two boxes that fly are slowed alike."""
-    world: Any = build(HERE["pybullet"], scene(MOTION, preset="naive"))
+    world = build(HERE["pybullet"], scene(MOTION, preset="naive"))
     bare = p.connect(p.DIRECT)
     half = (0.5 * BLOCK.width, 0.5 * BLOCK.width, 0.5 * BLOCK.height)
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=bare)

@@ -3,11 +3,9 @@ what it should be."""
 
 import multiprocessing
 import signal
-from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 from test_look import all_but_times
@@ -29,7 +27,7 @@ ROCKS = scene(pulse(1.3, 3.0, 2), accuracy="loose")
 
 
 @pytest.fixture(autouse=True)
-def asked_anew() -> Iterator[None]:
+def asked_anew():
     for known in (bullet_loop.clients, bullet.loop_agrees):
         known.cache_clear()
     yield
@@ -37,8 +35,8 @@ def asked_anew() -> Iterator[None]:
         known.cache_clear()
 
 
-def driven(asked: Scene) -> bool:
-    world: Any = build(ENGINES["pybullet"], asked)
+def driven(asked):
+    world = build(ENGINES["pybullet"], asked)
     world.close()
     return world.drive is not None
 
@@ -52,9 +50,7 @@ def driven(asked: Scene) -> bool:
         ("FUNCTIONS", (bullet_loop.CFunction("b3Nothing", bullet_loop.HANDLE),)),
     ],
 )
-def test_another_build_is_stepped_from_python(
-    name: str, other: object, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_build_is_stepped_from_python(name, other, monkeypatch):
     compiled = all_but_times(run("pybullet", ROCKS))
     assert driven(ROCKS)
     bullet_loop.clients.cache_clear()
@@ -66,13 +62,13 @@ def test_another_build_is_stepped_from_python(
     assert all_but_times(stepped) == compiled
 
 
-def test_a_library_without_symbols_is_left_alone(tmp_path: Path) -> None:
+def test_a_library_without_symbols_is_left_alone(tmp_path):
     (tmp_path / "library").write_bytes(b"MZ" + bytes(100))
     with pytest.raises(ValueError, match="library is no ELF file of 64 bits"):
         spans(tmp_path / "library", "anything")
 
 
-def test_where_functions_stand() -> None:
+def test_where_functions_stand():
     """Two that can be asked for, too, are as far apart as they were loaded."""
     names = ("b3ConnectPhysicsDirect", "b3InitStepSimulationCommand")
     (first, _), (second, size) = spans(Path(p.__file__), *names)
@@ -93,15 +89,13 @@ def test_where_functions_stand() -> None:
         ("ordinary", 1.0),
     ],
 )
-def test_a_loop_that_steps_otherwise_is_not_used(
-    name: str, other: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
     begin = bullet.begin_hold
     looped = iter((True, False))
 
-    def otherwise(held: Any, *rest: Any) -> None:
+    def otherwise(held, *rest):
         begin(held, *rest)
         if next(looped):
             setattr(held, name, other)
@@ -113,9 +107,7 @@ def test_a_loop_that_steps_otherwise_is_not_used(
 
 
 @pytest.mark.parametrize("grip", Grip)
-def test_both_drivers_correct_alike_whatever_a_step_is_for(
-    grip: Grip, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_both_drivers_correct_alike_whatever_a_step_is_for(grip, monkeypatch):
     monkeypatch.setattr(bullet, "TRIAL", [step._replace(grip=grip) for step in bullet.TRIAL])
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
@@ -136,25 +128,23 @@ def test_both_drivers_correct_alike_whatever_a_step_is_for(
         (Grip.STRIKE, 1e-3, 0.0, 0.0),
     ],
 )
-def test_what_is_corrected_of_a_position(
-    grip: Grip, dt_s: float, normal: float, across: float
-) -> None:
+def test_what_is_corrected_of_a_position(grip, dt_s, normal, across):
     assert bullet_loop.corrected(grip, dt_s, 1e-3) == (normal, across)
 
 
-def apart(number: int) -> Scene:
+def apart(number):
     """Return a scene in which contacts are kept up to a gap of its own."""
     block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
     pulse = SinePulse(amplitude=1.3 * block.gravity * block.width / 1.5, omega=3.0 * block.p)
     return Scene(system=block, motion=pulse, accuracy="loose")
 
 
-def answer(number: int) -> str:
+def answer(number):
     return all_but_times(run("pybullet", apart(number)))
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
+def test_worlds_at_once_keep_their_own_gaps(compiled):
     """The library holds that up to which contacts are kept for the whole process, and looks at it
     when two bodies meet first: on a plane, while a scene is built."""
     alone, asked = answer(1), replace(apart(1), compiled=compiled)
@@ -168,14 +158,14 @@ def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
     assert all_but_times(response) == alone
 
 
-def test_threads_do_not_disturb_each_other() -> None:
+def test_threads_do_not_disturb_each_other():
     alone = [answer(number) for number in range(6)]
     with ThreadPoolExecutor(3) as pool:
         assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_processes_answer_alike(method: str) -> None:
+def test_processes_answer_alike(method):
     here = answer(1)
     with ProcessPoolExecutor(1, multiprocessing.get_context(method)) as pool:
         assert pool.submit(answer, 1).result() == here
@@ -184,7 +174,7 @@ def test_processes_answer_alike(method: str) -> None:
 ENDLESS = {"preset": "fixed", "duration": 1e5}
 
 
-def test_a_time_limit_ends_a_loop() -> None:
+def test_a_time_limit_ends_a_loop():
     asked = Scene(system=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
     assert driven(asked)
     response = run("pybullet", asked)
@@ -192,8 +182,8 @@ def test_a_time_limit_ends_a_loop() -> None:
     assert response.message == "not decided within 0.05 s"
 
 
-def test_a_signal_ends_a_loop() -> None:
-    def stop(number: int, frame: object) -> None:
+def test_a_signal_ends_a_loop():
+    def stop(number, frame):
         raise InterruptedError
 
     before = signal.signal(signal.SIGALRM, stop)
@@ -208,7 +198,7 @@ def test_a_signal_ends_a_loop() -> None:
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
+def test_the_solver_ends_by_itself_at_rest(compiled):
     """More iterations change nothing: places that contradict each other would use them all up."""
     block = RigidBlock(width=0.5, height=1.0)
     motion = pulse(1.3, 0.1, 2, block)
@@ -220,6 +210,4 @@ def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
             for iterations in (1000, 3000)
         )
     )
-    assert enough.history is not None
-    assert more.history is not None
     assert (enough.history.theta == more.history.theta).all()

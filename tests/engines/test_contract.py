@@ -2,9 +2,7 @@
 
 import importlib
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +14,7 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.record import Record
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
-from engines.declaration import UNTUNED, Engine, Miss, Precision, Preset, Stepping
-from engines.parts.compiled import FloatArray
+from engines.declaration import UNTUNED, Miss, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.pybullet.build import BulletWorld
 from engines.run.drive import build, run
@@ -25,13 +22,13 @@ from engines.world import Moment, Pose
 from studies.cases.variants import variants
 
 
-def use(monkeypatch: pytest.MonkeyPatch, engine: Engine) -> None:
+def use(monkeypatch, engine):
     """Let `run` find an engine under any name."""
     monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
 
 
-def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(*_: object) -> Any:
+def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch):
+    def missing(*_):
         raise ModuleNotFoundError("No module named 'nothing'")
 
     use(monkeypatch, replace(ENGINES["pybullet"], build=missing, install="rocking[nothing]"))
@@ -50,9 +47,7 @@ def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.Mon
         ({"spatial": False}, "not available: PyBullet knows the plane alone"),
     ],
 )
-def test_what_an_engine_cannot_do_is_a_row_that_says_so(
-    change: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, message, monkeypatch):
     use(monkeypatch, replace(ENGINES["pybullet"], **change))
     settings = {"planar": False, "geometry": "hull"}
     response = run("any", scene(pulse(1.3, 1.0), frame="world", settings=settings))
@@ -60,7 +55,7 @@ def test_what_an_engine_cannot_do_is_a_row_that_says_so(
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_declaration_is_whole(name: str) -> None:
+def test_a_declaration_is_whole(name):
     engine = ENGINES[name]
     assert engine.name == name
     assert engine.presets[0].name == "naive"
@@ -83,13 +78,13 @@ def test_a_declaration_is_whole(name: str) -> None:
 
 
 @every_use
-def test_what_helps_can_be_left_out(engine: str, preset: str) -> None:
+def test_what_helps_can_be_left_out(engine, preset):
     """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
     for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
         takes(engine, preset, left_out)
 
 
-def takes(engine: str, preset: str, settings: Mapping[str, Any], **options: Any) -> None:
+def takes(engine, preset, settings, **options):
     """Build a scene, and go some steps: the library has refused no setting, then or before."""
     posed = scene(pulse(1.3, 1.0), preset=preset, settings=settings, **options)
     world = build(HERE[engine], posed)
@@ -99,20 +94,20 @@ def takes(engine: str, preset: str, settings: Mapping[str, Any], **options: Any)
 
 
 @every_use
-def test_what_a_preset_sets_is_taken(engine: str, preset: str) -> None:
+def test_what_a_preset_sets_is_taken(engine, preset):
     for frame in HERE[engine].frames:
         takes(engine, preset, {}, frame=frame)
 
 
 @pytest.mark.parametrize("engine", HERE)
-def test_what_a_variant_sets_is_taken(engine: str) -> None:
+def test_what_a_variant_sets_is_taken(engine):
     tried = list(variants(engine))
     assert {variant.factor for variant in tried} >= {it.name for it in HERE[engine].factors}
     for variant in tried:
         takes(engine, variant.preset, variant.settings, **variant.scene)
 
 
-def _bullet(library: Any) -> dict[str, Any]:
+def _bullet(library):
     client = library.connect(library.DIRECT)
     box = library.createCollisionShape(
         library.GEOM_BOX, halfExtents=(1, 1, 1), physicsClientId=client
@@ -123,30 +118,30 @@ def _bullet(library: Any) -> dict[str, Any]:
     return {"friction": friction}
 
 
-def _box2d(library: Any) -> dict[str, Any]:
+def _box2d(library):
     shape = library.b2PolygonShape(box=(1, 1))
     world = library.b2World()
     body = world.CreateDynamicBody(fixtures=library.b2FixtureDef(shape=shape))
     return {"friction": body.fixtures[0].friction}
 
 
-def _rapier(library: Any) -> dict[str, Any]:
+def _rapier(library):
     box = library.Collider.cuboid(1.0, 1.0, 1.0)
     world = library.PhysicsWorld()
     body = world.rigid_bodies[world.add_body(library.RigidBody.dynamic(), [box])]
     return {"friction": world.colliders[body.colliders[0]].friction}
 
 
-def _drake(library: Any) -> dict[str, Any]:
+def _drake(library):
     config = importlib.import_module("pydrake.geometry").SceneGraphConfig()
     return {"friction": config.default_proximity_properties.dynamic_friction}
 
 
-def _pymunk(library: Any) -> dict[str, Any]:
+def _pymunk(library):
     return {"friction": library.Poly.create_box(library.Body(1.0, 1.0)).friction}
 
 
-def _physx(library: Any) -> dict[str, Any]:
+def _physx(library):
     return {"friction": library.physx.get_default_material().static_friction}
 
 
@@ -162,7 +157,7 @@ BARE = {
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
-def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) -> None:
+def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
     found = BARE[engine](imported(HERE[engine].library))
     assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
 
@@ -170,7 +165,7 @@ def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) 
 @pytest.mark.parametrize(
     "engine", [name for name in HERE if "friction" in HERE[name].preset("naive").own]
 )
-def test_a_squat_block_slides_at_the_library_s_own_friction(engine: str) -> None:
+def test_a_squat_block_slides_at_the_library_s_own_friction(engine):
     own = HERE[engine].preset("naive").own["friction"]
     cube, sine = RigidBlock(width=0.5, height=0.5), SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
     assert simulate(cube, sine).friction_needed > own
@@ -178,7 +173,7 @@ def test_a_squat_block_slides_at_the_library_s_own_friction(engine: str) -> None
     assert run(engine, posed).reason is Reason.SLID
 
 
-def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faults_are_asked_while_a_run_goes_on(monkeypatch):
     """A setting that was not taken ends a run long before its hour of rest is over."""
     monkeypatch.setattr(BulletWorld, "fault", lambda self: "the moon is full")
     response = run("pybullet", scene(pulse(0.5, 1.0), preset="fixed", duration=3600.0))
@@ -191,19 +186,17 @@ class RoundedWorld(BulletWorld):
 
     drive = None
 
-    def state(self) -> FloatArray:
+    def state(self):
         return np.array(super().state(), dtype=np.float32).astype(np.float64)
 
 
-def rounded(precision: Precision, shortest_step: float) -> Engine:
+def rounded(precision, shortest_step):
     return replace(
         HERE["pybullet"], build=RoundedWorld, precision=precision, shortest_step=shortest_step
     )
 
 
-def test_single_precision_is_judged_by_what_it_tells_apart(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_single_precision_is_judged_by_what_it_tells_apart(monkeypatch):
     """A block at rest, whose corners are 6e-8 of its height off in single precision."""
     motion = pulse(0.9, 1.0)
     leaning = Scene(system=BLOCK, motion=motion, duration=5.0)
@@ -214,15 +207,15 @@ def test_single_precision_is_judged_by_what_it_tells_apart(
     assert run("any", leaning).outcome is Outcome.AT_REST
 
 
-def trembling(world: RoundedWorld) -> list[Pose]:
+def trembling(world):
     """Return the state with the noise of single precision, which is different at every look."""
     ((x, z, theta, rate),) = BulletWorld.state(world).tolist()
-    world._looks = getattr(world, "_looks", 0) + 1  # type: ignore[attr-defined]
-    raised = z * (1.0 + 6e-8 * math.sin(world._looks))  # type: ignore[attr-defined]
+    world._looks = getattr(world, "_looks", 0) + 1
+    raised = z * (1.0 + 6e-8 * math.sin(world._looks))
     return [Pose(x, raised, theta, rate)]
 
 
-def test_single_precision_rocks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_single_precision_rocks(monkeypatch):
     """Rotations rounded to 6e-8 of themselves, heights to 6e-8 of the block's: an impact is seen
     1e-7 of a width too early or late."""
     motion = pulse(1.3, 3.0, 2)
@@ -242,7 +235,7 @@ class SpringWorld:
 
     moment = Moment.END
 
-    def __init__(self, scene: Scene, settings: SpringSettings, dt_s: float) -> None:
+    def __init__(self, scene, settings, dt_s):
         (body,), block = scene.bodies, scene.system
         self._mass, self._inertia, at = body.mass, body.inertia[1], body.at
         self._scene, self._tolerance, self._time = scene, settings.tolerance, 0.0
@@ -251,7 +244,7 @@ class SpringWorld:
         self._spring = 1e6 * body.mass * block.p**2
         self._damping = 300.0 / (block.p * block.width)
 
-    def _rates(self, time: float, state: Any) -> list[float]:
+    def _rates(self, time, state):
         _, z, theta, vx, vz, rate = state
         scene, sine, cosine = self._scene, math.sin(theta), math.cos(theta)
         along = -self._mass * float(scene.motion.acceleration(time))
@@ -268,7 +261,7 @@ class SpringWorld:
                 moment += drag * level - push * arm
         return [vx, vz, rate, along / self._mass, up / self._mass, moment / self._inertia]
 
-    def advance(self, end_s: float) -> int:
+    def advance(self, end_s):
         path = solve_ivp(
             self._rates, (self._time, end_s), self._at, "RK23",
             rtol=self._tolerance, atol=self._tolerance,
@@ -276,18 +269,18 @@ class SpringWorld:
         self._at, self._time = path.y[:, -1].tolist(), end_s
         return len(path.t) - 1
 
-    def state(self) -> list[Pose]:
+    def state(self):
         x, z, theta, _, _, rate = self._at
         return [Pose(x, z, theta, rate)]
 
-    def fault(self) -> str:
+    def fault(self):
         return ""
 
-    def close(self) -> None:
+    def close(self):
         pass
 
 
-def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_may_choose_its_own_steps(monkeypatch):
     """It is told times to go to, on the corners of the motion among them; contact is yielding."""
     own = Preset(name="own", title="", settings=SpringSettings(), stepping=Stepping.OWN)
     use(monkeypatch, replace(ENGINES["pybullet"], build=SpringWorld, presets=(own,)))
@@ -305,9 +298,7 @@ def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> 
 @pytest.mark.parametrize(
     ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
 )
-def test_a_block_that_stood_still_for_two_seconds_feels_gravity_turn(
-    engine: str, preset: str
-) -> None:
+def test_a_block_that_stood_still_for_two_seconds_feels_gravity_turn(engine, preset):
     """That a library reads a setting back is no proof: what sleeps through it stays where it is."""
     quiet_s, shaken_s, dt_s = 2.0, 0.6, 0.01
     times = np.arange(0.0, quiet_s + shaken_s + dt_s, dt_s)

@@ -1,7 +1,6 @@
 """DART: how near it comes, and the traps that it sets without a word."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,19 +17,19 @@ pytestmark = pytest.mark.skipif("dart" not in HERE, reason="dartpy is not instal
 MOTION = pulse(1.3, 3.0, 2)
 
 
-def peak(sign: float = 1.0, **options: Any) -> float:
+def peak(sign=1.0, **options):
     motion = replace(MOTION, amplitude=sign * MOTION.amplitude)
     return run("dart", scene(motion, **options)).peak_ratio
 
 
-def test_some_of_the_sweep() -> None:
+def test_some_of_the_sweep():
     """The steps are of second order, 1/200^2 = 2.5e-5 times a factor that is below one here."""
     errors = errors_of_sweep("dart", every=96)
     assert np.median(errors) < 1e-5
     assert max(errors) < 1e-4
 
 
-def test_friction_that_has_no_mass_is_left_to_another_solver() -> None:
+def test_friction_that_has_no_mass_is_left_to_another_solver():
     """Out of the plane nothing moves a planar block on a base of its own plane: the response is no
     longer the mirror image of its mirror's, unless the base can slide aside."""
     assert peak(1.0) == pytest.approx(peak(-1.0), rel=1e-12)
@@ -39,21 +38,21 @@ def test_friction_that_has_no_mass_is_left_to_another_solver() -> None:
     assert abs(there / back - 1.0) > 1e-5
 
 
-def test_a_mass_brings_no_inertia() -> None:
+def test_a_mass_brings_no_inertia():
     """Set by its mass alone, a block keeps the moments of inertia of 1 kg m2 and hardly rocks."""
     assert peak(preset="naive", settings={"exact_inertia": False}) < 0.1 * peak(preset="naive")
 
 
-def test_of_a_pair_the_smaller_friction_counts() -> None:
+def test_of_a_pair_the_smaller_friction_counts():
     motion = scene(MOTION)
-    world: Any = build(HERE["dart"], motion)
+    world = build(HERE["dart"], motion)
     world._floor.getShapeNode(0).getDynamicsAspect().setFrictionCoeff(0.05)
     assert "friction was set to 10.0 but reads 0.05" in world._read_back(motion)
     world.close()
 
 
 @pytest.mark.parametrize("preset", ["naive", "landing"])
-def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
+def test_a_base_moved_by_position_leaves_the_block_behind(preset):
     response = run(
         "dart", scene(MOTION, preset=preset, frame="world", settings={"floor": "position"})
     )
@@ -61,14 +60,14 @@ def test_a_base_moved_by_position_leaves_the_block_behind(preset: str) -> None:
     assert "slid" in response.message
 
 
-def test_corrections_go_by_the_unit_of_length() -> None:
+def test_corrections_go_by_the_unit_of_length():
     """In metres a pivot is pushed out of its margin at up to 1 mm/s, in 1e-5 m at 1e-8 m/s."""
     exact = simulate(BLOCK, MOTION).peak_ratio
     fine, coarse = (abs(peak(settings={"unit": unit}) / exact - 1.0) for unit in (1e5, 1.0))
     assert fine < 1e-4 < 1e-3 < coarse
 
 
-def test_space_begins_as_the_plane_does() -> None:
+def test_space_begins_as_the_plane_does():
     """Four corners on a free joint move as two in the plane, also where they set out in a swing."""
     start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
     plane, space = (
@@ -78,7 +77,7 @@ def test_space_begins_as_the_plane_does() -> None:
     assert space == pytest.approx(plane, rel=1e-5)
 
 
-def test_a_release_without_an_option_has_it_off(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_release_without_an_option_has_it_off(monkeypatch):
     """One that cannot split impulses does as one that does not, and not as one that does."""
     import dartpy
 
@@ -94,7 +93,7 @@ def test_a_release_without_an_option_has_it_off(monkeypatch: pytest.MonkeyPatch)
     assert "split impulse was set to True but reads False" in asked.message
 
 
-def test_friction_is_bounded_by_normal_forces_without_friction() -> None:
+def test_friction_is_bounded_by_normal_forces_without_friction():
     """The pulse needs a friction of 0.66, and its pivot slides away with 1: on one corner the
     library's solver allows the friction of a normal force that it finds without friction."""
     block = RigidBlock(width=0.5, height=1.0)

@@ -16,7 +16,7 @@ FLAT = RigidBlock(width=1.0, height=0.5)
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @every_landing_use
-def test_a_slide_is_no_failure_where_it_is_meant(engine: str, preset: str, side: float) -> None:
+def test_a_slide_is_no_failure_where_it_is_meant(engine, preset, side):
     """The centre falls straight down, so that the corner slides by half of what the width loses."""
     theta = 0.3
     time, rate = frictionless_fall(FLAT, theta)
@@ -34,11 +34,11 @@ def test_a_slide_is_no_failure_where_it_is_meant(engine: str, preset: str, side:
 
 
 @pytest.mark.parametrize("engine", HERE)
-def test_a_slide_is_a_failure_where_there_is_friction(engine: str) -> None:
+def test_a_slide_is_a_failure_where_there_is_friction(engine):
     response = run(engine, Scene(system=FLAT, motion=STILL, start=(0.9, 0.0), friction=1e-6))
     assert "slid" in response.message
 
 
-def test_friction_is_not_negative() -> None:
+def test_friction_is_not_negative():
     with pytest.raises(ValueError, match=r"friction is -0\.1; it must not be negative"):
         Scene(system=BLOCK, motion=STILL, friction=-0.1)

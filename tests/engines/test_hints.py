@@ -23,7 +23,7 @@ FALSE_HINTS = [
 
 @every_core_engine
 @pytest.mark.parametrize("hints", FALSE_HINTS, ids=str)
-def test_false_hints_choose_other_steps_and_not_what_happens(engine: str, hints: Hints) -> None:
+def test_false_hints_choose_other_steps_and_not_what_happens(engine, hints):
     """A block that lifts where nothing was expected lifts within a step, p dt = 5e-3 late, of which
     the peak feels the square. One that was expected to lift and does not may lean into a contact
     that has been made ready to let go of it, by less than what it could ever show."""
@@ -40,7 +40,7 @@ def test_false_hints_choose_other_steps_and_not_what_happens(engine: str, hints:
 
 
 @every_core_engine
-def test_fixed_steps_take_no_hints(engine: str) -> None:
+def test_fixed_steps_take_no_hints(engine):
     motion = pulse(1.3, 3.0, 2)
     peaks = {
         run(
@@ -52,6 +52,6 @@ def test_fixed_steps_take_no_hints(engine: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "value"), [("onset", 0.0), ("onset", math.nan), ("fall", -1.0)])
-def test_hints_that_make_no_sense_are_refused(name: str, value: float) -> None:
+def test_hints_that_make_no_sense_are_refused(name, value):
     with pytest.raises(ValueError, match=f"{name} is .*; it must be"):
         Hints(**{name: value})

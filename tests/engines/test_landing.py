@@ -10,7 +10,6 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,13 +19,13 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.criteria import free_amplitude, quarter_period
 from analytic.motion import SinePulse
-from analytic.response import Outcome, Response
+from analytic.response import Outcome
 from engines import FRAMES, Scene, core_engines
 from engines.run.drive import run
 from engines.scene import ACCURACIES
 
 
-def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
+def sweep_cases():
     """Return the paper's 960 cases."""
     cases = []
     for (half_cycles, excess), aspect, width, k in itertools.product(
@@ -39,10 +38,10 @@ def sweep_cases() -> list[tuple[RigidBlock, SinePulse]]:
     return cases
 
 
-def random_cases(number: int) -> list[tuple[RigidBlock, SinePulse, Response]]:
+def random_cases(number):
     """Return random cases in which the pivot stays on the base, with their exact responses."""
     random = np.random.default_rng(2)
-    cases: list[tuple[RigidBlock, SinePulse, Response]] = []
+    cases = []
     while len(cases) < number:
         width = 0.02 * 500.0 ** random.uniform()
         block = RigidBlock(width=width, height=width * random.uniform(1.2, 12.0))
@@ -58,13 +57,13 @@ def random_cases(number: int) -> list[tuple[RigidBlock, SinePulse, Response]]:
     return cases
 
 
-def conditioning(block: RigidBlock, motion: SinePulse, exact: Response) -> float:
+def conditioning(block, motion, exact):
     """Return d ln theta_max / d ln a_p, at least 1."""
     more = simulate(block, replace(motion, amplitude=motion.amplitude * (1.0 + 1e-6)))
     return max(abs(math.log(more.peak_ratio / exact.peak_ratio)) / 1e-6, 1.0)
 
 
-def errors_of_sweep(engine: str, every: int, **options: Any) -> list[float]:
+def errors_of_sweep(engine, every, **options):
     """Return the relative errors of the peaks of the survivors, outcomes having agreed."""
     errors = []
     for block, motion in sweep_cases()[every // 2 :: every]:
@@ -77,11 +76,11 @@ def errors_of_sweep(engine: str, every: int, **options: Any) -> list[float]:
 
 
 @pytest.fixture(params=core_engines())
-def engine(request: pytest.FixtureRequest) -> str:
+def engine(request):
     return str(request.param)
 
 
-def test_some_of_the_sweep(engine: str) -> None:
+def test_some_of_the_sweep(engine):
     errors = errors_of_sweep(engine, every=31)
     assert np.median(errors) < 1e-5
     assert max(errors) < 2e-4
@@ -92,14 +91,14 @@ def test_some_of_the_sweep(engine: str) -> None:
     ("accuracy", "median", "largest"),
     [("loose", 2e-4, 2e-3), ("standard", 1e-5, 2e-4), ("tight", 1e-6, 2e-5)],
 )
-def test_the_whole_sweep(engine: str, accuracy: str, median: float, largest: float) -> None:
+def test_the_whole_sweep(engine, accuracy, median, largest):
     errors = errors_of_sweep(engine, every=1, accuracy=accuracy)
     assert np.median(errors) < median
     assert np.quantile(errors, 0.99) < 0.5 * largest
     assert max(errors) < largest
 
 
-def compare_random_cases(engine: str, number: int) -> None:
+def compare_random_cases(engine, number):
     """Compare outcomes and peaks; an error in anything is amplified by the conditioning."""
     errors = []
     for block, motion, exact in random_cases(number):
@@ -112,16 +111,16 @@ def compare_random_cases(engine: str, number: int) -> None:
     assert max(errors) < 2e-4
 
 
-def test_random_cases(engine: str) -> None:
+def test_random_cases(engine):
     compare_random_cases(engine, 30)
 
 
 @pytest.mark.slow
-def test_many_random_cases(engine: str) -> None:
+def test_many_random_cases(engine):
     compare_random_cases(engine, 500)
 
 
-def test_second_order(engine: str) -> None:
+def test_second_order(engine):
     """Four times the steps, a sixteenth of the error, in the median over the full-sine cases."""
     coarse, fine = (
         np.median(errors_of_sweep(engine, every=23, step=1.0 / steps)) for steps in (50, 200)
@@ -130,7 +129,7 @@ def test_second_order(engine: str) -> None:
 
 
 @pytest.mark.parametrize(("aspect", "onsets", "omega_over_p"), [(2.0, 1.6, 3.5), (6.0, 3.0, 6.0)])
-def test_steps_finer_by_far(engine: str, aspect: float, onsets: float, omega_over_p: float) -> None:
+def test_steps_finer_by_far(engine, aspect, onsets, omega_over_p):
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(onsets, omega_over_p, 2, block)
     found = run(engine, Scene(system=block, motion=motion, step=2e-4)).peak_ratio
@@ -139,7 +138,7 @@ def test_steps_finer_by_far(engine: str, aspect: float, onsets: float, omega_ove
 
 
 @pytest.mark.parametrize("aspect", [1.5, 2.0, 3.0, 4.0, 6.0, 10.0])
-def test_velocity_ratio_of_an_impact(engine: str, aspect: float) -> None:
+def test_velocity_ratio_of_an_impact(engine, aspect):
     """Housner's ratio comes out of the engine's contact.
 
     The velocities are extrapolated over two steps of 1/200 by parabolas: 1e-4 at most.
@@ -150,7 +149,7 @@ def test_velocity_ratio_of_an_impact(engine: str, aspect: float) -> None:
     assert response.impacts[0].ratio == pytest.approx(block.restitution, abs=1e-4)
 
 
-def test_velocity_ratio_of_small_swings(engine: str) -> None:
+def test_velocity_ratio_of_small_swings(engine):
     """Swings below 1e-2 alpha lose what large ones lose: a corner that stays within the contact's
     reach between two of its impacts must not be drawn to where it stood."""
     block = RigidBlock(width=2.0, height=10.8)
@@ -161,7 +160,7 @@ def test_velocity_ratio_of_small_swings(engine: str) -> None:
     assert ratios == pytest.approx([block.restitution] * 12, abs=5e-5)
 
 
-def test_impacts_by_the_dozen(engine: str) -> None:
+def test_impacts_by_the_dozen(engine):
     """Twenty impacts: each adds to the time of the next some 1e-5/p."""
     motion = pulse(1.5, 2.0)
     duration = 12.0 / BLOCK.p
@@ -173,14 +172,13 @@ def test_impacts_by_the_dozen(engine: str) -> None:
         assert seen.velocity_before == pytest.approx(true.velocity_before, rel=1e-2)
 
 
-def test_free_rocking(engine: str) -> None:
+def test_free_rocking(engine):
     """Between impacts n and n + 1 lie two quarter periods of the n-th free amplitude."""
     motion = pulse(1.5, 3.0)
     times = np.linspace(0.0, 8.0 / BLOCK.p, 4001)
     response = run(
         engine, Scene(system=BLOCK, motion=motion, duration=8.0 / BLOCK.p, times=list(times))
     )
-    assert response.history is not None
     hits = [impact.time for impact in response.impacts if impact.time > motion.duration]
     first = np.abs(response.history.theta[(times > hits[0]) & (times < hits[1])]).max()
     for n, (begin, end) in enumerate(itertools.pairwise(hits[:5])):
@@ -190,13 +188,12 @@ def test_free_rocking(engine: str) -> None:
         assert end - begin == pytest.approx(2.0 * quarter_period(BLOCK, amplitude), rel=1e-4)
 
 
-def test_energy_never_grows(engine: str) -> None:
+def test_energy_never_grows(engine):
     """After the motion, each peak is lower than the one before."""
     motion = pulse(1.5, 3.0)
     duration = 12.0 / BLOCK.p
     times = list(np.linspace(motion.duration, duration, 3000))
     response = run(engine, Scene(system=BLOCK, motion=motion, duration=duration, times=times))
-    assert response.history is not None
     theta, rate = np.abs(response.history.theta), response.history.velocity
     energy = (rate / BLOCK.p) ** 2 / 2.0 + np.cos(BLOCK.alpha - theta) - math.cos(BLOCK.alpha)
     assert len(response.impacts) > 15
@@ -204,7 +201,7 @@ def test_energy_never_grows(engine: str) -> None:
     assert np.diff(energy).max() < 1e-4 * energy[0]
 
 
-def test_rest_and_uplift_again(engine: str) -> None:
+def test_rest_and_uplift_again(engine):
     """The second half of a slow pulse lifts a block that the first half had left to rest."""
     block = RigidBlock(width=0.5, height=0.75)
     motion = pulse(1.03, 0.4, 2, block)
@@ -217,18 +214,16 @@ def test_rest_and_uplift_again(engine: str) -> None:
     assert np.array(response.rests) == pytest.approx(np.array(exact.rests), abs=2e-2 / block.p)
 
 
-def test_histories(engine: str) -> None:
+def test_histories(engine):
     motion = pulse(1.3, 3.0, 2)
     times = [0.01 * i for i in range(300)]
     response = run(engine, Scene(system=BLOCK, motion=motion, duration=3.0, times=times))
     exact = simulate(BLOCK, motion, duration=3.0, times=times)
-    assert response.history is not None
-    assert exact.history is not None
     assert response.history.theta == pytest.approx(exact.history.theta, abs=1e-4 * BLOCK.alpha)
 
 
 @pytest.mark.parametrize("width", [0.5, 20.0])
-def test_frames(engine: str, width: float) -> None:
+def test_frames(engine, width):
     block = RigidBlock(width=width, height=3.0 * width)
     motion = pulse(1.3, 3.0, 2, block)
     base, world = (
@@ -239,7 +234,7 @@ def test_frames(engine: str, width: float) -> None:
 
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("aspect", [1.5, 3.0, 6.0])
-def test_mirror(engine: str, aspect: float, frame: str) -> None:
+def test_mirror(engine, aspect, frame):
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.3, 3.0, 2, block)
     there, back = (
@@ -252,7 +247,7 @@ def test_mirror(engine: str, aspect: float, frame: str) -> None:
 
 
 @pytest.mark.parametrize("friction", [0.7, 1.0001, 3.0])
-def test_friction_that_suffices_is_as_good_as_any(engine: str, friction: float) -> None:
+def test_friction_that_suffices_is_as_good_as_any(engine, friction):
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion)
     assert exact.friction_needed < friction
@@ -261,7 +256,7 @@ def test_friction_that_suffices_is_as_good_as_any(engine: str, friction: float) 
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
 
 
-def test_size(engine: str) -> None:
+def test_size(engine):
     """theta/alpha depends on omega/p, a_p/g, alpha and the ratio at an impact alone."""
     peaks = []
     for width in (0.02, 20.0):
@@ -272,7 +267,7 @@ def test_size(engine: str) -> None:
 
 
 @pytest.mark.parametrize("omega_over_p", [0.5, 4.0, 12.0])
-def test_onset(engine: str, omega_over_p: float) -> None:
+def test_onset(engine, omega_over_p):
     """Also where the whole peak is some 1e-5 of alpha, and goes with the cube of an excess of
     0.02, so that an error of 2e-5 in anything is one of 3e-3 in the peak."""
     below = run(engine, Scene(system=BLOCK, motion=pulse(0.95, omega_over_p)))
@@ -283,17 +278,16 @@ def test_onset(engine: str, omega_over_p: float) -> None:
 
 
 @pytest.mark.slow
-def test_a_minute_of_rest(engine: str) -> None:
+def test_a_minute_of_rest(engine):
     times = [1.0, 59.0]
     motion = pulse(0.5, 1.0)
     response = run(engine, Scene(system=BLOCK, motion=motion, duration=60.0, times=times))
     assert response.outcome is Outcome.AT_REST
-    assert response.history is not None
     assert np.abs(response.history.theta).max() < 1e-9
     assert response.slip_m < 1e-9
 
 
-def test_accuracies(engine: str) -> None:
+def test_accuracies(engine):
     """Loose costs a quarter of the standard, tight four times as much."""
     motion = pulse(1.3, 3.0, 2)
     exact = simulate(BLOCK, motion).peak_ratio
@@ -306,7 +300,7 @@ def test_accuracies(engine: str) -> None:
     assert tight.peak_ratio == pytest.approx(exact, rel=2e-6)
 
 
-def test_processes_agree_bit_by_bit(engine: str) -> None:
+def test_processes_agree_bit_by_bit(engine):
     motion = pulse(1.3, 3.0, 2)
     script = (
         "from analytic.block import RigidBlock\n"
@@ -321,7 +315,7 @@ def test_processes_agree_bit_by_bit(engine: str) -> None:
     assert there.stdout.decode().strip() == here.peak_ratio.hex()
 
 
-def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_base_without_velocity_is_noticed(engine, monkeypatch):
     """Where only the base's position moves, friction feels nothing and the block slides."""
     from engines.pybullet import build as bullet
 
@@ -334,7 +328,7 @@ def test_a_base_without_velocity_is_noticed(engine: str, monkeypatch: pytest.Mon
     assert response.outcome is not Outcome.OVERTURNED
 
 
-def test_out_of_the_plane(engine: str) -> None:
+def test_out_of_the_plane(engine):
     """Four corners in space, free to leave the plane, move as two corners in the plane."""
     motion = pulse(1.3, 3.0, 2)
     plane = run(engine, Scene(system=BLOCK, motion=motion))
@@ -343,7 +337,7 @@ def test_out_of_the_plane(engine: str) -> None:
 
 
 @pytest.mark.parametrize("aspect", [20.0, 50.0])
-def test_slender_blocks(engine: str, aspect: float) -> None:
+def test_slender_blocks(engine, aspect):
     """Their two corners share the weight by a solver that needs the more iterations."""
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.3, 3.0, 1, block)
@@ -355,9 +349,7 @@ def test_slender_blocks(engine: str, aspect: float) -> None:
 
 @pytest.mark.parametrize("aspect", [3.0, 11.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
-    engine: str, aspect: float, sign: float
-) -> None:
+def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(engine, aspect, sign):
     """Not even where one corner is about to carry all of it: a lean is the error of a peak after
     it, and peaks of 1e-3 alpha are wanted to the 1e-5 of the scheme."""
     block = RigidBlock(width=1.0, height=aspect)
@@ -366,7 +358,6 @@ def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(
     # a slender block in PyBullet takes some steps to settle
     times = list(np.linspace(0.2, 1.0, 200) * onset)
     response = run(engine, Scene(system=block, motion=motion, times=times))
-    assert response.history is not None
     leans = np.abs(response.history.theta) / block.alpha
     # long steps feel the load of the one before, and the more so the farther off the onset is
     assert leans.max() < 1e-7

@@ -14,7 +14,7 @@ from engines import Scene
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
 from engines.run.drive import run, simulate_world
-from engines.world import Moment, Pose, Step
+from engines.world import Moment, Pose
 
 SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
 
@@ -32,7 +32,7 @@ APART = [
 
 
 @pytest.mark.parametrize(("engine", "preset"), APART)
-def test_blocks_apart_rock_as_one_alone(engine: str, preset: str) -> None:
+def test_blocks_apart_rock_as_one_alone(engine, preset):
     """To the rounding of the engine, but for DART and PhysX, whose contacts depend on where one is;
     as they come, pymunk's ten sweeps do not converge, and hang on the order of its contacts."""
     alone = run(engine, Scene(system=BLOCK, motion=pulse(1.2, 2.0, 2), preset=preset))
@@ -45,7 +45,7 @@ def test_blocks_apart_rock_as_one_alone(engine: str, preset: str) -> None:
     )
 
 
-def frame(load: float, columns: int = 2) -> RockingFrame:
+def frame(load, columns=2):
     return RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
 
 
@@ -55,7 +55,7 @@ LANDED = {"mujoco": (2, 3, 5), "pymunk": (2, 3)}
 
 @pytest.mark.parametrize(("engine", "columns"), [(e, n) for e, of in LANDED.items() for n in of])
 @pytest.mark.parametrize("load", [0.1, 1.0, 10.0])
-def test_a_frame_lands_as_a_block(engine: str, columns: int, load: float) -> None:
+def test_a_frame_lands_as_a_block(engine, columns, load):
     """Of second order in p dt = 5e-3; MuJoCo's contact yields by a part 1e-4 of what it carries, so
     that a heavy beam lifts a little early at any step."""
     system, exactly = frame(load, columns), 1e-5 * (1.0 + load)
@@ -69,14 +69,14 @@ def test_a_frame_lands_as_a_block(engine: str, columns: int, load: float) -> Non
 
 
 @pytest.mark.parametrize("engine", STACKING)
-def test_a_frame_rocks_at_equal_steps(engine: str) -> None:
+def test_a_frame_rocks_at_equal_steps(engine):
     """Where in a step an impact falls costs half a per cent; PyBullet's boxes lose one more."""
     response = run(engine, Scene(system=frame(2.0), motion=SINE, preset="fixed"))
     assert response.peak_ratio == pytest.approx(simulate(frame(2.0), SINE).peak_ratio, rel=1.5e-2)
     assert response.observables["parting"] < 1e-4
 
 
-def test_the_released_frame_swings_back() -> None:
+def test_the_released_frame_swings_back():
     start = (0.4 * BLOCK.alpha, 0.0)
     system = frame(1.0)
     scene = Scene(system=system, motion=Still(), start=start, duration=2.0)
@@ -87,7 +87,7 @@ def test_the_released_frame_swings_back() -> None:
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name not in ("drake", "newton")])
 @pytest.mark.parametrize("friction", [0.1, 0.2])
-def test_a_slide_ends_where_it_should(engine: str, friction: float) -> None:
+def test_a_slide_ends_where_it_should(engine, friction):
     """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
     single precision a part 1e-4 of its end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=friction)
@@ -96,7 +96,7 @@ def test_a_slide_ends_where_it_should(engine: str, friction: float) -> None:
     assert found.slips == pytest.approx(simulate(box, SINE).slips, abs=5e-4)
 
 
-def test_a_launched_box_stops() -> None:
+def test_a_launched_box_stops():
     box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
     for engine in ("pymunk", "pybullet"):
         scene = Scene(system=box, motion=Still(), start=(0.0, 6.0), preset="fixed")
@@ -105,16 +105,15 @@ def test_a_launched_box_stops() -> None:
         assert found.slip_times[0][1] == pytest.approx(12.0 / 9.81, rel=1e-3)
 
 
-def test_a_slide_that_is_cut_short_counts_as_far_as_it_got() -> None:
+def test_a_slide_that_is_cut_short_counts_as_far_as_it_got():
     """As the closed form counts it, with the places on the way."""
     box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
     asked = {"start": (0.0, 6.0), "duration": 0.5, "times": [0.1, 0.3, 0.5]}
-    exact = simulate(box, Still(), **asked)  # type: ignore[arg-type]
-    found = run("pymunk", Scene(system=box, motion=Still(), preset="fixed", **asked))  # type: ignore[arg-type]
+    exact = simulate(box, Still(), **asked)
+    found = run("pymunk", Scene(system=box, motion=Still(), preset="fixed", **asked))
     assert found.outcome is exact.outcome is Outcome.SLID
     # of first order in a step of 1e-4 s at 6 m/s
     assert found.slips == pytest.approx(exact.slips, abs=1e-3)
-    assert found.history is not None and exact.history is not None
     assert found.history.theta == pytest.approx(exact.history.theta, abs=1e-3)
     assert found.history.velocity == pytest.approx(exact.history.velocity, abs=1e-2)
 
@@ -127,20 +126,20 @@ class Trembles:
 
     moment = Moment.MIDDLE
 
-    def __init__(self, way_m: float) -> None:
+    def __init__(self, way_m):
         self.way_m, self.steps = way_m, 0
 
-    def step(self, step: Step) -> None:
+    def step(self, step):
         self.steps += 1
 
-    def state(self) -> list[Pose]:
+    def state(self):
         return [Pose(self.way_m * (self.steps % 2), 0.25, 0.0, 0.0)]
 
-    def fault(self) -> str:
+    def fault(self):
         return ""
 
 
-def test_a_box_that_trembles_where_it_is_is_at_rest() -> None:
+def test_a_box_that_trembles_where_it_is_is_at_rest():
     """Else a run of a box that two contacts hold in turn would never end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=0.5)
     scene = Scene(system=box, motion=SINE, max_steps=20_000)
@@ -150,7 +149,7 @@ def test_a_box_that_trembles_where_it_is_is_at_rest() -> None:
     assert simulate_world(Trembles(5e-4), scene, 1e-3, Stepping.FIXED).reason is Reason.UNDECIDED
 
 
-def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:
+def test_what_an_engine_cannot_hold_is_a_row_that_says_so():
     response = run("newton", Scene(system=frame(1.0), motion=SINE))
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
     assert (
@@ -162,7 +161,7 @@ def test_what_an_engine_cannot_hold_is_a_row_that_says_so() -> None:
     assert "nothing rocks here" in landing.message
 
 
-def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which() -> None:
+def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which():
     box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
     best, fixed = (
         run("pymunk", Scene(system=box, motion=SINE, preset=preset)) for preset in (None, "fixed")
@@ -172,7 +171,7 @@ def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which() -> No
     assert not run("pymunk", Scene(system=BLOCK, motion=SINE)).message
 
 
-def test_a_frame_is_columns_that_share_their_beam() -> None:
+def test_a_frame_is_columns_that_share_their_beam():
     layout = layout_of(frame(2.0, 3), 1000.0, 1.0, (0.0, 0.0))
     *columns, beam = layout.bodies
     assert beam.mass == pytest.approx(2.0 * sum(column.mass for column in columns))
@@ -188,14 +187,14 @@ class Nothing:
     width = height = alpha = p = gravity = 1.0
 
 
-def test_what_has_no_layout_is_named() -> None:
+def test_what_has_no_layout_is_named():
     with pytest.raises(TypeError, match="system is a Nothing; it must be one of RigidBlock, "):
         layout_of(Nothing(), 1000.0, None, (0.0, 0.0))
     with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 on"):
         SideBySide(block=BLOCK, count=0)
 
 
-def test_landing_steps_need_something_that_rocks() -> None:
+def test_landing_steps_need_something_that_rocks():
     landing = HERE["pymunk"].preset("landing")
     assert landing.stepping is Stepping.LANDING
     box = SlidingBlock(width=1.0, height=0.5, friction=0.2)

@@ -6,14 +6,13 @@ import sys
 from dataclasses import asdict
 from functools import partial
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 from uses import BLOCK, HERE, pulse, scene
 
 from analytic.kernels.compiled import Purse, interpreting
-from analytic.response import Outcome, Response
+from analytic.response import Outcome
 from engines import ENGINES, Scene
 from engines.declaration import AT_REST
 from engines.mujoco import fast as mujoco_loop
@@ -39,7 +38,7 @@ OF_ALL = {
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
 }
-WELDED: dict[str, Any] = {"frame": "world", "settings": {"floor": "weld"}}
+WELDED = {"frame": "world", "settings": {"floor": "weld"}}
 SCENES = {
     "mujoco": {
         **OF_ALL,
@@ -76,7 +75,7 @@ EACH = [
 ]
 
 
-def all_but_times(response: Response) -> str:
+def all_but_times(response):
     """Return all fields to the last bit, apart from run times and what took the steps."""
     found = asdict(response)
     history = found.pop("history")
@@ -85,16 +84,16 @@ def all_but_times(response: Response) -> str:
     return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
 
 
-def shaken(**options: object) -> Scene:
+def shaken(**options):
     """Return a scene with these options, shaken by two half cycles."""
-    return scene(**{"motion": pulse(1.3, 3.0, 2), **options})  # type: ignore[arg-type]
+    return scene(**{"motion": pulse(1.3, 3.0, 2), **options})
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
-def test_a_compiled_loop_answers_as_python_does(engine: str, options: dict[str, object]) -> None:
+def test_a_compiled_loop_answers_as_python_does(engine, options):
     world = build(ENGINES[engine], shaken(**options))
     world.close()
-    assert world.drive is not None  # type: ignore[attr-defined]
+    assert world.drive is not None
     at_once, one_by_one = (
         run(engine, shaken(compiled=compiled, **options)) for compiled in (True, False)
     )
@@ -102,12 +101,12 @@ def test_a_compiled_loop_answers_as_python_does(engine: str, options: dict[str, 
     assert (at_once.driver, one_by_one.driver) == ("compiled", "python")
 
 
-def test_what_is_compiled_is_so_ahead() -> None:
+def test_what_is_compiled_is_so_ahead():
     assert all(ENGINES[engine].compiles for engine in SCENES)
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
-def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
+def test_what_is_compiled_answers_as_it_does_in_python(engine):
     """There is one source: numba switched off, the same functions are Python."""
     code = (
         "from test_look import all_but_times\n"
@@ -134,9 +133,7 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
     assert first == second
 
 
-def test_memory_that_is_not_where_it_should_be_is_left_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
     asked = shaken(accuracy="loose")
     compiled = run("mujoco", asked)
     found = mujoco_loop.layout("mjData")
@@ -150,7 +147,7 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(
     try:
         world = build(ENGINES["mujoco"], asked)
         world.close()
-        assert world.drive is None  # type: ignore[attr-defined]
+        assert world.drive is None
         stepped = run("mujoco", asked)
         assert stepped.driver == "python: its memory is not what Python reads"
         assert all_but_times(stepped) == all_but_times(compiled)
@@ -158,7 +155,7 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(
         mujoco_loop.obstacle.cache_clear()
 
 
-def test_a_run_has_room_for_all_that_it_writes_down() -> None:
+def test_a_run_has_room_for_all_that_it_writes_down():
     """Rows and events outgrow what there is room for at first."""
     asked = Scene(system=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
     response = run("mujoco", asked)
@@ -167,7 +164,7 @@ def test_a_run_has_room_for_all_that_it_writes_down() -> None:
     assert len(response.impacts) > 10
 
 
-def test_a_table_with_room_keeps_its_rows() -> None:
+def test_a_table_with_room_keeps_its_rows():
     rows = np.arange(24.0).reshape(3, 2, 4)
     assert roomy(rows, 1, 1) is rows
     table = roomy(rows, 2, 5)
@@ -176,7 +173,7 @@ def test_a_table_with_room_keeps_its_rows() -> None:
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
-def test_what_was_used_is_as_good_as_new(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_was_used_is_as_good_as_new(engine, monkeypatch):
     """A model or a client, whatever it was used for before, in whichever order, after a failure."""
     kept, scenes = {"mujoco": mujoco_models, "pybullet": bullet_clients}[engine], SCENES[engine]
     monkeypatch.setattr(kept, "idle", type(kept.idle)())
@@ -193,17 +190,15 @@ def test_what_was_used_is_as_good_as_new(engine: str, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.skipif("mujoco" not in HERE, reason="MuJoCo is not installed")
-def test_a_release_that_knows_no_moving_surface_answers_alike(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
     """Before 3.11 `MjModel` has no `geom_surfacevel`; only a base that moves needs it."""
-    library: Any = pytest.importorskip("mujoco")
+    library = pytest.importorskip("mujoco")
 
     class Older:
-        def __init__(self, xml: str) -> None:
+        def __init__(self, xml):
             self.itself = whole.from_xml_string(xml)
 
-        def __getattr__(self, name: str) -> Any:
+        def __getattr__(self, name):
             if name == "geom_surfacevel":
                 raise AttributeError(name)
             return getattr(self.itself, name)
@@ -215,7 +210,7 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(
     for name in ("MjData", "mj_step", "mj_resetData"):
         takes = getattr(library, name)
 
-        def given(model: Any, *others: Any, takes: Any = takes) -> Any:
+        def given(model, *others, takes=takes):
             return takes(model.itself, *others)
 
         monkeypatch.setattr(library, name, given)
@@ -225,9 +220,7 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
-def test_a_few_steps_are_interpreted_to_the_same_bit(
-    engine: str, options: dict[str, object]
-) -> None:
+def test_a_few_steps_are_interpreted_to_the_same_bit(engine, options):
     asked = shaken(**options)
     with interpreting(Purse(PACKAGE, 10**9, 0)):
         interpreted = run(engine, asked)
@@ -235,7 +228,7 @@ def test_a_few_steps_are_interpreted_to_the_same_bit(
     assert interpreted.driver == f"python: {INTERPRETED}"
 
 
-def test_a_run_of_many_steps_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_of_many_steps_is_compiled(monkeypatch):
     """It begins again when the steps that may be interpreted are spent."""
     monkeypatch.setattr(Purse, "shut", False)
     asked, drivers = shaken(accuracy="loose"), []

@@ -44,9 +44,7 @@ FEW = settings(
     aspect=st.floats(2.0, 5.0),
     half_cycles=st.integers(1, 2),
 )
-def test_hardly_above_the_onset(
-    engine: str, preset: str, excess: float, omega: float, aspect: float, half_cycles: int
-) -> None:
+def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycles):
     """From 1.0001 to 1.1 of it a peak is a part of alpha so small that an engine may see no rocking
     at all; it neither falls nor goes on for ever."""
     block = RigidBlock(width=0.5, height=0.5 * aspect)
@@ -65,9 +63,7 @@ def test_hardly_above_the_onset(
 )
 @FEW
 @given(quiet_s=st.floats(0.1, 2.0))
-def test_a_quiet_start_changes_nothing_but_the_time(
-    engine: str, preset: str, quiet_s: float
-) -> None:
+def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):
     dt_s, motion = 0.01, pulse(1.3, 4.0, 2)
     shaken = np.append(motion.acceleration(np.arange(0.0, motion.duration, dt_s)), 0.0)
     before = math.ceil(quiet_s / dt_s)

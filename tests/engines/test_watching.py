@@ -12,7 +12,7 @@ from uses import BLOCK, pulse, scene
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Reason, Response
+from analytic.response import Outcome, Reason
 from engines import Scene
 from engines.declaration import Stepping
 from engines.world import Moment
@@ -28,10 +28,8 @@ ODD = (1.0, 1.09, 1.17, 1.26, 1.38)
 """Parts by which steps are changed, so that impacts fall into different parts of a step."""
 
 
-def errors_of(response: Response) -> dict[str, float]:
+def errors_of(response):
     """Return the errors of what was seen: times in 1/p, velocities and the peak by their part."""
-    assert EXACT.history is not None
-    assert response.history is not None
     assert len(response.impacts) == len(EXACT.impacts) == 3
     pairs = list(zip(response.impacts, EXACT.impacts, strict=True))
     apart = np.abs(response.history.theta - EXACT.history.theta).max()
@@ -49,7 +47,7 @@ def errors_of(response: Response) -> dict[str, float]:
     }
 
 
-def largest(monkeypatch: pytest.MonkeyPatch, moment: Moment, steps: int) -> dict[str, float]:
+def largest(monkeypatch, moment, steps):
     """Return the largest errors over some equal steps of about 1/p over `steps`."""
     found = []
     for part in ODD:
@@ -60,9 +58,7 @@ def largest(monkeypatch: pytest.MonkeyPatch, moment: Moment, steps: int) -> dict
 
 
 @pytest.mark.parametrize("moment", Moment)
-def test_order_of_what_is_seen_in_equal_steps(
-    moment: Moment, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_order_of_what_is_seen_in_equal_steps(moment, monkeypatch):
     coarse, fine = (largest(monkeypatch, moment, steps) for steps in (FEW, MANY))
     order = {name: math.log(coarse[name] / fine[name], MANY / FEW) for name in coarse}
     # an impact is met by a straight line from the last end of a step before it, half of p dt^2
@@ -86,9 +82,7 @@ def test_order_of_what_is_seen_in_equal_steps(
 
 
 @pytest.mark.parametrize("moment", Moment)
-def test_steps_that_land_see_impacts_to_their_shortest_step(
-    moment: Moment, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_steps_that_land_see_impacts_to_their_shortest_step(moment, monkeypatch):
     asked = scene(MOTION, duration=SEEN_S, times=TIMES, accuracy="loose")
     response, _ = exactly(monkeypatch, asked, moment, Stepping.LANDING)
     errors = errors_of(response)
@@ -100,7 +94,7 @@ def test_steps_that_land_see_impacts_to_their_shortest_step(
     assert errors["peak"] < 1e-7
 
 
-def test_what_exact_poses_do_not_do_is_not_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_exact_poses_do_not_do_is_not_seen(monkeypatch):
     """No slide, no penetration, no hop, but for roundings of the pose."""
     response, _ = exactly(
         monkeypatch, scene(MOTION, duration=SEEN_S, step=0.01), Moment.END, Stepping.FIXED
@@ -112,9 +106,7 @@ def test_what_exact_poses_do_not_do_is_not_seen(monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize(
     ("onsets", "outcome"), [(0.99, Outcome.AT_REST), (6.0, Outcome.OVERTURNED)]
 )
-def test_outcomes(
-    sign: float, onsets: float, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outcomes(sign, onsets, outcome, monkeypatch):
     motion = pulse(sign * onsets, 1.0)
     response, _ = exactly(
         monkeypatch, scene(motion, duration=4.0, step=0.01), Moment.MIDDLE, Stepping.FIXED
@@ -125,9 +117,7 @@ def test_outcomes(
 
 
 @pytest.mark.parametrize("moment", Moment)
-def test_rest_begins_where_swings_are_shorter_than_steps(
-    moment: Moment, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rest_begins_where_swings_are_shorter_than_steps(moment, monkeypatch):
     exact = simulate(BLOCK, MOTION, duration=6.0)
     late = []
     for steps in (FEW, MANY):
@@ -141,7 +131,7 @@ def test_rest_begins_where_swings_are_shorter_than_steps(
     assert late[1] > -0.01
 
 
-def test_a_block_that_came_to_rest_lifts_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_block_that_came_to_rest_lifts_again(monkeypatch):
     """The second half of a slow pulse lifts a block that the first half had left to rest."""
     block = RigidBlock(width=0.5, height=0.75)
     motion = pulse(1.03, 0.4, 2, block)
@@ -165,8 +155,8 @@ BASES = {
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize(("onsets", "half_cycles"), [(1.1, 1), (1.3, 2), (0.95, 2), (6.0, 1)])
 def test_outcome_and_peak_do_not_depend_on_how_deep_a_contact_is(
-    base: str, onsets: float, half_cycles: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    base, onsets, half_cycles, monkeypatch
+):
     motion = pulse(onsets, 3.0, half_cycles)
     exact = simulate(BLOCK, motion)
     asked = scene(motion, step=0.005)
@@ -179,9 +169,7 @@ def test_outcome_and_peak_do_not_depend_on_how_deep_a_contact_is(
     assert seen.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
 
 
-def test_a_block_that_sinks_is_a_note_and_no_missing_answer(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_block_that_sinks_is_a_note_and_no_missing_answer(monkeypatch):
     asked = scene(MOTION, step=0.01)
     told = scene(MOTION, step=0.01, duration=9.0 / BLOCK.p)
     dt_s = 0.01 / BLOCK.p
@@ -195,14 +183,12 @@ def test_a_block_that_sinks_is_a_note_and_no_missing_answer(
 
 
 @pytest.mark.parametrize("leans", [0.3, 1.0])
-def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(
-    leans: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(leans, monkeypatch):
     """Two springs under the corners: one is pressed deeper by as much as the other is relieved."""
     deep, motion = 1e-3 * BLOCK.width, pulse(leans, 3.0, 2)
 
     class Springs(ElsewhereWorld):
-        def script(self, time: float, rate_s: float) -> tuple[float, float]:
+        def script(self, time, rate_s):
             amount = 2.0 * deep / BLOCK.width * leans
             phase = motion.omega * time
             inside = phase < 2.0 * math.pi
@@ -211,7 +197,7 @@ def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(
                 -amount * motion.omega * math.cos(phase) * inside,
             )
 
-    def level(time: float) -> float:
+    def level(time):
         leant = abs(math.sin(motion.omega * time)) * (motion.omega * time < 2.0 * math.pi)
         return -deep * (1.0 + leans * leant)
 
@@ -221,11 +207,11 @@ def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(
     )
 
 
-def test_a_block_held_just_short_of_its_side_lies(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_block_held_just_short_of_its_side_lies(monkeypatch):
     """What lies on a soft contact never reaches pi/2."""
 
     class Lying(KnownWorld):
-        def script(self, time: float, rate_s: float) -> tuple[float, float]:
+        def script(self, time, rate_s):
             theta, rate = super().script(time, rate_s)
             return (theta, rate) if abs(theta) < 1.56 else (math.copysign(1.56, theta), 0.0)
 

@@ -37,12 +37,12 @@ every_fixed_use = pytest.mark.parametrize("engine", FIXED)
 every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
 
 
-def in_both_frames(uses: list[tuple[str, str]]) -> list[tuple[str, str]]:
+def in_both_frames(uses):
     """Return the uses of engines whose base can also move in the world."""
     return [use for use in uses if set(FRAMES) <= set(HERE[use[0]].frames)]
 
 
-def noise(engine: str, step: float) -> float:
+def noise(engine, step):
     """Return the part of an impact's velocity, some p H/10, that is a rounding of a block's place.
 
     Over a step of p dt such a rounding is a velocity.
@@ -50,7 +50,7 @@ def noise(engine: str, step: float) -> float:
     return ROUNDINGS * HERE[engine].precision.value / (0.1 * step)
 
 
-def speed_band(engine: str) -> float:
+def speed_band(engine):
     """Return within what landing steps meet a closed form for the velocity of an impact.
 
     It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
@@ -58,7 +58,7 @@ def speed_band(engine: str) -> float:
     return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].scatter))
 
 
-def band(engine: str) -> float:
+def band(engine):
     """Return within what landing steps at the default accuracy, p dt = 5e-3, meet a closed form.
 
     Core engines are of second order, (p dt)^2 = 2.5e-5 times a factor of a few; of others it is
@@ -68,9 +68,7 @@ def band(engine: str) -> float:
     return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].scatter)
 
 
-def pulse(
-    onset_ratio: float, omega_over_p: float, half_cycles: int = 1, block: RigidBlock = BLOCK
-) -> SinePulse:
+def pulse(onset_ratio, omega_over_p, half_cycles=1, block=BLOCK):
     """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
     return SinePulse(
         amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
@@ -79,5 +77,5 @@ def pulse(
     )
 
 
-def scene(motion: SinePulse, **options: object) -> Scene:
-    return Scene(system=BLOCK, motion=motion, **options)  # type: ignore[arg-type]
+def scene(motion, **options):
+    return Scene(system=BLOCK, motion=motion, **options)
