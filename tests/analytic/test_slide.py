@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from given import FULL_SINE, G
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analytic import Outcome, Record, SinePulse, SlidingBlock, Still, simulate
 from analytic.response import Reason
-
-G = 9.81
-FULL_SINE = SinePulse(amplitude=0.4 * G, omega=2.0 * math.pi, half_cycles=2)
 
 
 def box(friction, **more):
@@ -162,16 +160,3 @@ def test_mirror_and_history(seed, friction):
         standing &= (times < begin - 1e-9) | (times > end + 1e-9)
     assert np.all(v[standing] == 0.0)
     assert np.all(np.abs(record.acceleration(times[standing])) <= block.limit + 40.0 * 1e-9)
-
-
-def test_bad_input_is_refused_in_one_line():
-    with pytest.raises(ValueError, match=r"friction is 2\.0; it must be below width/height, 2\.0"):
-        box(2.0)
-    with pytest.raises(ValueError, match=r"friction is 0\.0; it must be positive"):
-        box(0.0)
-    with pytest.raises(ValueError, match="a SlidingBlock has only 'exact'"):
-        simulate(box(0.2), FULL_SINE, "housner")
-    with pytest.raises(ValueError, match="start is 3; it must be x"):
-        simulate(box(0.2), FULL_SINE, start=3)
-    with pytest.raises(ValueError, match=r"duration is 0\.5"):
-        simulate(box(0.2), FULL_SINE, duration=0.5)
