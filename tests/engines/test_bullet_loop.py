@@ -8,8 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from test_look import all_but_times
-from uses import BLOCK, pulse, scene
+from uses import BLOCK, all_but_times, pulse, scene
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse

@@ -3,24 +3,23 @@
 import os
 import subprocess
 import sys
-from dataclasses import asdict
 from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, pulse, scene
+from uses import BLOCK, HERE, all_but_times, rocked, scene
 
 from analytic.kernels.compiled import Purse, interpreting
 from analytic.response import Outcome
-from engines import ENGINES, Scene
+from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.mujoco import fast as mujoco_loop
 from engines.mujoco import models as mujoco_models
 from engines.parts import compiled as parts
 from engines.parts.compiled import INTERPRETED, PACKAGE
 from engines.pybullet import clients as bullet_clients
-from engines.run.drive import LOOK_AROUND, build, run
+from engines.run.drive import LOOK_AROUND, build
 from engines.run.look import roomy
 from studies.cases.motions import noise
 
@@ -75,27 +74,13 @@ EACH = [
 ]
 
 
-def all_but_times(response):
-    """Return all fields to the last bit, apart from run times and what took the steps."""
-    found = asdict(response)
-    history = found.pop("history")
-    kept = [] if history is None else [part for part in history.values() if part is not None]
-    parts = [part.tolist() for part in kept]
-    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
-
-
-def shaken(**options):
-    """Return a scene with these options, shaken by two half cycles."""
-    return scene(**{"motion": pulse(1.3, 3.0, 2), **options})
-
-
 @pytest.mark.parametrize(("engine", "options"), EACH)
 def test_a_compiled_loop_answers_as_python_does(engine, options):
-    world = build(ENGINES[engine], shaken(**options))
+    world = build(ENGINES[engine], scene(**options))
     world.close()
     assert world.drive is not None
     at_once, one_by_one = (
-        run(engine, shaken(compiled=compiled, **options)) for compiled in (True, False)
+        rocked(engine, compiled=compiled, **options) for compiled in (True, False)
     )
     assert all_but_times(at_once) == all_but_times(one_by_one)
     assert (at_once.driver, one_by_one.driver) == ("compiled", "python")
@@ -109,11 +94,8 @@ def test_what_is_compiled_is_so_ahead():
 def test_what_is_compiled_answers_as_it_does_in_python(engine):
     """There is one source: numba switched off, the same functions are Python."""
     code = (
-        "from test_look import all_but_times\n"
-        "from uses import pulse, scene\n"
-        "from engines.run.drive import run\n"
-        f"asked = scene(pulse(1.3, 3.0, 2), accuracy='loose', times={TIMES!r})\n"
-        f"found = run({engine!r}, asked)\n"
+        "from uses import all_but_times, rocked\n"
+        f"found = rocked({engine!r}, accuracy='loose', times={TIMES!r})\n"
         "print(found.driver, all_but_times(found), sep='\\n')\n"
     )
     places = os.pathsep.join(path for path in sys.path if path)
@@ -130,12 +112,12 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine):
     (compiled, first), (python, second) = found
     assert (compiled, python) == ("compiled", "python: numba is switched off")
     assert "rocked" in first
-    assert first == second
+    here = rocked(engine, accuracy="loose", times=TIMES)
+    assert first.strip() == second.strip() == all_but_times(here)
 
 
 def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
-    asked = shaken(accuracy="loose")
-    compiled = run("mujoco", asked)
+    compiled = rocked("mujoco", accuracy="loose")
     found = mujoco_loop.layout("mjData")
 
     moved = SimpleNamespace(**{name: getattr(found, name) for name, *_ in found._fields_})
@@ -145,10 +127,10 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
     monkeypatch.setattr(mujoco_loop, "layout", elsewhere.__getitem__)
     mujoco_loop.obstacle.cache_clear()
     try:
-        world = build(ENGINES["mujoco"], asked)
+        world = build(ENGINES["mujoco"], scene(accuracy="loose"))
         world.close()
         assert world.drive is None
-        stepped = run("mujoco", asked)
+        stepped = rocked("mujoco", accuracy="loose")
         assert stepped.driver == "python: its memory is not what Python reads"
         assert all_but_times(stepped) == all_but_times(compiled)
     finally:
@@ -157,8 +139,7 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
 
 def test_a_run_has_room_for_all_that_it_writes_down():
     """Rows and events outgrow what there is room for at first."""
-    asked = Scene(system=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
-    response = run("mujoco", asked)
+    response = rocked("mujoco", duration=8.0, times=TIMES)
     assert response.outcome is Outcome.ROCKED
     assert response.steps > 4 * LOOK_AROUND
     assert len(response.impacts) > 10
@@ -180,11 +161,11 @@ def test_what_was_used_is_as_good_as_new(engine, monkeypatch):
     fresh = {}
     for name, options in scenes.items():
         kept.idle.clear()
-        fresh[name] = all_but_times(run(engine, shaken(**options)))
+        fresh[name] = all_but_times(rocked(engine, **options))
     generator = np.random.default_rng(1)
     for name in generator.choice(list(scenes), 40).tolist():
         compiled = bool(generator.integers(4))
-        again = run(engine, shaken(compiled=compiled, **scenes[name]))
+        again = rocked(engine, compiled=compiled, **scenes[name])
         assert all_but_times(again) == fresh[name], name
     assert 0 < len(kept.idle) <= mujoco_models.MOST_IDLE
 
@@ -203,7 +184,7 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
                 raise AttributeError(name)
             return getattr(self.itself, name)
 
-    newest = all_but_times(run("mujoco", shaken(compiled=False)))
+    newest = all_but_times(rocked("mujoco", compiled=False))
     whole = library.MjModel
     monkeypatch.setattr(mujoco_models, "idle", type(mujoco_models.idle)())
     monkeypatch.setattr(library, "MjModel", SimpleNamespace(from_xml_string=Older))
@@ -215,24 +196,23 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
 
         monkeypatch.setattr(library, name, given)
     for _ in range(2):  # with a model that is new, and with one that was used
-        assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
+        assert all_but_times(rocked("mujoco", compiled=False)) == newest
     assert mujoco_models.idle
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
 def test_a_few_steps_are_interpreted_to_the_same_bit(engine, options):
-    asked = shaken(**options)
     with interpreting(Purse(PACKAGE, 10**9, 0)):
-        interpreted = run(engine, asked)
-    assert all_but_times(interpreted) == all_but_times(run(engine, asked))
+        interpreted = rocked(engine, **options)
+    assert all_but_times(interpreted) == all_but_times(rocked(engine, **options))
     assert interpreted.driver == f"python: {INTERPRETED}"
 
 
 def test_a_run_of_many_steps_is_compiled(monkeypatch):
     """It begins again when the steps that may be interpreted are spent."""
     monkeypatch.setattr(Purse, "shut", False)
-    asked, drivers = shaken(accuracy="loose"), []
+    asked, drivers = partial(rocked, "mujoco", accuracy="loose"), []
     for steps in (10**9, 10):
         monkeypatch.setattr(parts, "PURSE", Purse(PACKAGE, steps, 0))
-        drivers.append(parts.interpreted_first(partial(run, "mujoco", asked)).driver)
+        drivers.append(parts.interpreted_first(asked).driver)
     assert drivers == [f"python: {INTERPRETED}", "compiled"]

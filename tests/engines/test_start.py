@@ -183,25 +183,6 @@ def test_a_small_release_comes_to_rest(engine):
     assert response.uplifts == ()
 
 
-@pytest.mark.parametrize(
-    ("start", "message"),
-    [
-        ((0.5 * math.pi, 0.0), "theta of the start is 1.57.*; it must be between -pi/2 and pi/2"),
-        ((math.nan, 0.0), "theta of the start is nan; it must be a finite number"),
-        ((0.1, math.inf), "rate of the start is inf; it must be a finite number"),
-        ((0.1,), "start is .*; it must be theta"),
-        ((BLOCK.alpha, 0.0), "it must not be the unstable equilibrium where nothing moves"),
-        ((-BLOCK.alpha, 0.0), "it must not be the unstable equilibrium where nothing moves"),
-    ],
-)
-def test_bad_starts_are_refused(start, message):
-    """By the engines in the words of the exact solution."""
-    with pytest.raises(ValueError, match=message):
-        Scene(system=BLOCK, motion=STILL, start=start)
-    with pytest.raises(ValueError, match=message):
-        simulate(BLOCK, STILL, start=start)
-
-
 def test_a_balanced_block_may_be_shaken():
     """It falls to the side from which the base is moved away, as the exact solution does."""
     motion = SinePulse(amplitude=1.0, omega=10.0)

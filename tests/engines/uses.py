@@ -1,18 +1,20 @@
 """Every engine under every preset, and what may be asked of it by what it declares."""
 
-import math
+from dataclasses import asdict
 
 import pytest
 from declared import held_to
+from given import BLOCK, pulse
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import UNTUNED, Miss, Stepping
+from engines.run.drive import run
 from engines.world import ROUNDINGS
+from studies.cases.paper import sweep_cases
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-
+SHAKEN = pulse(1.3, 3.0, 2)
+"""A pulse under which the block is struck once before its peak."""
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
@@ -68,14 +70,38 @@ def band(engine):
     return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].scatter)
 
 
-def pulse(onset_ratio, omega_over_p, half_cycles=1, block=BLOCK):
-    """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
-    return SinePulse(
-        amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
-        omega=omega_over_p * block.p,
-        half_cycles=half_cycles,
-    )
+def scene(motion=SHAKEN, **options):
+    return Scene(**{"system": BLOCK, "motion": motion, **options})
 
 
-def scene(motion, **options):
-    return Scene(system=BLOCK, motion=motion, **options)
+def rocked(engine, motion=SHAKEN, **options):
+    """Return what an engine makes of a scene of the block."""
+    return run(engine, scene(motion, **options))
+
+
+def error(engine, motion=SHAKEN, **options):
+    """Return by which part an engine's peak misses the exact one."""
+    posed = scene(motion, **options)
+    exact = simulate(posed.system, motion, start=posed.start)
+    return abs(run(engine, posed).peak_ratio / exact.peak_ratio - 1.0)
+
+
+def errors_of_sweep(engine, every, **options):
+    """Return the errors of the peaks of the survivors of the sweep, outcomes having agreed."""
+    errors = []
+    for case in [*sweep_cases([6, 7, 8, 9])][every // 2 :: every]:
+        exact = simulate(case.block, case.motion)
+        response = rocked(engine, case.motion, system=case.block, **options)
+        assert response.outcome is exact.outcome, (case, response.message)
+        if exact.outcome is Outcome.ROCKED:
+            errors.append(abs(response.peak_ratio / exact.peak_ratio - 1.0))
+    return errors
+
+
+def all_but_times(response):
+    """Return all fields to the last bit, apart from run times and what took the steps."""
+    found = asdict(response)
+    history = found.pop("history")
+    kept = [] if history is None else [part for part in history.values() if part is not None]
+    parts = [part.tolist() for part in kept]
+    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
