@@ -87,20 +87,6 @@ def test_a_rectangular_pulse(a, sign):
     assert response.slip_times[0] == pytest.approx((0.0, velocity / limit), rel=1e-13)
 
 
-@pytest.mark.parametrize("part", [0.9, 1.1])
-def test_an_incline(part):
-    """At tan(beta) = 0.9 mu nothing creeps; at 1.1 mu it slides by g (sin - mu cos) t^2/2."""
-    beta = math.atan(part * 0.4)
-    block = box(0.4, gravity=G * math.cos(beta))
-    record = Record(dt=3.0, samples=np.full(2, -G * math.sin(beta)))
-    response = simulate(block, record, duration=3.0)
-    if part < 1.0:
-        assert (response.outcome, response.slips) == (Outcome.AT_REST, ())
-        return
-    pull = G * (math.sin(beta) - 0.4 * math.cos(beta))
-    assert response.slips == pytest.approx((0.5 * pull * 9.0,), rel=1e-12)
-
-
 def test_below_and_above_mu_g():
     for part, outcome in ((1.0, Outcome.AT_REST), (1.0 + 1e-9, Outcome.SLID)):
         pulse = SinePulse(amplitude=part * 0.2 * G, omega=3.0, half_cycles=10)

@@ -1,18 +1,28 @@
 """An engine that knows the answer: its poses are exact, so that all error is the onlooker's."""
 
 import math
-from dataclasses import dataclass, replace
 
 from analytic import simulate
 from engines import ENGINES
-from engines.declaration import Preset, Stepping
-from engines.run.drive import run
+from engines.declaration import Stepping
+from engines.run.drive import simulate_world
+from engines.scene import ACCURACIES
 from engines.world import Moment, Pose
 
 
-@dataclass(frozen=True)
-class NoSettings:
-    friction: float = 1.0
+class Bare:
+    """What every world must answer, and nothing more."""
+
+    moment = Moment.END
+
+    def step(self, step):
+        pass
+
+    def fault(self):
+        return ""
+
+    def close(self):
+        pass
 
 
 def standing(scene, theta, rate):
@@ -24,17 +34,13 @@ def standing(scene, theta, rate):
     return Pose(x, half_width * sine + half_height * cosine, theta, rate)
 
 
-class ScriptedWorld:
+class ScriptedWorld(Bare):
     """Has the rotation and rate that `script` says, and keeps the steps that it was given."""
 
     def __init__(self, scene):
         self.scene = scene
         self.steps = []
         self._pose = standing(scene, *scene.start)
-
-    @property
-    def moment(self):
-        return Moment.END
 
     def script(self, time, rate_s):
         """Return the rotation at a time, and the rate at the moment of its step [s]."""
@@ -48,19 +54,13 @@ class ScriptedWorld:
     def state(self):
         return [self._pose]
 
-    def fault(self):
-        return ""
-
-    def close(self):
-        pass
-
 
 class KnownWorld(ScriptedWorld):
     """The exact solution, its velocity at some moment of the step."""
 
     def __init__(self, scene, moment, stepping):
         super().__init__(scene)
-        self._moment = moment
+        self.moment = moment
         self._ahead = {}
         if stepping is Stepping.FIXED and scene.step and scene.duration:
             dt_s = scene.step / scene.system.p
@@ -70,10 +70,6 @@ class KnownWorld(ScriptedWorld):
             # they end where the block lies on its side
             found = zip(self._exact(ends)[0], self._exact(rated)[1], strict=False)
             self._ahead = dict(enumerate(found, start=1))
-
-    @property
-    def moment(self):
-        return self._moment
 
     def _exact(self, times):
         scene = self.scene
@@ -102,16 +98,14 @@ class ElsewhereWorld(KnownWorld):
         return [at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))]
 
 
-def watched(monkeypatch, world, scene, stepping):
-    """Run a scene as if the world were an engine's, in the steps of a preset."""
-    step = {"step": 1e-2} if stepping is Stepping.FIXED else {}
-    use = Preset(name="known", title="", settings=NoSettings(), stepping=stepping, **step)
-    engine = replace(ENGINES["mujoco"], build=lambda *_: world, presets=(use,))
-    monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
-    return run("known", scene)
+def watched(world, posed, stepping):
+    """Return what is seen of a world, in the equal steps of a scene or in steps that land."""
+    dt_s = (posed.step or 1.0 / ACCURACIES[posed.accuracy]) / posed.system.p
+    resolution = ENGINES["mujoco"].resolution(posed.system)
+    return simulate_world(world, posed, dt_s, stepping, resolution)
 
 
-def exactly(monkeypatch, scene, moment, stepping):
+def exactly(posed, moment, stepping):
     """Run a scene with exact poses; return what was made of them, and the steps."""
-    world = KnownWorld(scene, moment, stepping)
-    return watched(monkeypatch, world, scene, stepping), world.steps
+    world = KnownWorld(posed, moment, stepping)
+    return watched(world, posed, stepping), world.steps

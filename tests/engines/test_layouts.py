@@ -1,22 +1,20 @@
 """Scenes of other things than one block: side by side, a frame, a slide."""
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import pytest
 from declared import equal_to
-from uses import BLOCK, HERE, pulse
+from given import FULL_SINE as SINE
+from known import Bare
+from uses import BLOCK, HERE, pulse, rocked, scene
 
 from analytic import RockingFrame, SlidingBlock, Still, simulate
-from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason
 from engines import Scene
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
 from engines.run.drive import run, simulate_world
 from engines.world import Moment, Pose
-
-SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
 
 STACKING = [name for name, engine in HERE.items() if Ability.STACKED in engine.abilities]
 APART_BY = {"dart": 5e-4, "physx": 2e-2}
@@ -35,14 +33,17 @@ APART = [
 def test_blocks_apart_rock_as_one_alone(engine, preset):
     """To the rounding of the engine, but for DART and PhysX, whose contacts depend on where one is;
     as they come, pymunk's ten sweeps do not converge, and hang on the order of its contacts."""
-    alone = run(engine, Scene(system=BLOCK, motion=pulse(1.2, 2.0, 2), preset=preset))
-    both = run(
-        engine, Scene(system=SideBySide(block=BLOCK), motion=pulse(1.2, 2.0, 2), preset=preset)
+    alone, both = (
+        rocked(engine, pulse(1.2, 2.0, 2), system=system, preset=preset)
+        for system in (BLOCK, SideBySide(block=BLOCK))
     )
     peaks = [both.observables["peak_1"], both.observables["peak_2"]]
     assert peaks == pytest.approx(
         [alone.peak_ratio] * 2, rel=APART_BY.get(engine, equal_to(engine))
     )
+
+
+BOX = SlidingBlock(width=1.0, height=0.5, friction=0.2)
 
 
 def frame(load, columns=2):
@@ -77,10 +78,9 @@ def test_a_frame_rocks_at_equal_steps(engine):
 
 
 def test_the_released_frame_swings_back():
-    start = (0.4 * BLOCK.alpha, 0.0)
-    system = frame(1.0)
-    scene = Scene(system=system, motion=Still(), start=start, duration=2.0)
-    found, exact = run("mujoco", scene), simulate(system, Still(), start=start, duration=2.0)
+    system, asked = frame(1.0), {"start": (0.4 * BLOCK.alpha, 0.0), "duration": 2.0}
+    found = rocked("mujoco", Still(), system=system, **asked)
+    exact = simulate(system, Still(), **asked)
     times = [impact.time for impact in exact.impacts[:3]]
     assert [impact.time for impact in found.impacts[:3]] == pytest.approx(times, rel=1e-4)
 
@@ -99,8 +99,7 @@ def test_a_slide_ends_where_it_should(engine, friction):
 def test_a_launched_box_stops():
     box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
     for engine in ("pymunk", "pybullet"):
-        scene = Scene(system=box, motion=Still(), start=(0.0, 6.0), preset="fixed")
-        found = run(engine, scene)
+        found = rocked(engine, Still(), system=box, start=(0.0, 6.0), preset="fixed")
         assert found.slips == pytest.approx((36.0 / 9.81,), rel=1e-6), engine
         assert found.slip_times[0][1] == pytest.approx(12.0 / 9.81, rel=1e-3)
 
@@ -110,7 +109,7 @@ def test_a_slide_that_is_cut_short_counts_as_far_as_it_got():
     box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
     asked = {"start": (0.0, 6.0), "duration": 0.5, "times": [0.1, 0.3, 0.5]}
     exact = simulate(box, Still(), **asked)
-    found = run("pymunk", Scene(system=box, motion=Still(), preset="fixed", **asked))
+    found = rocked("pymunk", Still(), system=box, preset="fixed", **asked)
     assert found.outcome is exact.outcome is Outcome.SLID
     # of first order in a step of 1e-4 s at 6 m/s
     assert found.slips == pytest.approx(exact.slips, abs=1e-3)
@@ -118,7 +117,7 @@ def test_a_slide_that_is_cut_short_counts_as_far_as_it_got():
     assert found.history.velocity == pytest.approx(exact.history.velocity, abs=1e-2)
 
 
-class Trembles:
+class Trembles(Bare):
     """A world in which a box is pushed to and fro, step by step, by a hundredth of a tremor's way.
 
     Its velocities are those of a slide.
@@ -135,40 +134,33 @@ class Trembles:
     def state(self):
         return [Pose(self.way_m * (self.steps % 2), 0.25, 0.0, 0.0)]
 
-    def fault(self):
-        return ""
-
 
 def test_a_box_that_trembles_where_it_is_is_at_rest():
     """Else a run of a box that two contacts hold in turn would never end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=0.5)
-    scene = Scene(system=box, motion=SINE, max_steps=20_000)
-    still = simulate_world(Trembles(5e-6), scene, 1e-3, Stepping.FIXED)
+    posed = scene(SINE, system=box, max_steps=20_000)
+    still, restless = (
+        simulate_world(Trembles(way_m), posed, 1e-3, Stepping.FIXED) for way_m in (5e-6, 5e-4)
+    )
     assert still.outcome is Outcome.AT_REST
     assert still.steps < 2_000
-    assert simulate_world(Trembles(5e-4), scene, 1e-3, Stepping.FIXED).reason is Reason.UNDECIDED
+    assert restless.reason is Reason.UNDECIDED
 
 
 def test_what_an_engine_cannot_hold_is_a_row_that_says_so():
-    response = run("newton", Scene(system=frame(1.0), motion=SINE))
+    response = rocked("newton", SINE, system=frame(1.0))
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
-    assert (
-        response.message == "not available: Newton is not built here for several bodies on one base"
-    )
-    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
-    landing = run("mujoco", Scene(system=box, motion=SINE, preset="landing"))
+    assert "several bodies" in response.message
+    landing = rocked("mujoco", SINE, system=BOX, preset="landing")
     assert landing.reason is Reason.UNAVAILABLE
     assert "nothing rocks here" in landing.message
 
 
 def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which():
-    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
-    best, fixed = (
-        run("pymunk", Scene(system=box, motion=SINE, preset=preset)) for preset in (None, "fixed")
-    )
+    best, fixed = (rocked("pymunk", SINE, system=BOX, preset=preset) for preset in (None, "fixed"))
     assert best.message == "as pymunk:fixed"
     assert best.slips == fixed.slips
-    assert not run("pymunk", Scene(system=BLOCK, motion=SINE)).message
+    assert not rocked("pymunk").message
 
 
 def test_a_frame_is_columns_that_share_their_beam():
@@ -192,12 +184,3 @@ def test_what_has_no_layout_is_named():
         layout_of(Nothing(), 1000.0, None, (0.0, 0.0))
     with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 on"):
         SideBySide(block=BLOCK, count=0)
-
-
-def test_landing_steps_need_something_that_rocks():
-    landing = HERE["pymunk"].preset("landing")
-    assert landing.stepping is Stepping.LANDING
-    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
-    scene = Scene(system=box, motion=SINE)
-    assert HERE["pymunk"].lacks(scene, landing)
-    assert not HERE["pymunk"].lacks(replace(scene, system=BLOCK), landing)

@@ -61,9 +61,9 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
 @pytest.mark.parametrize(
     ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
 )
-@FEW
-@given(quiet_s=st.floats(0.1, 2.0))
+@pytest.mark.parametrize("quiet_s", [0.7, 2.0])
 def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):
+    """That a library reads a setting back is no proof: what sleeps through it stays where it is."""
     dt_s, motion = 0.01, pulse(1.3, 4.0, 2)
     shaken = np.append(motion.acceleration(np.arange(0.0, motion.duration, dt_s)), 0.0)
     before = math.ceil(quiet_s / dt_s)

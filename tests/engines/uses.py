@@ -18,17 +18,8 @@ SHAKEN = pulse(1.3, 3.0, 2)
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
-FIXED = [
-    name
-    for name, engine in HERE.items()
-    if any(use.name == "fixed" and use.stepping is Stepping.FIXED for use in engine.presets)
-]
-LANDING = [
-    (name, use.name)
-    for name, engine in HERE.items()
-    for use in engine.presets
-    if use.stepping is Stepping.LANDING
-]
+FIXED = [name for name, preset in USES if preset == "fixed"]
+LANDING = [use for use in USES if HERE[use[0]].preset(use[1]).stepping is Stepping.LANDING]
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in HERE[use[0]].frames]
 
 MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]

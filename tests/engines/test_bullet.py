@@ -1,6 +1,6 @@
-"""PyBullet's compiled loop: held against Python before it is used, and left alone where it is not
-what it should be."""
+"""PyBullet's compiled loop, which is left alone where it is not what it should be; its clients."""
 
+import itertools
 import multiprocessing
 import signal
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -8,21 +8,23 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from uses import BLOCK, all_but_times, pulse, scene
+from uses import BLOCK, all_but_times, pulse, rocked, scene
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Reason
-from engines import ENGINES, Scene
+from analytic.response import Outcome, Reason
+from engines import ENGINES
 from engines.pybullet import build as bullet
+from engines.pybullet import clients as bullet_clients
 from engines.pybullet import fast as bullet_loop
 from engines.pybullet.addresses import spans
+from engines.pybullet.settings import FACTORS, LANDING, TUNED
 from engines.run.drive import build, run, simulate_world
 from engines.world import Grip
 
 p = pytest.importorskip("pybullet")
 
-ROCKS = scene(pulse(1.3, 3.0, 2), accuracy="loose")
+ROCKS = scene(accuracy="loose")
 
 
 @pytest.fixture(autouse=True)
@@ -134,8 +136,7 @@ def test_what_is_corrected_of_a_position(grip, dt_s, normal, across):
 def apart(number):
     """Return a scene in which contacts are kept up to a gap of its own."""
     block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
-    pulse = SinePulse(amplitude=1.3 * block.gravity * block.width / 1.5, omega=3.0 * block.p)
-    return Scene(system=block, motion=pulse, accuracy="loose")
+    return scene(pulse(1.3, 3.0, 1, block), system=block, accuracy="loose")
 
 
 def answer(number):
@@ -174,11 +175,9 @@ ENDLESS = {"preset": "fixed", "duration": 1e5}
 
 
 def test_a_time_limit_ends_a_loop():
-    asked = Scene(system=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
+    asked = scene(pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
     assert driven(asked)
-    response = run("pybullet", asked)
-    assert response.reason is Reason.UNDECIDED
-    assert response.message == "not decided within 0.05 s"
+    assert run("pybullet", asked).reason is Reason.UNDECIDED
 
 
 def test_a_signal_ends_a_loop():
@@ -189,7 +188,7 @@ def test_a_signal_ends_a_loop():
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(InterruptedError):
-            run("pybullet", Scene(system=BLOCK, motion=pulse(0.5, 1.0), **ENDLESS))
+            rocked("pybullet", pulse(0.5, 1.0), **ENDLESS)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -202,11 +201,41 @@ def test_the_solver_ends_by_itself_at_rest(compiled):
     block = RigidBlock(width=0.5, height=1.0)
     motion = pulse(1.3, 0.1, 2, block)
     times = [0.1 * i for i in range(20)]  # the block lifts after 2.5 s
+    asked = {"system": block, "times": times, "compiled": compiled}
     enough, more = (
-        run("pybullet", Scene(system=block, motion=motion, times=times, **options))
-        for options in (
-            {"compiled": compiled, "settings": {"iterations": iterations}}
-            for iterations in (1000, 3000)
-        )
+        rocked("pybullet", motion, **asked, settings={"iterations": iterations})
+        for iterations in (1000, 3000)
     )
     assert (enough.history.theta == more.history.theta).all()
+
+
+@pytest.mark.parametrize("wanted", [{"start": (0.5 * BLOCK.alpha, 0.0), "preset": "naive"}, {}])
+def test_nothing_stays_of_any_setting(wanted, monkeypatch):
+    """A run in a client that others have used is that of a new one, to the bit."""
+    monkeypatch.setattr(bullet_clients, "idle", [])
+
+    def answered():
+        return all_but_times(rocked("pybullet", pulse(1.35, 4.0), **wanted))
+
+    first = answered()
+    for level in itertools.chain.from_iterable(factor.levels for factor in FACTORS):
+        for preset in level.presets:
+            few = {"preset": preset, "settings": level.settings, "max_steps": 30}
+            rocked("pybullet", pulse(1.35, 4.0), **few, **level.scene)
+        assert len(bullet_clients.idle) == 1
+        assert answered() == first, level.name
+
+
+def test_two_worlds_at_once_have_a_client_each(monkeypatch):
+    monkeypatch.setattr(bullet_clients, "idle", [])
+    worlds = [bullet.BulletWorld(scene(), settings, 1e-3) for settings in (TUNED, LANDING)]
+    for world in worlds:
+        world.close()
+    assert len(set(bullet_clients.idle)) == 2
+
+
+def test_a_run_that_was_lost_spoils_none_after_it():
+    first = all_but_times(rocked("pybullet"))
+    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="naive")
+    assert lost.outcome is Outcome.FAILED
+    assert all_but_times(rocked("pybullet")) == first
