@@ -101,66 +101,49 @@ def test_what_a_variant_sets_is_taken(engine):
         takes(engine, preset=variant.preset, settings=variant.settings, **variant.scene)
 
 
-def _bullet(library):
+def bullet_box(library):
     client = library.connect(library.DIRECT)
-    box = library.createCollisionShape(
-        library.GEOM_BOX, halfExtents=(1, 1, 1), physicsClientId=client
-    )
+    size = {"halfExtents": (1, 1, 1), "physicsClientId": client}
+    box = library.createCollisionShape(library.GEOM_BOX, **size)
     body = library.createMultiBody(1.0, box, physicsClientId=client)
     friction = library.getDynamicsInfo(body, -1, physicsClientId=client)[1]
     library.disconnect(client)
-    return {"friction": friction}
+    return friction
 
 
-def _box2d(library):
-    shape = library.b2PolygonShape(box=(1, 1))
-    world = library.b2World()
-    body = world.CreateDynamicBody(fixtures=library.b2FixtureDef(shape=shape))
-    return {"friction": body.fixtures[0].friction}
+def box2d_box(library):
+    shape = library.b2FixtureDef(shape=library.b2PolygonShape(box=(1, 1)))
+    world = library.b2World()  # a body does not outlive it
+    return world.CreateDynamicBody(fixtures=shape).fixtures[0].friction
 
 
-def _rapier(library):
-    box = library.Collider.cuboid(1.0, 1.0, 1.0)
-    world = library.PhysicsWorld()
+def rapier_box(library):
+    world, box = library.PhysicsWorld(), library.Collider.cuboid(1.0, 1.0, 1.0)
     body = world.rigid_bodies[world.add_body(library.RigidBody.dynamic(), [box])]
-    return {"friction": world.colliders[body.colliders[0]].friction}
+    return world.colliders[body.colliders[0]].friction
 
 
-def _drake(library):
+def drake_box(_):
     config = importlib.import_module("pydrake.geometry").SceneGraphConfig()
-    return {"friction": config.default_proximity_properties.dynamic_friction}
-
-
-def _pymunk(library):
-    return {"friction": library.Poly.create_box(library.Body(1.0, 1.0)).friction}
-
-
-def _physx(library):
-    return {"friction": library.physx.get_default_material().static_friction}
+    return config.default_proximity_properties.dynamic_friction
 
 
 BARE = {
-    "pybullet": _bullet,
-    "box2d": _box2d,
-    "rapier": _rapier,
-    "drake": _drake,
-    "pymunk": _pymunk,
-    "physx": _physx,
+    "pybullet": bullet_box,
+    "box2d": box2d_box,
+    "rapier": rapier_box,
+    "drake": drake_box,
+    "pymunk": lambda library: library.Poly.create_box(library.Body(1.0, 1.0)).friction,
+    "physx": lambda library: library.physx.get_default_material().static_friction,
 }
-"""What each library makes of a box of which nothing is said."""
+"""The friction of a box of which nothing is said, in each library."""
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
 def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
-    found = BARE[engine](imported(HERE[engine].library))
-    assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
-
-
-@pytest.mark.parametrize(
-    "engine", [name for name in HERE if "friction" in HERE[name].preset("naive").own]
-)
-def test_a_squat_block_slides_at_the_library_s_own_friction(engine):
-    own = HERE[engine].preset("naive").own["friction"]
+    """And a squat block slides at it."""
+    own = BARE[engine](imported(HERE[engine].library))
+    assert HERE[engine].preset("naive").own == {"friction": pytest.approx(own, rel=1e-7)}
     cube, sine = RigidBlock(width=0.5, height=0.5), SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
     assert simulate(cube, sine).friction_needed > own
     response = rocked(engine, sine, system=cube, preset="naive", settings={"friction": own})

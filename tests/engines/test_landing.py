@@ -7,7 +7,6 @@ large as the conditioning of a case elsewhere.
 
 import itertools
 import math
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -15,7 +14,7 @@ import pytest
 from declared import equal_to
 from uses import BLOCK, HERE, SHAKEN, error, errors_of_sweep, pulse, rocked
 
-from analytic import simulate
+from analytic import conditioning, simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines import FRAMES, core_engines
@@ -69,31 +68,6 @@ def test_what_landing_is_helped_by_matters(engine, left_out, times):
     assert max(errors_of_sweep(engine, 96, settings=left_out)) > times * max(some_errors(engine))
 
 
-def random_cases(number):
-    """Return random cases in which the pivot stays on the base, with their exact responses."""
-    random = np.random.default_rng(2)
-    cases = []
-    while len(cases) < number:
-        width = 0.02 * 500.0 ** random.uniform()
-        block = RigidBlock(width=width, height=width * random.uniform(1.2, 12.0))
-        motion = pulse(
-            1.02 * (4.0 / 1.02) ** random.uniform(),
-            0.3 * 40.0 ** random.uniform(),
-            int(random.integers(1, 5)),
-            block,
-        )
-        exact = simulate(block, motion)
-        if exact.min_normal > 0.2:
-            cases.append((block, motion, exact))
-    return cases
-
-
-def conditioning(block, motion, exact):
-    """Return d ln theta_max / d ln a_p, at least 1."""
-    more = simulate(block, replace(motion, amplitude=motion.amplitude * (1.0 + 1e-6)))
-    return max(abs(math.log(more.peak_ratio / exact.peak_ratio)) / 1e-6, 1.0)
-
-
 @pytest.fixture(params=core_engines())
 def engine(request):
     return str(request.param)
@@ -111,26 +85,30 @@ def test_the_whole_sweep(engine, accuracy, median, largest):
     assert max(errors) < largest
 
 
-def compare_random_cases(engine, number):
-    """Compare outcomes and peaks; an error in anything is amplified by the conditioning."""
-    errors = []
-    for block, motion, exact in random_cases(number):
-        response = rocked(engine, motion, system=block)
-        assert response.outcome is exact.outcome, (block, motion, response.message)
-        if exact.outcome is Outcome.ROCKED:
-            error = abs(response.peak_ratio / exact.peak_ratio - 1.0)
-            errors.append(error / conditioning(block, motion, exact))
+def random_case(draw):
+    """Return a block of any size and slenderness, and a pulse of 1 to 4 onsets."""
+    width = 0.02 * 500.0 ** draw.uniform()
+    block = RigidBlock(width=width, height=width * draw.uniform(1.2, 12.0))
+    onsets, omega = 1.02 * (4.0 / 1.02) ** draw.uniform(), 0.3 * 40.0 ** draw.uniform()
+    return block, pulse(onsets, omega, int(draw.integers(1, 5)), block)
+
+
+@pytest.mark.parametrize("number", [30, pytest.param(500, marks=pytest.mark.slow)])
+def test_random_cases(engine, number):
+    """In which the pivot stays on the base; an error in anything is amplified by the condition."""
+    draw, errors = np.random.default_rng(2), []
+    while number:
+        block, motion = random_case(draw)
+        exact = simulate(block, motion)
+        if exact.min_normal > 0.2:
+            number -= 1
+            response = rocked(engine, motion, system=block)
+            assert response.outcome is exact.outcome, (block, motion, response.message)
+            if exact.outcome is Outcome.ROCKED:
+                missed = abs(response.peak_ratio / exact.peak_ratio - 1.0)
+                errors.append(missed / max(abs(conditioning(block, motion)[0]), 1.0))
     assert np.median(errors) < 1e-5
     assert max(errors) < 2e-4
-
-
-def test_random_cases(engine):
-    compare_random_cases(engine, 30)
-
-
-@pytest.mark.slow
-def test_many_random_cases(engine):
-    compare_random_cases(engine, 500)
 
 
 def test_second_order(engine):
@@ -229,17 +207,13 @@ def test_onset(engine, omega_over_p):
     """Also where the whole peak is some 1e-5 of alpha, and goes with the cube of an excess of
     0.02, so that an error of 2e-5 in anything is one of 3e-3 in the peak."""
     below = rocked(engine, pulse(0.95, omega_over_p))
-    above = rocked(engine, pulse(1.02, omega_over_p))
-    exact = simulate(BLOCK, pulse(1.02, omega_over_p))
     assert (below.outcome, below.peak_ratio) == (Outcome.AT_REST, 0.0)
-    assert above.peak_ratio == pytest.approx(exact.peak_ratio, rel=3e-3)
+    assert error(engine, pulse(1.02, omega_over_p)) < 3e-3
 
 
 @pytest.mark.slow
 def test_a_minute_of_rest(engine):
-    times = [1.0, 59.0]
-    motion = pulse(0.5, 1.0)
-    response = rocked(engine, motion, duration=60.0, times=times)
+    response = rocked(engine, pulse(0.5, 1.0), duration=60.0, times=[1.0, 59.0])
     assert response.outcome is Outcome.AT_REST
     assert np.abs(response.history.theta).max() < 1e-9
     assert response.slip_m < 1e-9

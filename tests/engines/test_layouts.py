@@ -10,10 +10,9 @@ from uses import BLOCK, HERE, pulse, rocked, scene
 
 from analytic import RockingFrame, SlidingBlock, Still, simulate
 from analytic.response import Outcome, Reason
-from engines import Scene
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
-from engines.run.drive import run, simulate_world
+from engines.run.drive import simulate_world
 from engines.world import Moment, Pose
 
 STACKING = [name for name, engine in HERE.items() if Ability.STACKED in engine.abilities]
@@ -60,7 +59,7 @@ def test_a_frame_lands_as_a_block(engine, columns, load):
     """Of second order in p dt = 5e-3; MuJoCo's contact yields by a part 1e-4 of what it carries, so
     that a heavy beam lifts a little early at any step."""
     system, exactly = frame(load, columns), 1e-5 * (1.0 + load)
-    response = run(engine, Scene(system=system, motion=SINE))
+    response = rocked(engine, SINE, system=system)
     assert response.peak_ratio == pytest.approx(simulate(system, SINE).peak_ratio, rel=exactly)
     seen = response.observables
     assert max(seen["parting"], seen["tilt"]) < 1e-5
@@ -72,7 +71,7 @@ def test_a_frame_lands_as_a_block(engine, columns, load):
 @pytest.mark.parametrize("engine", STACKING)
 def test_a_frame_rocks_at_equal_steps(engine):
     """Where in a step an impact falls costs half a per cent; PyBullet's boxes lose one more."""
-    response = run(engine, Scene(system=frame(2.0), motion=SINE, preset="fixed"))
+    response = rocked(engine, SINE, system=frame(2.0), preset="fixed")
     assert response.peak_ratio == pytest.approx(simulate(frame(2.0), SINE).peak_ratio, rel=1.5e-2)
     assert response.observables["parting"] < 1e-4
 
@@ -91,7 +90,7 @@ def test_a_slide_ends_where_it_should(engine, friction):
     """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
     single precision a part 1e-4 of its end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=friction)
-    found = run(engine, Scene(system=box, motion=SINE, preset="fixed"))
+    found = rocked(engine, SINE, system=box, preset="fixed")
     assert found.outcome is Outcome.SLID
     assert found.slips == pytest.approx(simulate(box, SINE).slips, abs=5e-4)
 

@@ -7,14 +7,12 @@ import pytest
 from declared import held_to
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from uses import BLOCK, HERE, USES, pulse, scene
+from uses import BLOCK, HERE, USES, pulse, rocked
 
 from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
-from engines import Scene
 from engines.declaration import UNTUNED, Miss, Stepping
-from engines.run.drive import run
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
@@ -27,17 +25,16 @@ MISSED = {
 AWAKE = [(name, use) for name, use in USES if Miss.SLEEP not in HERE[name].preset(use).misses]
 MOST = 40_000
 """Steps, of some thousands that are needed."""
-FEW = settings(
+
+
+@pytest.mark.parametrize(("engine", "preset"), AWAKE)
+@settings(
     max_examples=6,
     deadline=None,
     derandomize=True,
     phases=[Phase.generate],  # to shrink a failure would take as long as all the rest
     suppress_health_check=[HealthCheck.differing_executors],
 )
-
-
-@pytest.mark.parametrize(("engine", "preset"), AWAKE)
-@FEW
 @given(
     excess=st.floats(-4.0, -1.0).map(lambda power: 10.0**power),
     omega=st.floats(1.0, 8.0),
@@ -50,7 +47,7 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.0 + excess, omega, half_cycles, block)
     exact = simulate(block, motion)
-    response = run(engine, Scene(system=block, motion=motion, preset=preset, max_steps=MOST))
+    response = rocked(engine, motion, system=block, preset=preset, max_steps=MOST)
     assert response.outcome in (Outcome.AT_REST, Outcome.ROCKED), response.message
     use = HERE[engine].preset(preset)
     kind = "naive" if preset in UNTUNED else use.stepping
@@ -69,7 +66,7 @@ def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):
     before = math.ceil(quiet_s / dt_s)
     record = Record(samples=np.concatenate([np.zeros(before), shaken]), dt=dt_s)
     exact = simulate(BLOCK, record)
-    response = run(engine, scene(record, preset=preset, max_steps=MOST))
+    response = rocked(engine, record, preset=preset, max_steps=MOST)
     assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
     if preset in UNTUNED:  # some lean in their contact before the onset, or lose impacts
         assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1.0)

@@ -105,12 +105,6 @@ def test_two_runs_at_once_have_a_model_each():
 
 
 @installed
-def test_a_base_that_moved_begins_anew_for_the_next_run():
-    first, again = (rocked("newton", preset="naive") for _ in range(2))
-    assert (first.peak_ratio, first.observables) == (again.peak_ratio, again.observables)
-
-
-@installed
 def test_naive_and_the_same_at_rest_are_near_the_exact_peak():
     assert error("newton", preset="naive") < 0.15
     assert error("newton", preset=AT_REST) < 0.15
