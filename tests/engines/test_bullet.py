@@ -177,7 +177,9 @@ ENDLESS = {"preset": "fixed", "duration": 1e5}
 def test_a_time_limit_ends_a_loop():
     asked = scene(pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
     assert driven(asked)
-    assert run("pybullet", asked).reason is Reason.UNDECIDED
+    response = run("pybullet", asked)
+    assert response.reason is Reason.UNDECIDED
+    assert "0.05 s" in response.message  # and not by its steps
 
 
 def test_a_signal_ends_a_loop():
