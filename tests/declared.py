@@ -1,28 +1,25 @@
 """What tests ask of an engine, by what it declares."""
 
-from typing import Any
-
 import pytest
 
 from engines import ENGINES
-from engines.declaration import Miss
 from engines.world import ROUNDINGS
 
 STEPS_ADD_UP = 1e4
 """Steps over whose roundings the errors of two runs may add up that should be equal."""
 
 
-def held_to(miss: Miss, engine: str, preset: str) -> list[Any]:
+def held_to(miss, engine, preset):
     """Return the marks of a test that must fail where a preset declares to miss what it asks."""
     missed = miss in ENGINES[engine].preset(preset).misses
     return [pytest.mark.xfail(strict=True, reason=miss.value)] if missed else []
 
 
-def equal_to(engine: str, exactly: float = 1e-9) -> float:
+def equal_to(engine, exactly=1e-9):
     """Return within what two numbers agree that only the engine's rounding may tell apart."""
     return max(exactly, STEPS_ADD_UP * ENGINES[engine].precision.value)
 
 
-def rounding(engine: str) -> float:
+def rounding(engine):
     """Return within what a number comes back that an engine was given."""
     return max(1e-12, ROUNDINGS * ENGINES[engine].precision.value)

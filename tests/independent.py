@@ -25,6 +25,32 @@ def angular_acceleration(model, block, s, theta, a_g):
 MOST_IMPACTS = 12
 
 
+def swing(model, block, ground, side, span, state, **options):
+    """Return SciPy's path of a swing on a side, to its impact, to its lying down or to the end.
+
+    Its events are the impact, turning points and lying down.
+    """
+
+    def equation(time, x):
+        return [x[1], angular_acceleration(model, block, side, x[0], ground(time))]
+
+    def contact(time, x):
+        return side * x[0]
+
+    def turning(time, x):
+        return side * x[1]
+
+    def lying(time, x):
+        return side * x[0] - 0.5 * math.pi
+
+    contact.terminal, contact.direction = True, -1
+    lying.terminal, turning.direction = True, -1
+    events = (contact, turning, lying)
+    return solve_ivp(
+        equation, span, state, "DOP853", rtol=1e-12, atol=1e-16, events=events, **options
+    )
+
+
 def first_uplift(block, pulse, onset):
     """Return when abs(a_p sin(omega t + phase)) first exceeds the onset, and the side it lifts to;
     (inf, 0) if it does not within the pulse."""
@@ -39,14 +65,12 @@ def first_uplift(block, pulse, onset):
     return (t if t < pulse.duration else math.inf), -int(math.copysign(1, pulse.amplitude * ahead))
 
 
-def peak_and_impacts(
-    model, block, pulse, after=15.0, rtol=1e-12, start=(0.0, 0.0), most=MOST_IMPACTS
-):
-    """Return (peak/alpha or inf, impact times) up to `after`/p past the pulse.
+def peak_and_impacts(model, block, pulse, start=(0.0, 0.0), most=MOST_IMPACTS):
+    """Return (peak/alpha or inf, impact times) up to 15/p past the pulse.
 
     A block tilted at the start turns about the corner that it stands on, an upright one about that
-    which it turns to. After MOST_IMPACTS impacts it stops; the peak is None if the pulse is not
-    over by then.
+    which it turns to. After `most` impacts it stops; the peak is None if the pulse is not over by
+    then.
     """
     saddle = math.tan(block.alpha) if model == "modified" else block.alpha
     onset = math.tan(block.alpha) if model != "housner" else block.alpha
@@ -55,42 +79,24 @@ def peak_and_impacts(
         t, s = 0.0, int(math.copysign(1, start[0] or start[1]))
     if t == math.inf:
         return 0.0, []
+
+    def shaken(time):
+        return pulse.amplitude * math.sin(pulse.omega * time + pulse.phase)
+
     state, peak, impacts = list(start), abs(start[0]), []
-    for stop in (pulse.duration, pulse.duration + after / block.p):
+    ends = {pulse.duration: shaken, pulse.duration + 15.0 / block.p: lambda _: 0.0}
+    for stop, ground in ends.items():
         while t < stop:
-
-            def equation(time, x, s=s, moving=stop == pulse.duration):
-                phase = pulse.omega * time + pulse.phase
-                a_g = pulse.amplitude * math.sin(phase) if moving else 0.0
-                return [x[1], angular_acceleration(model, block, s, x[0], a_g)]
-
-            def contact(time, x, s=s):
-                return s * x[0]
-
-            def turning(time, x, s=s):
-                return s * x[1]
-
-            def lying(time, x, s=s):
-                return s * x[0] - 0.5 * math.pi
-
-            contact.terminal, contact.direction = True, -1
-            lying.terminal, turning.direction = True, -1
-            path = solve_ivp(
-                equation, (t, stop), state, "DOP853", rtol=rtol, atol=1e-15,
-                events=(contact, turning, lying), max_step=0.05 / block.p,
-            )  # fmt: skip
-            tops = [abs(x[0]) for x in path.y_events[1]] + [abs(path.y[0, -1])]
-            peak = max(peak, *tops)
+            path = swing(model, block, ground, s, (t, stop), state, max_step=0.05 / block.p)
+            peak = max([peak, abs(path.y[0, -1]), *(abs(x[0]) for x in path.y_events[1])])
             if path.t_events[2].size:
                 return math.inf, impacts
-            t = path.t[-1]
-            if path.t_events[0].size == 0:
-                state = path.y[:, -1]
-                continue
-            impacts.append(t)
-            s, state = -s, [0.0, block.restitution * path.y[1, -1]]
-            if len(impacts) == most:
-                return (peak / block.alpha if t > pulse.duration else None), impacts
+            t, state = path.t[-1], path.y[:, -1]
+            if path.t_events[0].size:
+                impacts.append(t)
+                s, state = -s, [0.0, block.restitution * state[1]]
+                if len(impacts) == most:
+                    return (peak / block.alpha if t > pulse.duration else None), impacts
     return (math.inf if abs(state[0]) > saddle else peak / block.alpha), impacts
 
 
@@ -98,7 +104,7 @@ AT_REST = 1e-7
 """Angular velocity [rad/s] below which a block pressed down after an impact counts as at rest."""
 
 
-def history_under_samples(model, block, dt, samples, times, rtol=1e-12):
+def history_under_samples(model, block, dt, samples, times):
     """Return (rotations at `times`, first MOST_IMPACTS impact times) under a sampled acceleration.
 
     Restarted at every sample; between two the acceleration is numpy's interpolation. Times end
@@ -111,8 +117,8 @@ def history_under_samples(model, block, dt, samples, times, rtol=1e-12):
         return float(np.interp(time, instants, samples))
 
     rotations, impacts, s, state = np.zeros(len(times)), [], 0, [0.0, 0.0]
-    for begin, stop in itertools.pairwise(instants):
-        t = begin
+    for t, stop in itertools.pairwise(instants):
+        longest = 0.25 * (stop - t)
         while t < stop * (1 - 1e-14):
             if s == 0:
                 a, b = ground(t), ground(stop)
@@ -122,25 +128,17 @@ def history_under_samples(model, block, dt, samples, times, rtol=1e-12):
                     # the straight line reaches the onset of its end's sign
                     t += (stop - t) * (math.copysign(onset, b) - a) / (b - a)
                 s = -int(math.copysign(1, b if abs(a) <= onset else a))
-
-            def equation(time, x, s=s):
-                return [x[1], angular_acceleration(model, block, s, x[0], ground(time))]
-
-            def contact(time, x, s=s):
-                return s * x[0]
-
-            contact.terminal, contact.direction = True, -1
-            path = solve_ivp(
-                equation, (t, stop), state, "DOP853", rtol=rtol, atol=1e-16,
-                events=contact, max_step=0.25 * (stop - begin), dense_output=True,
-            )  # fmt: skip
+            options = {"max_step": longest, "dense_output": True}
+            path = swing(model, block, ground, s, (t, stop), state, **options)
             inside = (times > t) & (times <= path.t[-1])
             if inside.any():
                 rotations[inside] = path.sol(times[inside])[0]
-            t, state = float(path.t[-1]), [float(x) for x in path.y[:, -1]]
+            t, state = float(path.t[-1]), path.y[:, -1]
             if path.t_events[0].size:
                 impacts.append(t)
                 s, state = -s, [0.0, block.restitution * state[1]]
                 if abs(state[1]) < AT_REST and abs(ground(t)) < onset:
                     s, state = 0, [0.0, 0.0]
+            elif path.t_events[2].size:
+                break
     return rotations, impacts[:MOST_IMPACTS]

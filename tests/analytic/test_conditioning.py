@@ -1,13 +1,31 @@
-"""Condition numbers: carried along with the solution, held against differences of peaks."""
+"""How errors move a peak: condition numbers, and sensitivities to small but finite errors."""
+
+import math
+from itertools import product
 
 import numpy as np
 import pytest
+from given import BLOCK
+from independent import peak_and_impacts
 
-from analytic import MODELS, Outcome, RigidBlock, SinePulse, peak_ratios, simulate
+from analytic import (
+    MODELS,
+    Outcome,
+    Record,
+    RigidBlock,
+    SinePulse,
+    Still,
+    condition_numbers,
+    conditioning,
+    peak_ratios,
+    sensitivities,
+    sensitivity,
+    simulate,
+)
 from analytic.block import housner_restitution
-from analytic.conditioning import condition_numbers, conditioning
 from studies.cases.paper import sweep_cases
 
+NEAR_ONSET = RigidBlock(width=1.5256313519414122, height=9.174363250019729)
 CASES = np.array(
     [
         (case.block.alpha, case.amplitude_g, case.omega_over_p, case.motion.half_cycles)
@@ -68,12 +86,131 @@ def test_a_peak_before_any_impact_does_not_feel_the_restitution():
     assert np.all(found[np.isfinite(found)] == 0.0)
 
 
-def test_one_response_is_conditioned_as_in_the_array():
-    block = RigidBlock(width=0.5, height=1.5)
-    pulse = SinePulse(amplitude=0.4 * 9.81, omega=4.0 * block.p, half_cycles=4)
-    response = simulate(block, pulse)
-    assert len(response.impacts) >= 2
-    one = conditioning(block, pulse)
-    assert all(map(np.isfinite, one))
-    many = condition_numbers(block.alpha, 0.4, 4.0, 4)
-    assert one == pytest.approx([float(numbers) for numbers in many], rel=1e-10)
+def near_onset(scale=1.0):
+    return SinePulse.in_g(scale * 0.17396032278997067, omega=2.10102467443576, half_cycles=2)
+
+
+def test_near_onset_it_sees_what_the_derivative_does_not():
+    """An uplift that comes at 0.9999 of the amplitude: against a general integrator."""
+    kappa = max(map(abs, conditioning(NEAR_ONSET, near_onset())))
+    assert kappa < 100.0
+    still, weaker = (
+        peak_and_impacts("exact", NEAR_ONSET, near_onset(scale), most=30)[0]
+        for scale in (1.0, 0.9999)
+    )
+    assert weaker / still - 1.0 == pytest.approx(0.68, abs=0.01)
+    found = sensitivity(NEAR_ONSET, near_onset())
+    assert found == pytest.approx((weaker / still - 1.0) / 1e-4, rel=1e-3)
+    assert found > 50.0 * kappa
+
+
+@pytest.mark.parametrize("model", ["exact", "housner"])
+def test_it_is_the_largest_difference_of_two_peaks(model):
+    alpha, amplitude, omega, half_cycles = CASES[:, ::7]
+    eta = 1.0 - 1.5 * np.sin(alpha) ** 2
+    still, outcome = peak_ratios(alpha, amplitude, omega, half_cycles, model)
+    wanted = np.zeros(alpha.size)
+    for move in (1e-4, -1e-4, 1e-6, -1e-6):
+        for by, times_eta in ((1.0 + move, 1.0), (1.0, 1.0 + move)):
+            moved, other = peak_ratios(
+                alpha, by * amplitude, omega, half_cycles, model, times_eta * eta
+            )
+            with np.errstate(invalid="ignore"):
+                change = np.abs(moved / still - 1.0) / abs(move)
+            change[~(outcome == Outcome.ROCKED)] = 0.0
+            change[other != outcome] = math.inf
+            wanted = np.maximum(wanted, change)
+    found = sensitivities(alpha, amplitude, omega, half_cycles, model)
+    # the differences of peaks that are known to 1e-13 are divided by 1e-6
+    np.testing.assert_allclose(found, wanted, rtol=1e-6, atol=1e-5)
+
+
+def test_where_the_peak_is_smooth_it_is_the_condition_number():
+    kappa = np.fmax(*map(np.abs, condition_numbers(*CASES)))
+    found = sensitivities(*CASES)
+    calm = kappa < 10.0
+    assert calm.sum() > 90
+    assert np.median(np.abs(found[calm] / kappa[calm] - 1.0)) < 1e-3
+    assert np.all(found[calm] > 0.99 * kappa[calm])
+
+
+@pytest.mark.parametrize("onsets", [1.0 + 0.9e-4, 1.0 - 0.9e-4, 1.0 + 0.9e-6])
+def test_an_outcome_that_changes_is_without_bound(onsets):
+    pulse = SinePulse.in_g(onsets / 3.0, omega=4.0 * BLOCK.p, half_cycles=1)
+    assert sensitivity(BLOCK, pulse) == math.inf
+
+
+def test_a_block_that_overturns_or_stays_whatever_moves_is_not_sensitive():
+    for amplitude in (0.3, 5.0):
+        pulse = SinePulse.in_g(amplitude, omega=2.0 * BLOCK.p, half_cycles=1)
+        assert sensitivity(BLOCK, pulse) == 0.0
+
+
+def test_of_a_block_that_is_pushed_onto_its_base_it_is_that_of_the_energy():
+    """Of the impact no more than eta is left, and the peak follows from the energy after it."""
+    tilt, rate = 0.02, 0.6 * BLOCK.p * BLOCK.alpha
+
+    def work(theta):
+        return math.cos(BLOCK.alpha - theta) - math.cos(BLOCK.alpha)
+
+    energy = 0.5 * (rate / BLOCK.p) ** 2 + work(tilt)
+
+    def peak(scale):
+        left = (scale * BLOCK.restitution) ** 2 * energy
+        return BLOCK.alpha - math.acos(left + math.cos(BLOCK.alpha))
+
+    moves = (1e-4, -1e-4, 1e-6, -1e-6)
+    wanted = max(abs(peak(1.0 + move) / peak(1.0) - 1.0) / abs(move) for move in moves)
+    assert sensitivity(BLOCK, Still(), start=(tilt, -rate)) == pytest.approx(wanted, rel=1e-7)
+    # tilted further than that, the block is highest where it starts
+    assert sensitivity(BLOCK, Still(), start=(0.9 * BLOCK.alpha, 0.0)) == 0.0
+
+
+def test_a_record_is_moved_with_all_of_its_samples():
+    """Its straight lines rise and fall with its scale; a restitution of 0 does not move."""
+    stopped = RigidBlock(width=0.5, height=1.5, restitution=0.0)
+    record = Record(dt=0.02, samples=4.0 * np.sin(0.02 * 6.0 * np.arange(53)))
+    still = simulate(stopped, record).peak_ratio
+    wanted = max(
+        abs(simulate(stopped, record.scaled(1.0 + move)).peak_ratio / still - 1.0) / abs(move)
+        for move in (1e-4, -1e-4, 1e-6, -1e-6)
+    )
+    assert sensitivity(stopped, record) == pytest.approx(wanted, rel=1e-5)
+    assert wanted > 1.0
+
+
+def test_a_ratio_of_one_moves_down_alone():
+    bouncing = RigidBlock(width=0.5, height=1.5, restitution=1.0)
+    start = (0.02, -0.6 * bouncing.p * bouncing.alpha)
+    assert 0.0 < sensitivity(bouncing, Still(), start=start) < math.inf
+
+
+def test_the_mirrored_motion_is_as_sensitive():
+    alpha, amplitude, omega, half_cycles = CASES[:, ::5]
+    found = sensitivities(alpha, amplitude, omega, half_cycles)
+    assert np.array_equal(found, sensitivities(alpha, -amplitude, omega, half_cycles))
+    assert sensitivity(NEAR_ONSET, near_onset()) == sensitivity(NEAR_ONSET, near_onset(-1.0))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_arrays_and_single_responses_agree(model):
+    """A row of blocks for each slenderness; in the last the block is struck during its pulse."""
+    alpha = np.arctan([[1 / 2], [1 / 3], [1 / 4]])
+    omega, half_cycles = np.array([0.5, 2.0, 3.5, 4.0]), np.array([2, 2, 2, 4])
+    cases = (alpha, np.tan(alpha) + 0.1, omega, half_cycles, model)
+    (peaks, outcomes), numbers = peak_ratios(*cases), condition_numbers(*cases)
+    moved = sensitivities(*cases)
+    assert peaks.shape == outcomes.shape == moved.shape == (3, 4)
+    for at in product(range(3), range(4)):
+        block = RigidBlock(width=1.0, height=1.0 / math.tan(alpha[at[0], 0]))
+        motion = SinePulse.in_g(
+            math.tan(block.alpha) + 0.1,
+            omega=omega[at[1]] * block.p,
+            half_cycles=int(half_cycles[at[1]]),
+        )
+        response = simulate(block, motion, model)
+        assert response.outcome is outcomes[at]
+        assert response.peak_ratio == pytest.approx(peaks[at], rel=1e-9)
+        one = [float(number[at]) for number in numbers]
+        assert conditioning(block, motion, model) == pytest.approx(one, rel=1e-9, nan_ok=True)
+        assert sensitivity(block, motion, model) == pytest.approx(moved[at], rel=1e-5)

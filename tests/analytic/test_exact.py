@@ -1,81 +1,83 @@
 """The exact model: against 30 digits, against SciPy, and against what must hold."""
 
-import csv
-import itertools
 import math
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
+from given import BLOCK, FULL_SINE, G, pulse
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from independent import peak_and_impacts
 
 from analytic import MODELS, Outcome, RigidBlock, SinePulse, integrate, peak_ratios, simulate
-from analytic.criteria import free_amplitude, overturning_velocity, quarter_period
+from analytic.criteria import overturning_velocity
+from analytic.response import Reason
+from studies.cases.extreme import extremes
+from studies.cases.paper import HISTORIES
 
-G = 9.81
-TABLE_FILE = Path(__file__).parent / "reference" / "exact.csv"
-TABLE = list(csv.DictReader(TABLE_FILE.read_text().splitlines()))
-
-
-def papers_case(width, height, amplitude_g, half_cycles):
-    block = RigidBlock(width=width, height=height)
-    return block, SinePulse(amplitude=amplitude_g * G, omega=2 * math.pi, half_cycles=half_cycles)
+REFERENCE = Path(__file__).parent / "reference"
 
 
-@pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row['height']}-{row['half_cycles']}")
+def table(name):
+    """Return the rows of a table of 30 digits, made by the script beside it."""
+    return pd.read_csv(REFERENCE / name, keep_default_na=False).to_dict("records")
+
+
+def case_of(row):
+    restitution = float(row.get("restitution") or "nan")
+    block = RigidBlock(width=row["width"], height=row["height"], restitution=restitution)
+    asked = {name: row[name] for name in ("amplitude", "omega", "half_cycles")}
+    return block, SinePulse(**asked)
+
+
+@pytest.mark.parametrize("row", table("exact.csv"), ids=lambda row: str(tuple(row.values())[:5]))
 def test_against_thirty_digits(row):
-    block = RigidBlock(width=float(row["width"]), height=float(row["height"]))
-    pulse = SinePulse(
-        amplitude=float(row["amplitude"]),
-        omega=float(row["omega"]),
-        half_cycles=int(row["half_cycles"]),
-    )
-    response = simulate(block, pulse)
-    expected = float(row["peak_ratio"])
-    if math.isinf(expected):
-        assert response.peak_ratio == math.inf
-    else:
-        assert response.peak_ratio == pytest.approx(expected, rel=1e-12)
+    block, motion = case_of(row)
+    response = simulate(block, motion)
+    assert response.peak_ratio == pytest.approx(row["peak_ratio"], rel=1e-12)
     times = [float(t) for t in row["impact_times"].split()]
-    during = [i.time for i in response.impacts if i.time < pulse.duration]
+    during = [i.time for i in response.impacts if i.time < motion.duration]
     assert during == pytest.approx(times, rel=1e-12)
 
 
-# the values read off the paper's Figs 4 and 5 are given to four digits in the literature table
-@pytest.mark.parametrize(
-    ("width", "height", "amplitude_g", "half_cycles", "expected"),
-    [
-        (0.5, 3.0, 0.2, 1, (0.0197, 0.0219, 0.0197)),
-        (0.5, 1.5, 0.4, 1, (0.0391, 0.0578, 0.0388)),
-        (0.5, 1.0, 0.7, 1, (0.2249, 0.3824, 0.2138)),
-        (0.5, 3.0, 0.2, 2, (0.1750, 0.2119, 0.1737)),
-        (0.5, 1.5, 0.4, 2, (0.3852, math.inf, 0.3605)),
-        (0.5, 1.0, 0.6, 2, (0.5558, math.inf, 0.4446)),
-    ],
-)
-def test_the_papers_histories(width, height, amplitude_g, half_cycles, expected):
-    case = papers_case(width, height, amplitude_g, half_cycles)
-    for model, peak in zip(("exact", "housner", "modified"), expected, strict=True):
-        assert simulate(*case, model).peak_ratio == pytest.approx(peak, abs=5.1e-5)
+EXTREME = table("extreme.csv")
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("seed", range(12))
-def test_every_model_against_scipy(model, seed):
-    draw = np.random.default_rng(seed)
-    block = RigidBlock(width=draw.uniform(0.1, 2), height=draw.uniform(2.2, 10))
-    amplitude = G * math.tan(block.alpha) * draw.uniform(1.02, 2) * draw.choice([-1, 1])
-    omega = block.p * draw.uniform(1, 6)
-    pulse = SinePulse(amplitude=amplitude, omega=omega, half_cycles=int(draw.integers(1, 4)))
-    peak, impacts = peak_and_impacts(model, block, pulse)
-    response = simulate(block, pulse, model, duration=pulse.duration + 15.0 / block.p)
-    # DOP853 at rtol 1e-12 with a dense output of order 7 for the events
-    if peak is not None:
-        assert response.peak_ratio == pytest.approx(peak, rel=2e-9)
-    times = [i.time for i in response.impacts][: len(impacts)]
-    assert times == pytest.approx(impacts, rel=2e-9)
+@pytest.mark.parametrize("row", EXTREME, ids=lambda row: row["case"])
+def test_an_extreme_peak_has_its_digits(row):
+    found = simulate(*case_of(row)).peak_ratio
+    # a millionth below overturning the pulse's own rounding, 1e-16, grows ten thousandfold
+    near = "boundary" in row["case"]
+    # 0 and inf are met as they are
+    assert found == pytest.approx(row["peak_ratio"], rel=1e-11 if near else 1e-13, abs=0.0)
+
+
+def test_the_table_is_of_the_extreme_cases_that_are_asked():
+    named = {case.name: case.motion for case in extremes(False)}
+    assert len(EXTREME) > 12
+    for row in EXTREME:
+        motion = named[row["case"]]
+        asked = (row["amplitude"], row["omega"])
+        assert asked == pytest.approx((motion.amplitude, motion.omega), rel=1e-12)
+
+
+PAPERS = [
+    (0.0197, 0.0219, 0.0197),
+    (0.0391, 0.0578, 0.0388),
+    (0.2249, 0.3824, 0.2138),
+    (0.1750, 0.2119, 0.1737),
+    (0.3852, math.inf, 0.3605),
+    (0.5558, math.inf, 0.4446),
+]
+"""Peaks of three models, read off the panels of Figs 4 and 5 to four digits."""
+
+
+def test_the_papers_histories():
+    for panel, peaks in zip([*HISTORIES[4], *HISTORIES[5]], PAPERS, strict=True):
+        for model, peak in zip(("exact", "housner", "modified"), peaks, strict=True):
+            found = simulate(panel.block, panel.motion, model).peak_ratio
+            assert found == pytest.approx(peak, abs=5.1e-5), (panel, model)
 
 
 @settings(max_examples=60, deadline=None)
@@ -90,9 +92,8 @@ def test_mirror_and_similarity(alpha, excess, omega, half_cycles, model):
     peaks = []
     for width, sign in ((0.01, 1), (0.64, 1), (0.64, -1)):
         block = RigidBlock(width=width, height=width / math.tan(alpha))
-        amplitude = sign * excess * math.tan(alpha) * G
-        pulse = SinePulse(amplitude=amplitude, omega=omega * block.p, half_cycles=half_cycles)
-        peaks.append(simulate(block, pulse, model).peak_ratio)
+        motion = pulse(sign * excess, omega, half_cycles, block)
+        peaks.append(simulate(block, motion, model).peak_ratio)
     small, large, mirrored = peaks
     assert mirrored == large
     if math.isfinite(large) and large < 0.9:
@@ -115,27 +116,10 @@ def test_at_rest_up_to_the_onset_and_not_beyond(alpha, below, omega, model):
     assert peaks[1] > 0
 
 
-def test_free_rocking_period_and_decay():
-    block = RigidBlock(width=0.5, height=1.5)
-    pulse = SinePulse(amplitude=5.0, omega=8.0, half_cycles=1)
-    response = simulate(block, pulse, duration=20.0)
-    free = [i for i in response.impacts if i.time > pulse.duration]
-    assert len(free) > 20
-    lift = 0.5 * (free[0].velocity_after / block.p) ** 2
-    barrier = 1 - math.cos(block.alpha)
-    start = block.alpha - 2 * math.asin(math.sqrt((barrier - lift) / 2))
-    # later, small rotations lose digits in the closed form: its asin is close to 1
-    for n, (impact, following) in enumerate(itertools.pairwise(free[:15])):
-        period = 2 * quarter_period(block, free_amplitude(block, start, n))
-        assert following.time - impact.time == pytest.approx(period, abs=1e-11)
-        assert impact.ratio == pytest.approx(block.restitution, rel=1e-14)
-
-
 @pytest.mark.parametrize("height", [0.75, 1.5, 6.0])
 def test_rest_time_is_the_sum_of_all_excursions(height):
     block = RigidBlock(width=0.5, height=height)
-    pulse = SinePulse(amplitude=1.2 * G * 0.5 / height, omega=3 * block.p)
-    response = simulate(block, pulse, duration=200.0)
+    response = simulate(block, pulse(1.2, 3.0, 1, block), duration=200.0)
     last, rest = response.impacts[-1], response.rests[0]
     velocity, time = abs(last.velocity_after) / block.p, last.time
     for _ in range(int(40 / (1 - block.restitution))):
@@ -151,71 +135,39 @@ def test_rest_time_is_the_sum_of_all_excursions(height):
 def test_rest_and_uplift_again_in_both_directions():
     # a squat block loses all but a little at an impact, so it rests within each half cycle
     block = RigidBlock(width=1.0, height=1.05)
-    amplitude = 1.01 * G * math.tan(block.alpha)
-    omega = 0.9 * block.p
-    response = simulate(block, SinePulse(amplitude=amplitude, omega=omega, half_cycles=5))
+    motion = pulse(1.01, 0.9, 5, block)
+    response = simulate(block, motion, times=np.linspace(0, motion.duration, 4001))
     assert len(response.uplifts) == 5
     assert len(response.rests) >= 4
-    history = simulate(
-        block,
-        SinePulse(amplitude=amplitude, omega=omega, half_cycles=5),
-        times=np.linspace(0, 5 * math.pi / omega, 4001),
-    ).history
+    history = response.history
     sides = {
         math.copysign(1, history.theta[np.searchsorted(history.time, t + 0.02)])
         for t in response.uplifts
     }
     assert sides == {-1.0, 1.0}
     # every half cycle is the mirror of the one before: the rest has forgotten the past
-    half = math.pi / omega
-    assert np.diff(response.uplifts) == pytest.approx(half, rel=1e-12)
-
-
-def test_no_restitution_rests_at_once_and_is_lifted_at_once():
-    block = RigidBlock(width=1.5, height=1.0)
-    assert block.restitution == 0
-    pulse = SinePulse(amplitude=1.05 * 1.5 * G, omega=3 * block.p, half_cycles=2)
-    response = simulate(block, pulse)
-    assert response.impacts[0].velocity_after == 0
-    assert len(response.uplifts) == 2
-    assert response.outcome is Outcome.ROCKED
+    assert np.diff(response.uplifts) == pytest.approx(math.pi / motion.omega, rel=1e-12)
 
 
 def test_a_velocity_step_overturns_from_its_closed_form_on():
-    block = RigidBlock(width=0.5, height=1.5)
-    velocity = overturning_velocity(block)
-    omega = 1e5 * block.p
+    velocity = overturning_velocity(BLOCK)
+    omega = 1e5 * BLOCK.p
     for factor, overturned in ((1 + 1e-4, True), (1 - 1e-4, False)):
         # during so short a pulse the block turns by 1e-5 at most
         amplitude = factor * velocity * omega / 2
-        outcome = simulate(block, SinePulse(amplitude=amplitude, omega=omega)).outcome
+        outcome = simulate(BLOCK, SinePulse(amplitude=amplitude, omega=omega)).outcome
         assert (outcome is Outcome.OVERTURNED) == overturned
-
-
-def test_beyond_the_critical_rotation_and_back():
-    alpha = math.atan(1 / 3)
-    amplitudes = np.linspace(0.4, 3.0, 4000)
-    peaks, _ = peak_ratios(alpha, amplitudes, 5.0, 2)
-    survivors = peaks[np.isfinite(peaks) & (peaks > 1)]
-    assert survivors.size > 0, "no block crosses theta_cr and survives"
-    block = RigidBlock(width=0.5, height=1.5)
-    crossing = amplitudes[np.isfinite(peaks) & (peaks > 1)][0]
-    pulse = SinePulse(amplitude=crossing * G, omega=5 * block.p, half_cycles=2)
-    response = simulate(block, pulse)
-    assert response.crossed
-    assert response.outcome is Outcome.ROCKED
 
 
 def test_contact_forces_follow_from_the_path():
     """Both extremes fall into the first swing, where second differences of the path tell them."""
     block = RigidBlock(width=0.5, height=1.0)
-    amplitude = 2.2 * G * math.tan(block.alpha)
-    pulse = SinePulse(amplitude=amplitude, omega=6.0 * block.p, half_cycles=2)
-    response = simulate(block, pulse, duration=20.0)
+    motion = pulse(2.2, 6.0, 2, block)
+    response = simulate(block, motion, duration=20.0)
     times = np.linspace(response.uplifts[0], response.impacts[0].time, 3001)
-    theta = simulate(block, pulse, times=times, duration=20.0).history.theta
+    theta = simulate(block, motion, times=times, duration=20.0).history.theta
     z, side = block.alpha - np.abs(theta), np.sign(theta[1500])
-    x = pulse.displacement(times) + side * block.R * (np.sin(block.alpha) - np.sin(z))
+    x = motion.displacement(times) + side * block.R * (np.sin(block.alpha) - np.sin(z))
     up = block.R * np.cos(z)
     step = times[1] - times[0]
     horizontal = np.diff(x, 2) / step**2 / G
@@ -226,50 +178,13 @@ def test_contact_forces_follow_from_the_path():
     assert response.friction_needed == pytest.approx((np.abs(horizontal) / normal).max(), abs=1e-6)
 
 
-def test_a_block_at_rest_needs_the_friction_that_carries_it():
-    response = simulate(*papers_case(0.5, 1.5, 0.3, 2))
-    assert response.outcome is Outcome.AT_REST
-    assert response.friction_needed == pytest.approx(0.3, rel=1e-5)
-    assert response.min_normal == 1
-
-
-def test_history_follows_the_response():
-    block, pulse = papers_case(0.5, 1.5, 0.4, 2)
-    times = np.linspace(0, 3, 3001)
-    response = simulate(block, pulse, times=times, duration=3.0)
-    theta, velocity = response.history.theta, response.history.velocity
-    assert np.abs(theta).max() / block.alpha == pytest.approx(response.peak_ratio, rel=1e-4)
-    slope = np.gradient(theta, times)
-    near = [np.abs(times - i.time).min() for i in response.impacts]
-    smooth = np.all([np.abs(times - i.time) > 2e-3 for i in response.impacts], axis=0)
-    assert near
-    np.testing.assert_allclose(velocity[smooth], slope[smooth], atol=2e-3)
-    assert np.all(theta[times < response.uplifts[0]] == 0)
-
-
 def test_history_ends_where_the_block_lies_down():
     block = RigidBlock(width=0.5, height=3)
-    pulse = SinePulse(amplitude=0.5 * G, omega=2.0, half_cycles=2)
-    response = simulate(block, pulse, times=np.linspace(0, 10, 101), duration=10.0)
+    motion = SinePulse.in_g(0.5, omega=2.0, half_cycles=2)
+    response = simulate(block, motion, times=np.linspace(0, 10, 101), duration=10.0)
     assert response.outcome is Outcome.OVERTURNED
     assert response.history.time[-1] < 10
     assert np.all(np.isfinite(response.history.theta))
-
-
-def test_arrays_and_single_responses_agree():
-    alpha = np.arctan([[1 / 2], [1 / 4]])
-    omega = np.array([0.5, 2.0, 3.5])
-    for model in MODELS:
-        peaks, outcomes = peak_ratios(alpha, np.tan(alpha) + 0.1, omega, 2, model)
-        assert peaks.shape == outcomes.shape == (2, 3)
-        for i, j in np.ndindex(2, 3):
-            block = RigidBlock(width=1, height=1 / math.tan(alpha[i, 0]))
-            amplitude = (math.tan(alpha[i, 0]) + 0.1) * G
-            pulse = SinePulse(amplitude=amplitude, omega=omega[j] * block.p, half_cycles=2)
-            response = simulate(block, pulse, model)
-            assert response.outcome is outcomes[i, j]
-            if math.isfinite(response.peak_ratio):
-                assert peaks[i, j] == pytest.approx(response.peak_ratio, rel=1e-9)
 
 
 def test_many_cases_are_the_same_on_all_cores():
@@ -279,51 +194,26 @@ def test_many_cases_are_the_same_on_all_cores():
     assert np.array_equal(peaks, again[::-1])
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"alpha": 0.0}, "alpha is 0.0"),
-        ({"omega_over_p": [1.0, -2.0]}, "omega_over_p is -2.0"),
-        ({"amplitude_g": math.nan}, "amplitude_g is nan"),
-        ({"half_cycles": 1.5}, "half_cycles is 1.5"),
-        ({"restitution": 1.5}, "restitution is 1.5"),
-        ({"model": "linear"}, "model is 'linear'; it must be one of exact, housner"),
-    ],
-)
-def test_bad_arrays(change, words):
-    arguments = {"alpha": 0.3, "amplitude_g": 0.4, "omega_over_p": 1.0, "half_cycles": 1}
-    with pytest.raises(ValueError, match=words):
-        peak_ratios(**(arguments | change))
-
-
 def test_the_error_follows_the_tolerance():
-    case = papers_case(0.5, 1.5, 0.4, 2)
-    exact = simulate(*case)
+    exact = simulate(BLOCK, FULL_SINE)
     tolerances = 10.0 ** -np.arange(3, 15)
     errors = []
     for tolerance in tolerances:
-        response = simulate(*case, tolerance=tolerance)
+        response = simulate(BLOCK, FULL_SINE, tolerance=tolerance)
         errors.append(abs(response.peak_ratio / exact.peak_ratio - 1))
         # a few steps, each amplified by the growth e^(p t) of the unstable motion
         assert errors[-1] < 10 * tolerance
     assert errors[0] > 1e4 * errors[-1]
 
 
-@pytest.mark.parametrize("tolerance", [0.0, 1e-17, 0.1, math.nan])
-def test_bad_tolerance(tolerance):
-    with pytest.raises(ValueError, match="tolerance is"):
-        simulate(*papers_case(0.5, 1.5, 0.4, 2), tolerance=tolerance)
-
-
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(("amplitude", "omega"), [(1e300, 6.0), (4.0, 1e-150)])
 def test_what_floating_point_cannot_hold_fails_and_says_so(model, amplitude, omega):
-    block = RigidBlock(width=0.5, height=1.5)
     motion = SinePulse(amplitude=amplitude, omega=omega, half_cycles=2)
-    for response in (simulate(block, motion, model), integrate(block, motion, model)):
+    for response in (simulate(BLOCK, motion, model), integrate(BLOCK, motion, model)):
         if response.outcome is not Outcome.OVERTURNED:
             assert response.outcome is Outcome.FAILED
-            assert "overflows" in response.message
+            assert response.reason is Reason.DIVERGED, response.reason
             assert math.isnan(response.peak_ratio)
 
 
@@ -332,11 +222,3 @@ def test_the_most_violent_pulse_overturns(amplitude_g):
     peaks, outcomes = peak_ratios(0.3, amplitude_g, [0.5, 2.0, 8.0], 1)
     assert np.isinf(peaks).all()
     assert all(outcome is Outcome.OVERTURNED for outcome in outcomes)
-
-
-def test_bad_windows():
-    case = papers_case(0.5, 1.5, 0.4, 1)
-    with pytest.raises(ValueError, match=r"duration is 0\.1; it must be at least"):
-        simulate(*case, duration=0.1)
-    with pytest.raises(ValueError, match="increasing"):
-        simulate(*case, times=[1.0, 0.5])

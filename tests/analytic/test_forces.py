@@ -5,11 +5,10 @@ from itertools import product
 
 import numpy as np
 import pytest
+from given import BLOCK, G, pulse
 
 from analytic import Outcome, Record, RigidBlock, SinePulse, simulate
 from analytic.motion import Still
-
-G = 9.81
 
 
 def sampled_forces(block, motion, history):
@@ -27,11 +26,10 @@ def test_no_sample_of_a_response_is_beyond_the_limits(seed):
     """And come close; of a block that falls only those count before it is beyond θcr for good."""
     draw = np.random.default_rng(seed)
     block = RigidBlock(width=0.5, height=0.5 * draw.uniform(1.2, 8.0))
-    amplitude = draw.uniform(1.05, 2.0) * G * math.tan(block.alpha)
-    pulse = SinePulse(amplitude=amplitude, omega=block.p * draw.uniform(0.5, 8.0), half_cycles=3)
-    times = np.linspace(0.0, pulse.duration + 6.0 / block.p, 40_001)
-    response = simulate(block, pulse, duration=times[-1], times=times)
-    normal, horizontal = sampled_forces(block, pulse, response.history)
+    motion = pulse(draw.uniform(1.05, 2.0), draw.uniform(0.5, 8.0), 3, block)
+    times = np.linspace(0.0, motion.duration + 6.0 / block.p, 40_001)
+    response = simulate(block, motion, duration=times[-1], times=times)
+    normal, horizontal = sampled_forces(block, motion, response.history)
     rotation = np.abs(response.history.theta)
     counted = np.arange(rotation.size)
     if response.outcome is Outcome.OVERTURNED:
@@ -50,35 +48,34 @@ def test_no_sample_of_a_response_is_beyond_the_limits(seed):
 def test_the_friction_of_a_smooth_extreme_is_exact():
     """Without an impact the ratio is smooth: samples miss it by the square of their step."""
     block = RigidBlock(width=0.5, height=1.0)
-    pulse = SinePulse(amplitude=1.4 * G * math.tan(block.alpha), omega=6.0 * block.p)
-    found = simulate(block, pulse)
-    assert not [i for i in found.impacts if i.time < pulse.duration]
-    times = np.linspace(found.uplifts[0], pulse.duration, 100_001)
-    normal, horizontal = sampled_forces(block, pulse, simulate(block, pulse, times=times).history)
+    motion = pulse(1.4, 6.0, 1, block)
+    found = simulate(block, motion)
+    assert not [i for i in found.impacts if i.time < motion.duration]
+    times = np.linspace(found.uplifts[0], motion.duration, 100_001)
+    history = simulate(block, motion, times=times).history
+    normal, horizontal = sampled_forces(block, motion, history)
     assert found.friction_needed == pytest.approx((horizontal / normal).max(), rel=1e-9)
 
 
-@pytest.mark.parametrize("half_cycles", [1, 40, 1000])
-def test_a_block_at_rest_needs_the_strongest_acceleration_there_is(half_cycles):
-    block = RigidBlock(width=0.5, height=1.5)
-    pulse = SinePulse(amplitude=0.225 * G, omega=6.0, half_cycles=half_cycles)
-    assert simulate(block, pulse).friction_needed == pytest.approx(0.225, rel=1e-14)
+SAMPLES = Record(dt=0.1, samples=0.225 * G * np.array([0.0, 0.4, -1.0, 0.2, 0.0]))
 
 
-def test_a_block_at_rest_under_samples_needs_the_largest_of_them():
-    block = RigidBlock(width=0.5, height=1.5)
-    record = Record(dt=0.1, samples=0.1 * G * np.array([0.0, 1.0, -2.5, 0.5, 0.0]))
-    response = simulate(block, record)
+@pytest.mark.parametrize(
+    "motion", [SAMPLES, *(SinePulse.in_g(0.225, omega=6.0, half_cycles=n) for n in (1, 40, 1000))]
+)
+def test_a_block_at_rest_needs_the_strongest_acceleration_there_is(motion):
+    response = simulate(BLOCK, motion)
     assert response.outcome is Outcome.AT_REST
-    assert response.friction_needed == pytest.approx(0.25, rel=1e-14)
+    assert response.friction_needed == pytest.approx(0.225, rel=1e-14)
+    assert response.min_normal == 1.0
 
 
 def test_the_forces_of_impacts_that_are_summed_count():
     """A block that hardly rebounds is pressed down on its other corner: N = 1 - 3/4 y'' sin a."""
     block = RigidBlock(width=1.0, height=8.2, restitution=0.001)
-    pulse = SinePulse(amplitude=1.02 * G / 8.2, omega=5.0 * block.p, half_cycles=2)
-    response = simulate(block, pulse)
-    a = float(pulse.acceleration(response.rests[0])) / G
+    motion = pulse(1.02, 5.0, 2, block)
+    response = simulate(block, motion)
+    a = float(motion.acceleration(response.rests[0])) / G
     # on the corner that the ground presses down
     pressed = math.sin(block.alpha) + abs(a) * math.cos(block.alpha)
     assert abs(a) < math.tan(block.alpha)
@@ -89,10 +86,10 @@ def test_the_forces_of_impacts_that_are_summed_count():
 
 def test_a_block_that_does_not_rebound_is_not_pressed_on_its_other_corner():
     block = RigidBlock(width=1.5, height=1.0)
-    pulse = SinePulse(amplitude=1.03 * G * 1.5, omega=2.7 * block.p, half_cycles=2)
-    times = np.linspace(0.0, pulse.duration, 100_001)
-    response = simulate(block, pulse, times=times)
-    normal, _ = sampled_forces(block, pulse, response.history)
+    motion = pulse(1.03, 2.7, 2, block)
+    times = np.linspace(0.0, motion.duration, 100_001)
+    response = simulate(block, motion, times=times)
+    normal, _ = sampled_forces(block, motion, response.history)
     here = np.abs(response.history.theta) > 0.0
     assert block.restitution == 0.0
     assert response.min_normal == pytest.approx(normal[here].min(), abs=1e-3)
@@ -101,12 +98,11 @@ def test_a_block_that_does_not_rebound_is_not_pressed_on_its_other_corner():
 def test_free_rocking_after_a_pulse_is_watched_to_its_rest():
     """By samples of a response that is followed, against the closed form of one that is not."""
     block = RigidBlock(width=0.5, height=0.75)
-    pulse = SinePulse(amplitude=40.0 * G * math.tan(block.alpha), omega=100.0 * block.p)
-    early = simulate(block, pulse)
-    late = pulse.duration + 12.0 / block.p
-    followed = simulate(
-        block, pulse, duration=late, times=np.linspace(pulse.duration, late, 20_001)
-    )
+    motion = pulse(40.0, 100.0, 1, block)
+    early = simulate(block, motion)
+    late = motion.duration + 12.0 / block.p
+    times = np.linspace(motion.duration, late, 20_001)
+    followed = simulate(block, motion, duration=late, times=times)
     assert early.outcome is Outcome.ROCKED
     assert len(followed.impacts) > 3
     assert early.min_normal == pytest.approx(followed.min_normal, rel=1e-12)
@@ -117,10 +113,9 @@ def test_a_free_block_that_overturns_is_watched_until_it_passes_the_critical_rot
     """Its fall after the pulse is watched to there by the closed form, as by steps."""
     block, free = RigidBlock(width=0.5, height=1.0), 0
     for onsets, ratio, n in product((1.5, 2.0, 3.0, 5.0, 8.0), (1.0, 2.0, 3.0, 5.0, 8.0), (1, 2)):
-        amplitude = onsets * G * math.tan(block.alpha)
-        pulse = SinePulse(amplitude=amplitude, omega=ratio * block.p, half_cycles=n)
-        early = simulate(block, pulse, times=[pulse.duration])
-        late = simulate(block, pulse, duration=pulse.duration + 12.0 / block.p)
+        motion = pulse(onsets, ratio, n, block)
+        early = simulate(block, motion, times=[motion.duration])
+        late = simulate(block, motion, duration=motion.duration + 12.0 / block.p)
         assert early.min_normal == pytest.approx(late.min_normal, rel=1e-9)
         assert early.friction_needed == pytest.approx(late.friction_needed, rel=1e-9)
         upright = (np.abs(early.history.theta) < block.alpha).any()

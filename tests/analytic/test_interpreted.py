@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from itertools import product
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from analytic import (
     simulate,
 )
 from analytic.kernels import compiled
+from analytic.steppers import METHODS
 from studies.cases.paper import sweep_cases
 
 
@@ -102,81 +104,64 @@ def some_case(generator):
     return block, pulse, start
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_a_response_is_the_same(model, both):
+def responses(model):
     """In the paper's grid, one case in 8, and in random cases of every kind."""
     generator = np.random.default_rng(35)
     cases = [(case.block, case.motion, (0.0, 0.0)) for case in [*sweep_cases([6, 7, 8, 9])][::8]]
     cases += [some_case(generator) for _ in range(60)]
-
-    def action():
-        return [
-            told(
-                simulate(
-                    block,
-                    motion,
-                    model,
-                    start,
-                    duration=motion.duration + 3.0 / block.p if number % 2 else None,
-                    times=np.linspace(0.0, motion.duration, 9)
-                    if motion.duration and number % 5 == 0
-                    else None,
-                    tolerance=1e-9 if number % 7 == 0 else 1e-16,
-                )
+    for number, (block, motion, start) in enumerate(cases):
+        sampled = motion.duration and number % 5 == 0
+        yield told(
+            simulate(
+                block,
+                motion,
+                model,
+                start,
+                duration=motion.duration + 3.0 / block.p if number % 2 else None,
+                times=np.linspace(0.0, motion.duration, 9) if sampled else None,
+                tolerance=1e-9 if number % 7 == 0 else 1e-16,
             )
-            for number, (block, motion, start) in enumerate(cases)
-        ]
-
-    interpreted, once_compiled = both(action)
-    assert interpreted == once_compiled
+        )
 
 
-@pytest.mark.parametrize("method", ["rk4", "average-acceleration"])
-@pytest.mark.parametrize("model", ["exact", "modified"])
-def test_a_solver_is_the_same(method, model, both):
-    generator = np.random.default_rng(36)
+def solved(model):
+    generator, times = np.random.default_rng(36), np.linspace(0.0, 1.0, 9)
     cases = [some_case(generator) for _ in range(12)]
-
-    def action():
-        asked = {"method": method, "step": 0.02, "times": np.linspace(0.0, 1.0, 9)}
-        return [told(integrate(b, m, model, start, **asked)) for b, m, start in cases]
-
-    interpreted, once_compiled = both(action)
-    assert interpreted == once_compiled
+    for method in METHODS:
+        for block, motion, start in cases:
+            asked = {"method": method, "step": 0.02, "times": times}
+            yield told(integrate(block, motion, model, start, **asked))
 
 
-def test_how_far_errors_move_a_peak_is_the_same(both):
+def moved(model):
     generator = np.random.default_rng(37)
-    cases = [some_case(generator) for _ in range(25)]
-
-    def action():
-        found = []
-        for model in ("exact", "modified"):
-            for block, motion, start in cases:
-                found.append(bits(conditioning(block, motion, model, start)))
-                found.append(bits(sensitivity(block, motion, model, start)))
-        return found
-
-    interpreted, once_compiled = both(action)
-    assert interpreted == once_compiled
+    for _ in range(25):
+        block, motion, start = some_case(generator)
+        yield bits(conditioning(block, motion, model, start))
+        yield bits(sensitivity(block, motion, model, start))
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_arrays_of_cases_are_the_same(model, both):
+def arrays(model):
     generator = np.random.default_rng(38)
     alpha = generator.uniform(0.05, 0.9, 40)
     amplitude = np.tan(alpha) * 10.0 ** generator.uniform(-0.1, 1.0, 40)
     omega = 10.0 ** generator.uniform(-1.0, 1.3, 40)
     cases = (alpha, amplitude, omega, generator.integers(1, 6, 40), model)
+    peaks, outcomes = peak_ratios(*cases)
+    modes = overturning_modes(*cases)
+    yield modes.mode.tolist(), modes.steps.tolist(), outcomes.tolist()
+    yield from map(bits, (peaks, modes.margin, condition_numbers(*cases)))
 
-    def action():
-        peaks, outcomes = peak_ratios(*cases)
-        modes = overturning_modes(*cases)
-        counted = modes.mode.tolist(), modes.steps.tolist(), outcomes.tolist()
-        numbers = bits(peaks), bits(modes.margin), bits(condition_numbers(*cases))
-        return counted, numbers
 
-    interpreted, once_compiled = both(action)
+@pytest.mark.parametrize(
+    ("answers", "model"),
+    [
+        *product((responses, arrays), MODELS),
+        *product((solved, moved), ("exact", "modified")),
+    ],
+)
+def test_answers_are_the_same(answers, model, both):
+    interpreted, once_compiled = both(lambda: list(answers(model)))
     assert interpreted == once_compiled
 
 
@@ -185,6 +170,7 @@ import sys
 import numpy as np
 from analytic import Record, RigidBlock, simulate
 from analytic.kernels import compiled
+from analytic.steppers import METHODS
 
 block = RigidBlock(width=0.5, height=1.5)
 record = Record(dt=0.01, samples=4.0 * np.sin(0.3 * np.arange(300)))

@@ -48,15 +48,6 @@ def test_the_solver_settles_on_the_orbit_up_to_its_loss():
     assert np.ptp(speeds) > 1e-3 * speeds[0]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [((1.0, 4.0, 1), "restitution"), ((0.9, 0.0, 1), "omega_over_p"), ((0.9, 4.0, 2), "n is 2")],
-)
-def test_bad_orbits_are_refused(arguments, name):
-    with pytest.raises(ValueError, match=name):
-        orbit_limits(*arguments)
-
-
 def test_a_block_without_friction():
     """Siconos, RockingBlock, LsodarOSI; and the same block falling back from nearly flat."""
     block = RigidBlock(width=1.0, height=0.5)

@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from given import FULL_SINE, G
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analytic import Outcome, Record, SinePulse, SlidingBlock, Still, simulate
 from analytic.response import Reason
-
-G = 9.81
-FULL_SINE = SinePulse(amplitude=0.4 * G, omega=2.0 * math.pi, half_cycles=2)
 
 
 def box(friction, **more):
@@ -89,20 +87,6 @@ def test_a_rectangular_pulse(a, sign):
     assert response.slip_times[0] == pytest.approx((0.0, velocity / limit), rel=1e-13)
 
 
-@pytest.mark.parametrize("part", [0.9, 1.1])
-def test_an_incline(part):
-    """At tan(beta) = 0.9 mu nothing creeps; at 1.1 mu it slides by g (sin - mu cos) t^2/2."""
-    beta = math.atan(part * 0.4)
-    block = box(0.4, gravity=G * math.cos(beta))
-    record = Record(dt=3.0, samples=np.full(2, -G * math.sin(beta)))
-    response = simulate(block, record, duration=3.0)
-    if part < 1.0:
-        assert (response.outcome, response.slips) == (Outcome.AT_REST, ())
-        return
-    pull = G * (math.sin(beta) - 0.4 * math.cos(beta))
-    assert response.slips == pytest.approx((0.5 * pull * 9.0,), rel=1e-12)
-
-
 def test_below_and_above_mu_g():
     for part, outcome in ((1.0, Outcome.AT_REST), (1.0 + 1e-9, Outcome.SLID)):
         pulse = SinePulse(amplitude=part * 0.2 * G, omega=3.0, half_cycles=10)
@@ -162,16 +146,3 @@ def test_mirror_and_history(seed, friction):
         standing &= (times < begin - 1e-9) | (times > end + 1e-9)
     assert np.all(v[standing] == 0.0)
     assert np.all(np.abs(record.acceleration(times[standing])) <= block.limit + 40.0 * 1e-9)
-
-
-def test_bad_input_is_refused_in_one_line():
-    with pytest.raises(ValueError, match=r"friction is 2\.0; it must be below width/height, 2\.0"):
-        box(2.0)
-    with pytest.raises(ValueError, match=r"friction is 0\.0; it must be positive"):
-        box(0.0)
-    with pytest.raises(ValueError, match="a SlidingBlock has only 'exact'"):
-        simulate(box(0.2), FULL_SINE, "housner")
-    with pytest.raises(ValueError, match="start is 3; it must be x"):
-        simulate(box(0.2), FULL_SINE, start=3)
-    with pytest.raises(ValueError, match=r"duration is 0\.5"):
-        simulate(box(0.2), FULL_SINE, duration=0.5)

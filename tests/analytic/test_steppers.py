@@ -76,17 +76,3 @@ def test_at_rest_and_overturned(method):
     assert integrate(BLOCK, quiet, method=method).outcome is Outcome.AT_REST
     violent = SinePulse(amplitude=2 * G, omega=2.0, half_cycles=2)
     assert integrate(BLOCK, violent, method=method).peak_ratio == math.inf
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"method": "euler"}, "method is 'euler'; it must be one of rk4"),
-        ({"step": 0.0}, "step is 0.0"),
-        ({"event_tolerance": -1.0}, "event_tolerance is -1.0"),
-        ({"model": "none"}, "model is 'none'"),
-    ],
-)
-def test_bad_arguments(change, words):
-    with pytest.raises(ValueError, match=words):
-        integrate(BLOCK, PULSE, **change)

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from given import BLOCK, FULL_SINE
 from scipy.integrate import quad
 from scipy.signal import cont2discrete, lfilter, welch
 
 from analytic import (
-    Outcome,
+    Delayed,
     Record,
-    RigidBlock,
     SinePulse,
     kanai_tajimi,
     near_fault,
@@ -22,6 +22,10 @@ from analytic.synthetic import MISSED, soil_kernel
 MOTIONS = {
     "half sine": SinePulse(amplitude=3.0, omega=5.0),
     "sines": SinePulse(amplitude=-2.0, omega=9.0, half_cycles=5),
+    "cosine": SinePulse(amplitude=-3.0, omega=5.0, half_cycles=2, phase=0.5 * math.pi),
+    "phase below 0": SinePulse(amplitude=-3.0, omega=5.0, half_cycles=6, phase=-1.0),
+    "phase beyond pi": SinePulse(amplitude=-3.0, omega=5.0, half_cycles=3, phase=4.0),
+    "after a rest": Delayed(FULL_SINE, 1.25),
     "record": Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25]),
     "ricker": ricker(4.0, 2.0, dt=0.02),
     "near-fault": near_fault(0.6, 1.2, 1.7, 0.8, dt=0.05),
@@ -87,18 +91,6 @@ def test_near_fault_velocity_is_the_published_one(gamma, phase):
     assert pulse.acceleration([0, pulse.duration]) == pytest.approx([0, 0], abs=1e-9)
 
 
-def test_a_finer_step_changes_a_peak_by_the_square_of_the_step():
-    block = RigidBlock(width=0.5, height=1.5)
-    for make in (
-        lambda dt: ricker(5.0, 2.0, dt=dt),
-        lambda dt: near_fault(0.5, 1.6, 1.8, 0.5, dt=dt),
-    ):
-        peaks = [simulate(block, make(0.02 / 2**k)).peak_ratio for k in range(6)]
-        assert 0.01 < peaks[0] < 1
-        errors = np.abs(np.array(peaks[:3]) - peaks[5])
-        assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2.0, abs=0.35)
-
-
 @pytest.mark.parametrize(
     "make",
     [
@@ -109,10 +101,9 @@ def test_a_finer_step_changes_a_peak_by_the_square_of_the_step():
 )
 def test_default_samples_cost_a_peak_what_they_miss_times_its_condition(make):
     """The stated error, and its order: half the step leaves a quarter of it."""
-    block = RigidBlock(width=0.5, height=1.5)
 
     def peak(step, size=1.0):
-        return math.log(simulate(block, make(size, step)).peak_ratio)
+        return math.log(simulate(BLOCK, make(size, step)).peak_ratio)
 
     default = make(1.0, None).dt
     fine = default / 40.0
@@ -154,29 +145,3 @@ def test_the_spectrum_is_kanais_and_tajimis():
     bands = np.array_split(np.flatnonzero((frequency > 0.2) & (frequency < 12.5)), 12)
     ratio = [power[band].mean() / (2 * dt * expected[band].mean()) for band in bands]
     assert ratio == pytest.approx(np.ones(12), abs=0.12)
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: ricker(math.nan, 1.0), "amplitude is nan"),
-        (lambda: ricker(1.0, 0.0), "frequency is 0.0; it must be positive"),
-        (lambda: ricker(1.0, 1.0, dt=-1.0), "dt is -1.0"),
-        (lambda: near_fault(1.0, 1.0, 1.0), "gamma is 1.0; it must be more than 1"),
-        (lambda: near_fault(1.0, 1.0, 2.0, math.inf), "phase is inf"),
-        (lambda: kanai_tajimi(1, peak=0.0), "peak is 0.0"),
-        (lambda: kanai_tajimi(1, peak=1.0, damping=1.0), "damping is 1.0"),
-        (lambda: kanai_tajimi(1, peak=1.0, rise=9.0), "rise is 9.0 and fall 8.0; 0 < rise"),
-        (lambda: kanai_tajimi(1, peak=1.0, duration=5.0), "fall 8.0"),
-    ],
-)
-def test_bad_arguments(make, words):
-    with pytest.raises(ValueError, match=words):
-        make()
-
-
-def test_a_synthetic_motion_shakes_a_block():
-    block = RigidBlock(width=0.5, height=1.5)
-    response = simulate(block, kanai_tajimi(4, peak=0.5 * 9.81))
-    assert response.outcome is not Outcome.AT_REST
-    assert len(response.impacts) > 5

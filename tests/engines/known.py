@@ -1,25 +1,31 @@
 """An engine that knows the answer: its poses are exact, so that all error is the onlooker's."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-
-import pytest
 
 from analytic import simulate
-from analytic.response import Response
-from engines import ENGINES, Scene
-from engines.declaration import Preset, Stepping
-from engines.run.drive import run
-from engines.world import Moment, Pose, Step
+from engines import ENGINES
+from engines.declaration import Stepping
+from engines.run.drive import simulate_world
+from engines.scene import ACCURACIES
+from engines.world import Moment, Pose
 
 
-@dataclass(frozen=True)
-class NoSettings:
-    friction: float = 1.0
+class Bare:
+    """What every world must answer, and nothing more."""
+
+    moment = Moment.END
+
+    def step(self, step):
+        pass
+
+    def fault(self):
+        return ""
+
+    def close(self):
+        pass
 
 
-def standing(scene: Scene, theta: float, rate: float) -> Pose:
+def standing(scene, theta, rate):
     """Return the pose of a block that stands on the corner on the side of its lean."""
     half_width = math.copysign(0.5 * scene.system.width, theta)
     half_height = 0.5 * scene.system.height
@@ -28,44 +34,34 @@ def standing(scene: Scene, theta: float, rate: float) -> Pose:
     return Pose(x, half_width * sine + half_height * cosine, theta, rate)
 
 
-class ScriptedWorld:
+class ScriptedWorld(Bare):
     """Has the rotation and rate that `script` says, and keeps the steps that it was given."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene):
         self.scene = scene
-        self.steps: list[Step] = []
+        self.steps = []
         self._pose = standing(scene, *scene.start)
 
-    @property
-    def moment(self) -> Moment:
-        return Moment.END
-
-    def script(self, time: float, rate_s: float) -> tuple[float, float]:
+    def script(self, time, rate_s):
         """Return the rotation at a time, and the rate at the moment of its step [s]."""
         raise NotImplementedError
 
-    def step(self, step: Step) -> None:
+    def step(self, step):
         self.steps.append(step)
         rate_s = step.end_s - (1.0 - self.moment.value) * step.dt_s
         self._pose = standing(self.scene, *self.script(step.end_s, rate_s))
 
-    def state(self) -> list[Pose]:
+    def state(self):
         return [self._pose]
-
-    def fault(self) -> str:
-        return ""
-
-    def close(self) -> None:
-        pass
 
 
 class KnownWorld(ScriptedWorld):
     """The exact solution, its velocity at some moment of the step."""
 
-    def __init__(self, scene: Scene, moment: Moment, stepping: Stepping) -> None:
+    def __init__(self, scene, moment, stepping):
         super().__init__(scene)
-        self._moment = moment
-        self._ahead: dict[int, tuple[float, float]] = {}
+        self.moment = moment
+        self._ahead = {}
         if stepping is Stepping.FIXED and scene.step and scene.duration:
             dt_s = scene.step / scene.system.p
             # equal steps are known before: one solution for all of them
@@ -75,18 +71,13 @@ class KnownWorld(ScriptedWorld):
             found = zip(self._exact(ends)[0], self._exact(rated)[1], strict=False)
             self._ahead = dict(enumerate(found, start=1))
 
-    @property
-    def moment(self) -> Moment:
-        return self._moment
-
-    def _exact(self, times: list[float]) -> tuple[list[float], list[float]]:
+    def _exact(self, times):
         scene = self.scene
         long = max(scene.motion.duration, times[-1])
         found = simulate(scene.system, scene.motion, start=scene.start, duration=long, times=times)
-        assert found.history is not None
         return found.history.theta.tolist(), found.history.velocity.tolist()
 
-    def script(self, time: float, rate_s: float) -> tuple[float, float]:
+    def script(self, time, rate_s):
         if self._ahead:
             lying = math.copysign(0.5 * math.pi, self._pose.theta), self._pose.rate
             return self._ahead.get(len(self.steps), lying)
@@ -98,29 +89,23 @@ class KnownWorld(ScriptedWorld):
 class ElsewhereWorld(KnownWorld):
     """The exact solution on a base that is not where it should be, by `raised_m` of the time."""
 
-    def __init__(self, scene: Scene, dt_s: float, raised_m: Callable[[float], float]) -> None:
+    def __init__(self, scene, dt_s, raised_m):
         super().__init__(scene, Moment.END, Stepping.FIXED)
         self._dt_s, self._raised_m = dt_s, raised_m
 
-    def state(self) -> list[Pose]:
+    def state(self):
         (at,) = super().state()
         return [at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))]
 
 
-def watched(
-    monkeypatch: pytest.MonkeyPatch, world: ScriptedWorld, scene: Scene, stepping: Stepping
-) -> Response:
-    """Run a scene as if the world were an engine's, in the steps of a preset."""
-    step = {"step": 1e-2} if stepping is Stepping.FIXED else {}
-    use = Preset(name="known", title="", settings=NoSettings(), stepping=stepping, **step)
-    engine = replace(ENGINES["mujoco"], build=lambda *_: world, presets=(use,))
-    monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
-    return run("known", scene)
+def watched(world, posed, stepping):
+    """Return what is seen of a world, in the equal steps of a scene or in steps that land."""
+    dt_s = (posed.step or 1.0 / ACCURACIES[posed.accuracy]) / posed.system.p
+    resolution = ENGINES["mujoco"].resolution(posed.system)
+    return simulate_world(world, posed, dt_s, stepping, resolution)
 
 
-def exactly(
-    monkeypatch: pytest.MonkeyPatch, scene: Scene, moment: Moment, stepping: Stepping
-) -> tuple[Response, list[Step]]:
+def exactly(posed, moment, stepping):
     """Run a scene with exact poses; return what was made of them, and the steps."""
-    world = KnownWorld(scene, moment, stepping)
-    return watched(monkeypatch, world, scene, stepping), world.steps
+    world = KnownWorld(posed, moment, stepping)
+    return watched(world, posed, stepping), world.steps

@@ -2,65 +2,58 @@
 
 import importlib
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import pytest
-from declared import held_to
+from known import Bare
 from scipy.integrate import solve_ivp
-from uses import BLOCK, HERE, USES, every_use, pulse, scene
+from uses import BLOCK, HERE, SHAKEN, error, every_use, pulse, rocked, scene
 
 from analytic import RigidBlock, SinePulse, simulate
-from analytic.record import Record
 from analytic.response import Outcome, Reason
-from engines import ENGINES, Scene
-from engines.declaration import UNTUNED, Engine, Miss, Precision, Preset, Stepping
-from engines.parts.compiled import FloatArray
+from engines import ENGINES
+from engines.declaration import UNTUNED, Precision, Preset, Stepping
 from engines.parts.quiet import imported
 from engines.pybullet.build import BulletWorld
 from engines.run.drive import build, run
-from engines.world import Moment, Pose
+from engines.world import Pose
 from studies.cases.variants import variants
 
 
-def use(monkeypatch: pytest.MonkeyPatch, engine: Engine) -> None:
+def use(monkeypatch, engine):
     """Let `run` find an engine under any name."""
     monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
 
 
-def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(*_: object) -> Any:
+def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch):
+    def missing(*_):
         raise ModuleNotFoundError("No module named 'nothing'")
 
     use(monkeypatch, replace(ENGINES["pybullet"], build=missing, install="rocking[nothing]"))
-    response = run("any", scene(pulse(1.3, 1.0)))
-    assert response.outcome is Outcome.FAILED
-    assert response.message == (
-        "not available: No module named 'nothing'; pip install 'rocking[nothing]'"
-    )
+    response = rocked("any")
+    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+    assert "'nothing'; pip install 'rocking[nothing]'" in response.message
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("change", "named"),
     [
-        ({"frames": ("base",)}, "not available: PyBullet has no frame 'world'"),
-        ({"geometries": ("box",)}, "not available: PyBullet has no geometry 'hull'"),
-        ({"spatial": False}, "not available: PyBullet knows the plane alone"),
+        ({"frames": ("base",)}, "'world'"),
+        ({"geometries": ("box",)}, "'hull'"),
+        ({"spatial": False}, "plane"),
     ],
 )
-def test_what_an_engine_cannot_do_is_a_row_that_says_so(
-    change: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, named, monkeypatch):
     use(monkeypatch, replace(ENGINES["pybullet"], **change))
     settings = {"planar": False, "geometry": "hull"}
-    response = run("any", scene(pulse(1.3, 1.0), frame="world", settings=settings))
-    assert (response.outcome, response.message) == (Outcome.FAILED, message)
+    response = rocked("any", frame="world", settings=settings)
+    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+    assert named in response.message
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_declaration_is_whole(name: str) -> None:
+def test_a_declaration_is_whole(name):
     engine = ENGINES[name]
     assert engine.name == name
     assert engine.presets[0].name == "naive"
@@ -82,106 +75,85 @@ def test_a_declaration_is_whole(name: str) -> None:
     assert {(rule.preset, rule.factor, rule.level) for rule in engine.rules} <= tried
 
 
-@every_use
-def test_what_helps_can_be_left_out(engine: str, preset: str) -> None:
-    """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
-    for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
-        takes(engine, preset, left_out)
-
-
-def takes(engine: str, preset: str, settings: Mapping[str, Any], **options: Any) -> None:
+def takes(engine, **options):
     """Build a scene, and go some steps: the library has refused no setting, then or before."""
-    posed = scene(pulse(1.3, 1.0), preset=preset, settings=settings, **options)
+    posed = scene(pulse(1.3, 1.0), **options)
     world = build(HERE[engine], posed)
-    assert world.fault() == "", settings
+    assert world.fault() == "", options
     world.close()
     assert run(engine, replace(posed, max_steps=20)).reason is not Reason.FAULT
 
 
 @every_use
-def test_what_a_preset_sets_is_taken(engine: str, preset: str) -> None:
+def test_what_a_preset_sets_is_taken_and_what_helps_it_can_be_left_out(engine, preset):
+    """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
     for frame in HERE[engine].frames:
-        takes(engine, preset, {}, frame=frame)
+        takes(engine, preset=preset, frame=frame)
+    for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
+        takes(engine, preset=preset, settings=left_out)
 
 
 @pytest.mark.parametrize("engine", HERE)
-def test_what_a_variant_sets_is_taken(engine: str) -> None:
+def test_what_a_variant_sets_is_taken(engine):
     tried = list(variants(engine))
     assert {variant.factor for variant in tried} >= {it.name for it in HERE[engine].factors}
     for variant in tried:
-        takes(engine, variant.preset, variant.settings, **variant.scene)
+        takes(engine, preset=variant.preset, settings=variant.settings, **variant.scene)
 
 
-def _bullet(library: Any) -> dict[str, Any]:
+def bullet_box(library):
     client = library.connect(library.DIRECT)
-    box = library.createCollisionShape(
-        library.GEOM_BOX, halfExtents=(1, 1, 1), physicsClientId=client
-    )
+    size = {"halfExtents": (1, 1, 1), "physicsClientId": client}
+    box = library.createCollisionShape(library.GEOM_BOX, **size)
     body = library.createMultiBody(1.0, box, physicsClientId=client)
     friction = library.getDynamicsInfo(body, -1, physicsClientId=client)[1]
     library.disconnect(client)
-    return {"friction": friction}
+    return friction
 
 
-def _box2d(library: Any) -> dict[str, Any]:
-    shape = library.b2PolygonShape(box=(1, 1))
-    world = library.b2World()
-    body = world.CreateDynamicBody(fixtures=library.b2FixtureDef(shape=shape))
-    return {"friction": body.fixtures[0].friction}
+def box2d_box(library):
+    shape = library.b2FixtureDef(shape=library.b2PolygonShape(box=(1, 1)))
+    world = library.b2World()  # a body does not outlive it
+    return world.CreateDynamicBody(fixtures=shape).fixtures[0].friction
 
 
-def _rapier(library: Any) -> dict[str, Any]:
-    box = library.Collider.cuboid(1.0, 1.0, 1.0)
-    world = library.PhysicsWorld()
+def rapier_box(library):
+    world, box = library.PhysicsWorld(), library.Collider.cuboid(1.0, 1.0, 1.0)
     body = world.rigid_bodies[world.add_body(library.RigidBody.dynamic(), [box])]
-    return {"friction": world.colliders[body.colliders[0]].friction}
+    return world.colliders[body.colliders[0]].friction
 
 
-def _drake(library: Any) -> dict[str, Any]:
+def drake_box(_):
     config = importlib.import_module("pydrake.geometry").SceneGraphConfig()
-    return {"friction": config.default_proximity_properties.dynamic_friction}
-
-
-def _pymunk(library: Any) -> dict[str, Any]:
-    return {"friction": library.Poly.create_box(library.Body(1.0, 1.0)).friction}
-
-
-def _physx(library: Any) -> dict[str, Any]:
-    return {"friction": library.physx.get_default_material().static_friction}
+    return config.default_proximity_properties.dynamic_friction
 
 
 BARE = {
-    "pybullet": _bullet,
-    "box2d": _box2d,
-    "rapier": _rapier,
-    "drake": _drake,
-    "pymunk": _pymunk,
-    "physx": _physx,
+    "pybullet": bullet_box,
+    "box2d": box2d_box,
+    "rapier": rapier_box,
+    "drake": drake_box,
+    "pymunk": lambda library: library.Poly.create_box(library.Body(1.0, 1.0)).friction,
+    "physx": lambda library: library.physx.get_default_material().static_friction,
 }
-"""What each library makes of a box of which nothing is said."""
+"""The friction of a box of which nothing is said, in each library."""
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
-def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine: str) -> None:
-    found = BARE[engine](imported(HERE[engine].library))
-    assert HERE[engine].preset("naive").own == pytest.approx(found, rel=1e-7)
-
-
-@pytest.mark.parametrize(
-    "engine", [name for name in HERE if "friction" in HERE[name].preset("naive").own]
-)
-def test_a_squat_block_slides_at_the_library_s_own_friction(engine: str) -> None:
-    own = HERE[engine].preset("naive").own["friction"]
+def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
+    """And a squat block slides at it."""
+    own = BARE[engine](imported(HERE[engine].library))
+    assert HERE[engine].preset("naive").own == {"friction": pytest.approx(own, rel=1e-7)}
     cube, sine = RigidBlock(width=0.5, height=0.5), SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
     assert simulate(cube, sine).friction_needed > own
-    posed = Scene(system=cube, motion=sine, preset="naive", settings={"friction": own})
-    assert run(engine, posed).reason is Reason.SLID
+    response = rocked(engine, sine, system=cube, preset="naive", settings={"friction": own})
+    assert response.reason is Reason.SLID
 
 
-def test_faults_are_asked_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faults_are_asked_while_a_run_goes_on(monkeypatch):
     """A setting that was not taken ends a run long before its hour of rest is over."""
     monkeypatch.setattr(BulletWorld, "fault", lambda self: "the moon is full")
-    response = run("pybullet", scene(pulse(0.5, 1.0), preset="fixed", duration=3600.0))
+    response = rocked("pybullet", pulse(0.5, 1.0), preset="fixed", duration=3600.0)
     assert response.message == "the moon is full"
     assert response.steps < 1000
 
@@ -191,44 +163,39 @@ class RoundedWorld(BulletWorld):
 
     drive = None
 
-    def state(self) -> FloatArray:
+    def state(self):
         return np.array(super().state(), dtype=np.float32).astype(np.float64)
 
 
-def rounded(precision: Precision, shortest_step: float) -> Engine:
-    return replace(
-        HERE["pybullet"], build=RoundedWorld, precision=precision, shortest_step=shortest_step
-    )
+class TremblingWorld(BulletWorld):
+    """PyBullet, with a height that single precision rounds otherwise at every look."""
+
+    drive, looks = None, 0
+
+    def state(self):
+        ((x, z, theta, rate),) = super().state().tolist()
+        self.looks += 1
+        return [Pose(x, z * (1.0 + 6e-8 * math.sin(self.looks)), theta, rate)]
 
 
-def test_single_precision_is_judged_by_what_it_tells_apart(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+SINGLE = {"precision": Precision.SINGLE, "shortest_step": 1e-6}
+DOUBLE = {"precision": Precision.DOUBLE, "shortest_step": 1e-12}
+
+
+def test_single_precision_is_judged_by_what_it_tells_apart(monkeypatch):
     """A block at rest, whose corners are 6e-8 of its height off in single precision."""
-    motion = pulse(0.9, 1.0)
-    leaning = Scene(system=BLOCK, motion=motion, duration=5.0)
-    monkeypatch.setattr(RoundedWorld, "state", trembling)
-    use(monkeypatch, rounded(Precision.DOUBLE, 1e-12))
-    assert run("any", leaning).outcome is not Outcome.AT_REST
-    use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
-    assert run("any", leaning).outcome is Outcome.AT_REST
+    at_rest = []
+    for precision in (DOUBLE, SINGLE):
+        use(monkeypatch, replace(HERE["pybullet"], build=TremblingWorld, **precision))
+        at_rest.append(rocked("any", pulse(0.9, 1.0), duration=5.0).outcome is Outcome.AT_REST)
+    assert at_rest == [False, True]
 
 
-def trembling(world: RoundedWorld) -> list[Pose]:
-    """Return the state with the noise of single precision, which is different at every look."""
-    ((x, z, theta, rate),) = BulletWorld.state(world).tolist()
-    world._looks = getattr(world, "_looks", 0) + 1  # type: ignore[attr-defined]
-    raised = z * (1.0 + 6e-8 * math.sin(world._looks))  # type: ignore[attr-defined]
-    return [Pose(x, raised, theta, rate)]
-
-
-def test_single_precision_rocks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_single_precision_rocks(monkeypatch):
     """Rotations rounded to 6e-8 of themselves, heights to 6e-8 of the block's: an impact is seen
     1e-7 of a width too early or late."""
-    motion = pulse(1.3, 3.0, 2)
-    use(monkeypatch, rounded(Precision.SINGLE, 1e-6))
-    response = run("any", Scene(system=BLOCK, motion=motion))
-    assert response.peak_ratio == pytest.approx(simulate(BLOCK, motion).peak_ratio, rel=1e-4)
+    use(monkeypatch, replace(HERE["pybullet"], build=RoundedWorld, **SINGLE))
+    assert error("any") < 1e-4
 
 
 @dataclass(frozen=True)
@@ -237,12 +204,10 @@ class SpringSettings:
     tolerance: float = 1e-7
 
 
-class SpringWorld:
+class SpringWorld(Bare):
     """Two corners on springs whose damping goes with their depth, in steps chosen by RK23."""
 
-    moment = Moment.END
-
-    def __init__(self, scene: Scene, settings: SpringSettings, dt_s: float) -> None:
+    def __init__(self, scene, settings, dt_s):
         (body,), block = scene.bodies, scene.system
         self._mass, self._inertia, at = body.mass, body.inertia[1], body.at
         self._scene, self._tolerance, self._time = scene, settings.tolerance, 0.0
@@ -251,7 +216,7 @@ class SpringWorld:
         self._spring = 1e6 * body.mass * block.p**2
         self._damping = 300.0 / (block.p * block.width)
 
-    def _rates(self, time: float, state: Any) -> list[float]:
+    def _rates(self, time, state):
         _, z, theta, vx, vz, rate = state
         scene, sine, cosine = self._scene, math.sin(theta), math.cos(theta)
         along = -self._mass * float(scene.motion.acceleration(time))
@@ -268,7 +233,7 @@ class SpringWorld:
                 moment += drag * level - push * arm
         return [vx, vz, rate, along / self._mass, up / self._mass, moment / self._inertia]
 
-    def advance(self, end_s: float) -> int:
+    def advance(self, end_s):
         path = solve_ivp(
             self._rates, (self._time, end_s), self._at, "RK23",
             rtol=self._tolerance, atol=self._tolerance,
@@ -276,43 +241,19 @@ class SpringWorld:
         self._at, self._time = path.y[:, -1].tolist(), end_s
         return len(path.t) - 1
 
-    def state(self) -> list[Pose]:
+    def state(self):
         x, z, theta, _, _, rate = self._at
         return [Pose(x, z, theta, rate)]
 
-    def fault(self) -> str:
-        return ""
 
-    def close(self) -> None:
-        pass
-
-
-def test_an_engine_may_choose_its_own_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_may_choose_its_own_steps(monkeypatch):
     """It is told times to go to, on the corners of the motion among them; contact is yielding."""
     own = Preset(name="own", title="", settings=SpringSettings(), stepping=Stepping.OWN)
     use(monkeypatch, replace(ENGINES["pybullet"], build=SpringWorld, presets=(own,)))
-    motion = pulse(1.3, 3.0, 2)
-    exact = simulate(BLOCK, motion)
-    response = run("any", Scene(system=BLOCK, motion=motion, accuracy="loose"))
+    response = rocked("any", accuracy="loose")
     assert response.outcome is Outcome.ROCKED, response.message
     assert len(response.impacts) == 1
     # an impact on a spring of 1e6 m p^2 takes some 1e-3/p
     assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=1e-2)
-    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-2)
-    assert response.steps > 40.0 * BLOCK.p * motion.duration
-
-
-@pytest.mark.parametrize(
-    ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
-)
-def test_a_block_that_stood_still_for_two_seconds_feels_gravity_turn(
-    engine: str, preset: str
-) -> None:
-    """That a library reads a setting back is no proof: what sleeps through it stays where it is."""
-    quiet_s, shaken_s, dt_s = 2.0, 0.6, 0.01
-    times = np.arange(0.0, quiet_s + shaken_s + dt_s, dt_s)
-    onset = BLOCK.gravity * math.tan(BLOCK.alpha)
-    shaken = Record(samples=np.where(times > quiet_s, 3.0 * onset, 0.0), dt=dt_s)
-    # after 0.6 s of three onsets nothing is near the boundary, whatever the contact
-    assert simulate(BLOCK, shaken).outcome is Outcome.OVERTURNED
-    assert run(engine, scene(shaken, preset=preset)).outcome is Outcome.OVERTURNED
+    assert response.peak_ratio == pytest.approx(simulate(BLOCK, SHAKEN).peak_ratio, rel=1e-2)
+    assert response.steps > 40.0 * BLOCK.p * SHAKEN.duration

@@ -3,25 +3,23 @@
 import os
 import subprocess
 import sys
-from dataclasses import asdict
 from functools import partial
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, pulse, scene
+from uses import BLOCK, HERE, all_but_times, rocked, scene
 
 from analytic.kernels.compiled import Purse, interpreting
-from analytic.response import Outcome, Response
-from engines import ENGINES, Scene
+from analytic.response import Outcome
+from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.mujoco import fast as mujoco_loop
 from engines.mujoco import models as mujoco_models
 from engines.parts import compiled as parts
 from engines.parts.compiled import INTERPRETED, PACKAGE
 from engines.pybullet import clients as bullet_clients
-from engines.run.drive import LOOK_AROUND, build, run
+from engines.run.drive import LOOK_AROUND, build
 from engines.run.look import roomy
 from studies.cases.motions import noise
 
@@ -39,7 +37,7 @@ OF_ALL = {
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
 }
-WELDED: dict[str, Any] = {"frame": "world", "settings": {"floor": "weld"}}
+WELDED = {"frame": "world", "settings": {"floor": "weld"}}
 SCENES = {
     "mujoco": {
         **OF_ALL,
@@ -76,45 +74,28 @@ EACH = [
 ]
 
 
-def all_but_times(response: Response) -> str:
-    """Return all fields to the last bit, apart from run times and what took the steps."""
-    found = asdict(response)
-    history = found.pop("history")
-    kept = [] if history is None else [part for part in history.values() if part is not None]
-    parts = [part.tolist() for part in kept]
-    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
-
-
-def shaken(**options: object) -> Scene:
-    """Return a scene with these options, shaken by two half cycles."""
-    return scene(**{"motion": pulse(1.3, 3.0, 2), **options})  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(("engine", "options"), EACH)
-def test_a_compiled_loop_answers_as_python_does(engine: str, options: dict[str, object]) -> None:
-    world = build(ENGINES[engine], shaken(**options))
+def test_a_compiled_loop_answers_as_python_does(engine, options):
+    world = build(ENGINES[engine], scene(**options))
     world.close()
-    assert world.drive is not None  # type: ignore[attr-defined]
+    assert world.drive is not None
     at_once, one_by_one = (
-        run(engine, shaken(compiled=compiled, **options)) for compiled in (True, False)
+        rocked(engine, compiled=compiled, **options) for compiled in (True, False)
     )
     assert all_but_times(at_once) == all_but_times(one_by_one)
     assert (at_once.driver, one_by_one.driver) == ("compiled", "python")
 
 
-def test_what_is_compiled_is_so_ahead() -> None:
+def test_what_is_compiled_is_so_ahead():
     assert all(ENGINES[engine].compiles for engine in SCENES)
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
-def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
+def test_what_is_compiled_answers_as_it_does_in_python(engine):
     """There is one source: numba switched off, the same functions are Python."""
     code = (
-        "from test_look import all_but_times\n"
-        "from uses import pulse, scene\n"
-        "from engines.run.drive import run\n"
-        f"asked = scene(pulse(1.3, 3.0, 2), accuracy='loose', times={TIMES!r})\n"
-        f"found = run({engine!r}, asked)\n"
+        "from uses import all_but_times, rocked\n"
+        f"found = rocked({engine!r}, accuracy='loose', times={TIMES!r})\n"
         "print(found.driver, all_but_times(found), sep='\\n')\n"
     )
     places = os.pathsep.join(path for path in sys.path if path)
@@ -131,14 +112,12 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine: str) -> None:
     (compiled, first), (python, second) = found
     assert (compiled, python) == ("compiled", "python: numba is switched off")
     assert "rocked" in first
-    assert first == second
+    here = rocked(engine, accuracy="loose", times=TIMES)
+    assert first.strip() == second.strip() == all_but_times(here)
 
 
-def test_memory_that_is_not_where_it_should_be_is_left_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked = shaken(accuracy="loose")
-    compiled = run("mujoco", asked)
+def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
+    compiled = rocked("mujoco", accuracy="loose")
     found = mujoco_loop.layout("mjData")
 
     moved = SimpleNamespace(**{name: getattr(found, name) for name, *_ in found._fields_})
@@ -148,26 +127,25 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(
     monkeypatch.setattr(mujoco_loop, "layout", elsewhere.__getitem__)
     mujoco_loop.obstacle.cache_clear()
     try:
-        world = build(ENGINES["mujoco"], asked)
+        world = build(ENGINES["mujoco"], scene(accuracy="loose"))
         world.close()
-        assert world.drive is None  # type: ignore[attr-defined]
-        stepped = run("mujoco", asked)
+        assert world.drive is None
+        stepped = rocked("mujoco", accuracy="loose")
         assert stepped.driver == "python: its memory is not what Python reads"
         assert all_but_times(stepped) == all_but_times(compiled)
     finally:
         mujoco_loop.obstacle.cache_clear()
 
 
-def test_a_run_has_room_for_all_that_it_writes_down() -> None:
+def test_a_run_has_room_for_all_that_it_writes_down():
     """Rows and events outgrow what there is room for at first."""
-    asked = Scene(system=BLOCK, motion=pulse(1.3, 3.0, 2), duration=8.0, times=TIMES)
-    response = run("mujoco", asked)
+    response = rocked("mujoco", duration=8.0, times=TIMES)
     assert response.outcome is Outcome.ROCKED
     assert response.steps > 4 * LOOK_AROUND
     assert len(response.impacts) > 10
 
 
-def test_a_table_with_room_keeps_its_rows() -> None:
+def test_a_table_with_room_keeps_its_rows():
     rows = np.arange(24.0).reshape(3, 2, 4)
     assert roomy(rows, 1, 1) is rows
     table = roomy(rows, 2, 5)
@@ -176,70 +154,65 @@ def test_a_table_with_room_keeps_its_rows() -> None:
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
-def test_what_was_used_is_as_good_as_new(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_was_used_is_as_good_as_new(engine, monkeypatch):
     """A model or a client, whatever it was used for before, in whichever order, after a failure."""
     kept, scenes = {"mujoco": mujoco_models, "pybullet": bullet_clients}[engine], SCENES[engine]
     monkeypatch.setattr(kept, "idle", type(kept.idle)())
     fresh = {}
     for name, options in scenes.items():
         kept.idle.clear()
-        fresh[name] = all_but_times(run(engine, shaken(**options)))
+        fresh[name] = all_but_times(rocked(engine, **options))
     generator = np.random.default_rng(1)
     for name in generator.choice(list(scenes), 40).tolist():
         compiled = bool(generator.integers(4))
-        again = run(engine, shaken(compiled=compiled, **scenes[name]))
+        again = rocked(engine, compiled=compiled, **scenes[name])
         assert all_but_times(again) == fresh[name], name
     assert 0 < len(kept.idle) <= mujoco_models.MOST_IDLE
 
 
 @pytest.mark.skipif("mujoco" not in HERE, reason="MuJoCo is not installed")
-def test_a_release_that_knows_no_moving_surface_answers_alike(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
     """Before 3.11 `MjModel` has no `geom_surfacevel`; only a base that moves needs it."""
-    library: Any = pytest.importorskip("mujoco")
+    library = pytest.importorskip("mujoco")
 
     class Older:
-        def __init__(self, xml: str) -> None:
+        def __init__(self, xml):
             self.itself = whole.from_xml_string(xml)
 
-        def __getattr__(self, name: str) -> Any:
+        def __getattr__(self, name):
             if name == "geom_surfacevel":
                 raise AttributeError(name)
             return getattr(self.itself, name)
 
-    newest = all_but_times(run("mujoco", shaken(compiled=False)))
+    newest = all_but_times(rocked("mujoco", compiled=False))
     whole = library.MjModel
     monkeypatch.setattr(mujoco_models, "idle", type(mujoco_models.idle)())
     monkeypatch.setattr(library, "MjModel", SimpleNamespace(from_xml_string=Older))
     for name in ("MjData", "mj_step", "mj_resetData"):
         takes = getattr(library, name)
 
-        def given(model: Any, *others: Any, takes: Any = takes) -> Any:
+        def given(model, *others, takes=takes):
             return takes(model.itself, *others)
 
         monkeypatch.setattr(library, name, given)
     for _ in range(2):  # with a model that is new, and with one that was used
-        assert all_but_times(run("mujoco", shaken(compiled=False))) == newest
+        assert all_but_times(rocked("mujoco", compiled=False)) == newest
     assert mujoco_models.idle
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
-def test_a_few_steps_are_interpreted_to_the_same_bit(
-    engine: str, options: dict[str, object]
-) -> None:
-    asked = shaken(**options)
+def test_a_few_steps_are_interpreted_to_the_same_bit(engine, options):
     with interpreting(Purse(PACKAGE, 10**9, 0)):
-        interpreted = run(engine, asked)
-    assert all_but_times(interpreted) == all_but_times(run(engine, asked))
+        interpreted = rocked(engine, **options)
+    assert all_but_times(interpreted) == all_but_times(rocked(engine, **options))
     assert interpreted.driver == f"python: {INTERPRETED}"
 
 
-def test_a_run_of_many_steps_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_of_many_steps_is_compiled(monkeypatch):
     """It begins again when the steps that may be interpreted are spent."""
     monkeypatch.setattr(Purse, "shut", False)
-    asked, drivers = shaken(accuracy="loose"), []
+    asked, drivers = partial(rocked, "mujoco", accuracy="loose"), []
     for steps in (10**9, 10):
         monkeypatch.setattr(parts, "PURSE", Purse(PACKAGE, steps, 0))
-        drivers.append(parts.interpreted_first(partial(run, "mujoco", asked)).driver)
+        drivers.append(parts.interpreted_first(asked).driver)
     assert drivers == [f"python: {INTERPRETED}", "compiled"]

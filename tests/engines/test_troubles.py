@@ -9,23 +9,23 @@ import pytest
 from uses import HERE
 
 import engines
-from engines.troubles import TROUBLES, Trouble
+from engines.troubles import TROUBLES
 
 FOLDER = Path(engines.__file__).parent / "troubles"
 INSTALLED = [trouble for trouble in TROUBLES if trouble.engine in HERE]
 
 
-def test_every_script_is_told_of() -> None:
+def test_every_script_is_told_of():
     found = {path.name for path in FOLDER.glob("*_*.py") if path.name != "__init__.py"}
     assert {trouble.script for trouble in TROUBLES} == found
     assert all(trouble.title and trouble.mechanism and trouble.kind for trouble in TROUBLES)
 
 
 @pytest.mark.parametrize("trouble", TROUBLES, ids=lambda trouble: trouble.script)
-def test_a_script_needs_its_engine_alone(trouble: Trouble) -> None:
+def test_a_script_needs_its_engine_alone(trouble):
     text = (FOLDER / trouble.script).read_text()
     assert len(text.splitlines()) <= 40
-    names: set[str] = set()
+    names = set()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name.partition(".")[0] for alias in node.names}
@@ -36,7 +36,7 @@ def test_a_script_needs_its_engine_alone(trouble: Trouble) -> None:
 
 
 @pytest.mark.parametrize("trouble", INSTALLED, ids=lambda trouble: trouble.script)
-def test_the_trouble_is_still_there(trouble: Trouble, tmp_path: Path) -> None:
+def test_the_trouble_is_still_there(trouble, tmp_path):
     """In a process and a folder of its own, where this project is not to be found."""
     asked = [sys.executable, "-I", str(FOLDER / trouble.script)]
     done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True)

@@ -1,32 +1,25 @@
 """Every engine under every preset, and what may be asked of it by what it declares."""
 
-import math
+from dataclasses import asdict
 
 import pytest
 from declared import held_to
+from given import BLOCK, pulse
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import UNTUNED, Miss, Stepping
+from engines.run.drive import run
 from engines.world import ROUNDINGS
+from studies.cases.paper import sweep_cases
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-
+SHAKEN = pulse(1.3, 3.0, 2)
+"""A pulse under which the block is struck once before its peak."""
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
-FIXED = [
-    name
-    for name, engine in HERE.items()
-    if any(use.name == "fixed" and use.stepping is Stepping.FIXED for use in engine.presets)
-]
-LANDING = [
-    (name, use.name)
-    for name, engine in HERE.items()
-    for use in engine.presets
-    if use.stepping is Stepping.LANDING
-]
+FIXED = [name for name, preset in USES if preset == "fixed"]
+LANDING = [use for use in USES if HERE[use[0]].preset(use[1]).stepping is Stepping.LANDING]
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in HERE[use[0]].frames]
 
 MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]
@@ -37,12 +30,12 @@ every_fixed_use = pytest.mark.parametrize("engine", FIXED)
 every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
 
 
-def in_both_frames(uses: list[tuple[str, str]]) -> list[tuple[str, str]]:
+def in_both_frames(uses):
     """Return the uses of engines whose base can also move in the world."""
     return [use for use in uses if set(FRAMES) <= set(HERE[use[0]].frames)]
 
 
-def noise(engine: str, step: float) -> float:
+def noise(engine, step):
     """Return the part of an impact's velocity, some p H/10, that is a rounding of a block's place.
 
     Over a step of p dt such a rounding is a velocity.
@@ -50,7 +43,7 @@ def noise(engine: str, step: float) -> float:
     return ROUNDINGS * HERE[engine].precision.value / (0.1 * step)
 
 
-def speed_band(engine: str) -> float:
+def speed_band(engine):
     """Return within what landing steps meet a closed form for the velocity of an impact.
 
     It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
@@ -58,7 +51,7 @@ def speed_band(engine: str) -> float:
     return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].scatter))
 
 
-def band(engine: str) -> float:
+def band(engine):
     """Return within what landing steps at the default accuracy, p dt = 5e-3, meet a closed form.
 
     Core engines are of second order, (p dt)^2 = 2.5e-5 times a factor of a few; of others it is
@@ -68,16 +61,38 @@ def band(engine: str) -> float:
     return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].scatter)
 
 
-def pulse(
-    onset_ratio: float, omega_over_p: float, half_cycles: int = 1, block: RigidBlock = BLOCK
-) -> SinePulse:
-    """Return a pulse whose amplitude is a multiple of g tan(alpha)."""
-    return SinePulse(
-        amplitude=onset_ratio * block.gravity * math.tan(block.alpha),
-        omega=omega_over_p * block.p,
-        half_cycles=half_cycles,
-    )
+def scene(motion=SHAKEN, **options):
+    return Scene(**{"system": BLOCK, "motion": motion, **options})
 
 
-def scene(motion: SinePulse, **options: object) -> Scene:
-    return Scene(system=BLOCK, motion=motion, **options)  # type: ignore[arg-type]
+def rocked(engine, motion=SHAKEN, **options):
+    """Return what an engine makes of a scene of the block."""
+    return run(engine, scene(motion, **options))
+
+
+def error(engine, motion=SHAKEN, **options):
+    """Return by which part an engine's peak misses the exact one."""
+    posed = scene(motion, **options)
+    exact = simulate(posed.system, motion, start=posed.start)
+    return abs(run(engine, posed).peak_ratio / exact.peak_ratio - 1.0)
+
+
+def errors_of_sweep(engine, every, **options):
+    """Return the errors of the peaks of the survivors of the sweep, outcomes having agreed."""
+    errors = []
+    for case in [*sweep_cases([6, 7, 8, 9])][every // 2 :: every]:
+        exact = simulate(case.block, case.motion)
+        response = rocked(engine, case.motion, system=case.block, **options)
+        assert response.outcome is exact.outcome, (case, response.message)
+        if exact.outcome is Outcome.ROCKED:
+            errors.append(abs(response.peak_ratio / exact.peak_ratio - 1.0))
+    return errors
+
+
+def all_but_times(response):
+    """Return all fields to the last bit, apart from run times and what took the steps."""
+    found = asdict(response)
+    history = found.pop("history")
+    kept = [] if history is None else [part for part in history.values() if part is not None]
+    parts = [part.tolist() for part in kept]
+    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)

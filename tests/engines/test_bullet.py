@@ -1,35 +1,34 @@
-"""PyBullet's compiled loop: held against Python before it is used, and left alone where it is not
-what it should be."""
+"""PyBullet's compiled loop, which is left alone where it is not what it should be; its clients."""
 
+import itertools
 import multiprocessing
 import signal
-from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from test_look import all_but_times
-from uses import BLOCK, pulse, scene
+from uses import BLOCK, all_but_times, pulse, rocked, scene
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Reason
-from engines import ENGINES, Scene
+from analytic.response import Outcome, Reason
+from engines import ENGINES
 from engines.pybullet import build as bullet
+from engines.pybullet import clients as bullet_clients
 from engines.pybullet import fast as bullet_loop
 from engines.pybullet.addresses import spans
+from engines.pybullet.settings import FACTORS, LANDING, TUNED
 from engines.run.drive import build, run, simulate_world
 from engines.world import Grip
 
 p = pytest.importorskip("pybullet")
 
-ROCKS = scene(pulse(1.3, 3.0, 2), accuracy="loose")
+ROCKS = scene(accuracy="loose")
 
 
 @pytest.fixture(autouse=True)
-def asked_anew() -> Iterator[None]:
+def asked_anew():
     for known in (bullet_loop.clients, bullet.loop_agrees):
         known.cache_clear()
     yield
@@ -37,8 +36,8 @@ def asked_anew() -> Iterator[None]:
         known.cache_clear()
 
 
-def driven(asked: Scene) -> bool:
-    world: Any = build(ENGINES["pybullet"], asked)
+def driven(asked):
+    world = build(ENGINES["pybullet"], asked)
     world.close()
     return world.drive is not None
 
@@ -52,9 +51,7 @@ def driven(asked: Scene) -> bool:
         ("FUNCTIONS", (bullet_loop.CFunction("b3Nothing", bullet_loop.HANDLE),)),
     ],
 )
-def test_another_build_is_stepped_from_python(
-    name: str, other: object, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_build_is_stepped_from_python(name, other, monkeypatch):
     compiled = all_but_times(run("pybullet", ROCKS))
     assert driven(ROCKS)
     bullet_loop.clients.cache_clear()
@@ -66,13 +63,13 @@ def test_another_build_is_stepped_from_python(
     assert all_but_times(stepped) == compiled
 
 
-def test_a_library_without_symbols_is_left_alone(tmp_path: Path) -> None:
+def test_a_library_without_symbols_is_left_alone(tmp_path):
     (tmp_path / "library").write_bytes(b"MZ" + bytes(100))
     with pytest.raises(ValueError, match="library is no ELF file of 64 bits"):
         spans(tmp_path / "library", "anything")
 
 
-def test_where_functions_stand() -> None:
+def test_where_functions_stand():
     """Two that can be asked for, too, are as far apart as they were loaded."""
     names = ("b3ConnectPhysicsDirect", "b3InitStepSimulationCommand")
     (first, _), (second, size) = spans(Path(p.__file__), *names)
@@ -93,15 +90,13 @@ def test_where_functions_stand() -> None:
         ("ordinary", 1.0),
     ],
 )
-def test_a_loop_that_steps_otherwise_is_not_used(
-    name: str, other: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
     begin = bullet.begin_hold
     looped = iter((True, False))
 
-    def otherwise(held: Any, *rest: Any) -> None:
+    def otherwise(held, *rest):
         begin(held, *rest)
         if next(looped):
             setattr(held, name, other)
@@ -113,9 +108,7 @@ def test_a_loop_that_steps_otherwise_is_not_used(
 
 
 @pytest.mark.parametrize("grip", Grip)
-def test_both_drivers_correct_alike_whatever_a_step_is_for(
-    grip: Grip, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_both_drivers_correct_alike_whatever_a_step_is_for(grip, monkeypatch):
     monkeypatch.setattr(bullet, "TRIAL", [step._replace(grip=grip) for step in bullet.TRIAL])
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
@@ -136,25 +129,22 @@ def test_both_drivers_correct_alike_whatever_a_step_is_for(
         (Grip.STRIKE, 1e-3, 0.0, 0.0),
     ],
 )
-def test_what_is_corrected_of_a_position(
-    grip: Grip, dt_s: float, normal: float, across: float
-) -> None:
+def test_what_is_corrected_of_a_position(grip, dt_s, normal, across):
     assert bullet_loop.corrected(grip, dt_s, 1e-3) == (normal, across)
 
 
-def apart(number: int) -> Scene:
+def apart(number):
     """Return a scene in which contacts are kept up to a gap of its own."""
     block = RigidBlock(width=0.2 + 0.1 * number, height=1.5)
-    pulse = SinePulse(amplitude=1.3 * block.gravity * block.width / 1.5, omega=3.0 * block.p)
-    return Scene(system=block, motion=pulse, accuracy="loose")
+    return scene(pulse(1.3, 3.0, 1, block), system=block, accuracy="loose")
 
 
-def answer(number: int) -> str:
+def answer(number):
     return all_but_times(run("pybullet", apart(number)))
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
+def test_worlds_at_once_keep_their_own_gaps(compiled):
     """The library holds that up to which contacts are kept for the whole process, and looks at it
     when two bodies meet first: on a plane, while a scene is built."""
     alone, asked = answer(1), replace(apart(1), compiled=compiled)
@@ -168,14 +158,14 @@ def test_worlds_at_once_keep_their_own_gaps(compiled: bool) -> None:
     assert all_but_times(response) == alone
 
 
-def test_threads_do_not_disturb_each_other() -> None:
+def test_threads_do_not_disturb_each_other():
     alone = [answer(number) for number in range(6)]
     with ThreadPoolExecutor(3) as pool:
         assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_processes_answer_alike(method: str) -> None:
+def test_processes_answer_alike(method):
     here = answer(1)
     with ProcessPoolExecutor(1, multiprocessing.get_context(method)) as pool:
         assert pool.submit(answer, 1).result() == here
@@ -184,23 +174,23 @@ def test_processes_answer_alike(method: str) -> None:
 ENDLESS = {"preset": "fixed", "duration": 1e5}
 
 
-def test_a_time_limit_ends_a_loop() -> None:
-    asked = Scene(system=BLOCK, motion=pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
+def test_a_time_limit_ends_a_loop():
+    asked = scene(pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
     assert driven(asked)
     response = run("pybullet", asked)
     assert response.reason is Reason.UNDECIDED
-    assert response.message == "not decided within 0.05 s"
+    assert "0.05 s" in response.message  # and not by its steps
 
 
-def test_a_signal_ends_a_loop() -> None:
-    def stop(number: int, frame: object) -> None:
+def test_a_signal_ends_a_loop():
+    def stop(number, frame):
         raise InterruptedError
 
     before = signal.signal(signal.SIGALRM, stop)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(InterruptedError):
-            run("pybullet", Scene(system=BLOCK, motion=pulse(0.5, 1.0), **ENDLESS))
+            rocked("pybullet", pulse(0.5, 1.0), **ENDLESS)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -208,18 +198,46 @@ def test_a_signal_ends_a_loop() -> None:
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_the_solver_ends_by_itself_at_rest(compiled: bool) -> None:
+def test_the_solver_ends_by_itself_at_rest(compiled):
     """More iterations change nothing: places that contradict each other would use them all up."""
     block = RigidBlock(width=0.5, height=1.0)
     motion = pulse(1.3, 0.1, 2, block)
     times = [0.1 * i for i in range(20)]  # the block lifts after 2.5 s
+    asked = {"system": block, "times": times, "compiled": compiled}
     enough, more = (
-        run("pybullet", Scene(system=block, motion=motion, times=times, **options))
-        for options in (
-            {"compiled": compiled, "settings": {"iterations": iterations}}
-            for iterations in (1000, 3000)
-        )
+        rocked("pybullet", motion, **asked, settings={"iterations": iterations})
+        for iterations in (1000, 3000)
     )
-    assert enough.history is not None
-    assert more.history is not None
     assert (enough.history.theta == more.history.theta).all()
+
+
+@pytest.mark.parametrize("wanted", [{"start": (0.5 * BLOCK.alpha, 0.0), "preset": "naive"}, {}])
+def test_nothing_stays_of_any_setting(wanted, monkeypatch):
+    """A run in a client that others have used is that of a new one, to the bit."""
+    monkeypatch.setattr(bullet_clients, "idle", [])
+
+    def answered():
+        return all_but_times(rocked("pybullet", pulse(1.35, 4.0), **wanted))
+
+    first = answered()
+    for level in itertools.chain.from_iterable(factor.levels for factor in FACTORS):
+        for preset in level.presets:
+            few = {"preset": preset, "settings": level.settings, "max_steps": 30}
+            rocked("pybullet", pulse(1.35, 4.0), **few, **level.scene)
+        assert len(bullet_clients.idle) == 1
+        assert answered() == first, level.name
+
+
+def test_two_worlds_at_once_have_a_client_each(monkeypatch):
+    monkeypatch.setattr(bullet_clients, "idle", [])
+    worlds = [bullet.BulletWorld(scene(), settings, 1e-3) for settings in (TUNED, LANDING)]
+    for world in worlds:
+        world.close()
+    assert len(set(bullet_clients.idle)) == 2
+
+
+def test_a_run_that_was_lost_spoils_none_after_it():
+    first = all_but_times(rocked("pybullet"))
+    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="naive")
+    assert lost.outcome is Outcome.FAILED
+    assert all_but_times(rocked("pybullet")) == first

@@ -1,0 +1,27 @@
+"""What tests of many kinds begin with: a block, its onset, and pulses counted in both."""
+
+import math
+
+from analytic import RigidBlock, SinePulse
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+G = BLOCK.gravity
+FULL_SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
+
+
+def onset_of(block):
+    """Return the acceleration [m/s2] at which a block lifts, g tan(alpha)."""
+    return block.gravity * math.tan(block.alpha)
+
+
+ONSET = onset_of(BLOCK)
+
+
+def pulse(onsets, omega_over_p, half_cycles=1, block=BLOCK, phase=0.0):
+    """Return a pulse whose amplitude counts in onsets of a block, and its frequency in p."""
+    return SinePulse(
+        amplitude=onsets * onset_of(block),
+        omega=omega_over_p * block.p,
+        half_cycles=half_cycles,
+        phase=phase,
+    )
