@@ -182,6 +182,14 @@ def test_no_motion_and_no_start_is_rest():
         assert response.peak_ratio == 0.0
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_a_motion_without_length_is_sampled_at_its_start(model):
+    response = simulate(BLOCK, Still(), model, start=(-0.1, 0.2), times=[0.0, 0.0, 1.0])
+    assert response.history.time.tolist() == [0.0, 0.0]
+    assert response.history.theta.tolist() == [-0.1, -0.1]
+    assert response.history.velocity.tolist() == [0.2, 0.2]
+
+
 def test_a_jump_beyond_the_onset_lifts_at_once():
     for phase in (0.5 * math.pi, -0.5 * math.pi, 2.0):
         lifted = abs(math.sin(phase)) > 1.0 / 1.2
