@@ -116,7 +116,7 @@ def choose(
     BadInputError
         If there are more processes than the memory holds, or their number is given beside a
         cluster, whose workers are as many as were started.
-    studies.kit.dask_client.ClusterError
+    studies.kit.cluster.ClusterError
         If the cluster cannot be used.
     """
     if cluster is None:

@@ -52,7 +52,7 @@ class Computing:
 
         Raises
         ------
-        BadInputError, studies.kit.dask_client.ClusterError
+        BadInputError, studies.kit.cluster.ClusterError
             As `studies.kit.executors.choose`.
         """
         return choose(self.jobs, self.time_limit, self.cluster, ask, at_once=at_once)

@@ -98,7 +98,7 @@ def place(tmp_path_factory):
         patch.setattr(Local, "_in_processes", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
-        patch.setattr("studies.kit.dask_client.CONNECT_S", 0.5)
+        patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
         yield folder
     assert Path.cwd() == kept
 
