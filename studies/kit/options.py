@@ -18,11 +18,19 @@ from studies.kit.arguments import (
     Positive,
     Step,
     one_of,
+    refuse_given,
     several_or_none,
 )
-from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
-from studies.kit.executors import Executor, choose
+from studies.kit.estimates import (
+    CASE_BYTES,
+    PROCESS_BYTES,
+    expected_s,
+    refuse_days,
+    refuse_excess,
+)
+from studies.kit.executors import Executor, Local
 from studies.kit.jobs import Job, ask
+from studies.kit.provenance import usable_cores
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source, resolve
 
 
@@ -52,10 +60,20 @@ class Computing:
 
         Raises
         ------
-        BadInputError, studies.kit.cluster.ClusterError
-            As `studies.kit.executors.choose`.
+        BadInputError
+            If there are more processes than the memory holds, or their number is given beside a
+            cluster, whose workers are as many as were started, or that cannot be used.
         """
-        return choose(self.jobs, self.time_limit, self.cluster, ask, at_once=at_once)
+        if self.cluster is None:
+            refuse_excess(f"--jobs is {self.jobs}", (self.jobs or 1) * PROCESS_BYTES)
+            return Local(self.jobs or usable_cores(), self.time_limit, ask, at_once)
+        # asyncio takes a tenth of a second to load, and most runs have no cluster
+        from studies.kit.cluster import Cluster
+
+        refuse_given({"jobs": self.jobs}, "only without --cluster")
+        chosen = Cluster(self.cluster, self.time_limit, ask)
+        chosen.check()
+        return chosen
 
     def refuse_too_much(
         self,

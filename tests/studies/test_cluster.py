@@ -221,7 +221,7 @@ def test_a_cluster_knows_nothing_of_who_chooses_it():
     graph = grimp.build_graph("studies")
     for module in ("cluster", "worker", "processes"):
         assert not graph.chain_exists(
-            importer=f"studies.kit.{module}", imported="studies.kit.executors"
+            importer=f"studies.kit.{module}", imported="studies.kit.options"
         )
 
 
