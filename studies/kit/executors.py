@@ -13,7 +13,7 @@ from engines.parts.compiled import PACKAGE
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool, StartError
 from studies.kit.processes import ask_apart, compile_ahead, outcome_of
-from studies.kit.streams import say
+from studies.kit.refusing import say
 from studies.sources.registry import Source
 
 FEW = 32

@@ -7,7 +7,7 @@ from analytic.block import GRAVITY
 from analytic.motion import Motion
 from analytic.record import Record
 from studies.kit.posing import Excitation
-from studies.kit.streams import say
+from studies.kit.refusing import say
 
 SMALL_M, LARGE_M = 0.005, 20.0
 """Sizes [m] beyond which a block is unusual."""

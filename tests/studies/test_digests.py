@@ -13,8 +13,8 @@ from studies.__main__ import run
 from studies.advise.evidence import TABLES
 from studies.advise.tried import RANDOM
 from studies.catalogue import CHAPTERS
-from studies.kit.sealed import seal as sealed_line
-from studies.kit.sealed import unseal
+from studies.kit.journal import seal as sealed_line
+from studies.kit.journal import unseal
 from studies.measures import halving
 from studies.page import readme
 from studies.score import report as score

@@ -9,8 +9,7 @@ import pytest
 
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit.drafts import draft
-from studies.kit.journal import FolderError, named, open_journal
-from studies.kit.sealed import seal, unseal
+from studies.kit.journal import FolderError, named, open_journal, seal, unseal
 from studies.page.facts import FIRST
 
 SUBJECT = {"study": "test", "settings": {"seed": 1}}
@@ -31,7 +30,7 @@ def fill(folder, rows=ROWS):
 
 def kept(folder):
     with open_journal(folder, SUBJECT, ()) as journal:
-        return {key: entry.row for key, entry in journal.entries.items()}
+        return {key: entry.row for key, entry in journal.kept.entries.items()}
 
 
 def test_what_was_stored_is_read_back(tmp_path):
@@ -108,9 +107,9 @@ def test_a_line_without_its_fields_is_damaged(line, tmp_path):
 def test_what_made_a_row_is_written_once_and_read_back(tmp_path):
     path = fill(tmp_path)
     with open_journal(tmp_path, SUBJECT, ()) as journal:
-        made = {key: journal.maker_of(key) for key in ROWS}
+        made = {key: journal.kept.maker_of(key) for key in ROWS}
         journal.append("key 0", ROWS["key 1"], MAKERS[1])
-        assert journal.maker_of("key 0") == MAKERS[1]
+        assert journal.kept.maker_of("key 0") == MAKERS[1]
     assert list(made.values()) == [MAKERS[0], MAKERS[0], MAKERS[1]]
     assert sum(b'"of"' in line for line in path.read_bytes().splitlines()) == len(MAKERS)
     assert kept(tmp_path) == ROWS | {"key 0": ROWS["key 1"]}

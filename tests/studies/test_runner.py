@@ -23,12 +23,11 @@ from studies.kit.executors import Local
 from studies.kit.fingerprint import PACKAGES, ROOT
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import FolderError, open_journal, rows_in
+from studies.kit.journal import FolderError, open_journal, rows_in, seal, unseal
 from studies.kit.options import Running
 from studies.kit.plan import fill
 from studies.kit.provenance import record_of, subject
 from studies.kit.runner import run_jobs
-from studies.kit.sealed import seal, unseal
 from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
