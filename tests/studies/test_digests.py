@@ -8,11 +8,13 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from commanding import CASE, refused
 
 from studies.__main__ import run
 from studies.advise.evidence import TABLES
 from studies.advise.tried import RANDOM
 from studies.catalogue import CHAPTERS
+from studies.kit.digests import digest, seal
 from studies.kit.journal import seal as sealed_line
 from studies.kit.journal import unseal
 from studies.measures import halving
@@ -48,23 +50,11 @@ def folder(swept, tmp_path, capsys):
 @pytest.fixture
 def published(tmp_path):
     """The published tables, sealed as their studies do it now."""
-    from studies.kit.digests import seal
-
     root = tmp_path / "root"
     copy = Path(shutil.copytree(PUBLISHED, root / readme.PUBLISHED))
     for record in copy.glob("*/provenance.json"):
         seal(record.parent)
     return copy
-
-
-def refused(capsys, arguments, *named):
-    """Assert that a command ends with 2, one line that names things, and no other word."""
-    assert run([str(argument) for argument in arguments]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1, output.err
-    for name in named:
-        assert name in output.err
 
 
 def one_digit(folder):
@@ -88,10 +78,6 @@ def cut_anywhere(folder):
 def saved_by_a_spreadsheet(folder):
     path = folder / "sweep.csv"
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-
-
-def no_provenance(folder):
-    (folder / "provenance.json").unlink()
 
 
 def a_folder(folder):
@@ -119,7 +105,7 @@ HARM = {
     "cut at a line": cut_at_a_line,
     "cut anywhere": cut_anywhere,
     "saved by a spreadsheet": saved_by_a_spreadsheet,
-    "no provenance": no_provenance,
+    "no provenance": lambda folder: (folder / "provenance.json").unlink(),
     "a folder": a_folder,
     "packed and cut": packed_and_cut,
     "an empty provenance": provenance_of(""),
@@ -238,9 +224,8 @@ def test_no_bound_from_an_edited_factor(published, monkeypatch, capsys):
         halving.published_trust, "__defaults__", (published / "estimate" / "factors.csv",)
     )
     edit(published / "estimate" / "factors.csv")
-    case = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
     few = ["--sources", "mujoco", "--jobs", "1", "--step", "0.02"]
-    refused(capsys, ["compare", *case, *few, "--estimate"], "factors.csv")
+    refused(capsys, ["compare", *CASE, *few, "--estimate"], "factors.csv")
 
 
 def test_no_score_beside_an_edited_table(published, monkeypatch, tmp_path, capsys):
@@ -271,8 +256,6 @@ def test_whatever_is_checked_comes_with_an_installation():
 
 @pytest.mark.parametrize("chapter", [chapter for _, chapter in CHAPTERS], ids=lambda c: c.folder)
 def test_every_published_table_has_its_digest(chapter):
-    from studies.kit.digests import digest
-
     folder = PUBLISHED / chapter.folder
     if (folder / "provenance.json").is_file():
         tables = json.loads((folder / "provenance.json").read_text())["tables"]
