@@ -4,13 +4,11 @@ import ast
 import math
 import os
 import signal
-import subprocess
-import sys
 import threading
-from pathlib import Path
 
 import numpy as np
 import pytest
+from commanding import PATIENCE_S, python
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Response
@@ -19,11 +17,8 @@ from studies.kit.jobs import Job, summary
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
-ROOT = Path(__file__).parents[2]
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
-PATIENCE_S = 900.0
-"""Guards against a test that hangs; nothing is expected within it."""
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -139,8 +134,7 @@ for name in ("exact", "modified", "rk4", "average-acceleration"):
 
 
 def test_a_short_question_loads_the_kernels_of_the_long_one():
-    command = [sys.executable, "-c", KERNELS]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    done = python("-c", KERNELS)
     assert (done.returncode, done.stderr) == (0, "")
 
 
