@@ -1,6 +1,6 @@
 """Options that studies share: each a dataclass, which is the type of a command's parameter."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -23,8 +23,8 @@ from studies.kit.arguments import (
 )
 from studies.kit.estimates import (
     CASE_BYTES,
+    CASE_S,
     PROCESS_BYTES,
-    expected_s,
     refuse_days,
     refuse_excess,
 )
@@ -105,8 +105,13 @@ class Computing:
         BadInputError
         """
         refuse_excess(asked, cases * (case_bytes + len(sources) * CASE_BYTES))
-        limit = self.time_limit
-        seconds = expected_s(cases, sources, jobs=self.jobs, time_limit_s=limit, effort=effort)
+        seconds = 0.0
+        for name in sources:
+            kind = resolve(name).kind
+            # a time grows as the step falls
+            finer = max(1e-3 / float(effort.options(name).get("step", 1e-3)), 1.0)
+            workers = (self.jobs or usable_cores()) if kind == "engine" else 1
+            seconds += cases * min(CASE_S[kind] * finer, self.time_limit) / workers
         refuse_days(asked, seconds, yes)
 
 
@@ -180,7 +185,12 @@ class Yours:
             If one takes no step of its own, or none takes what is given.
         """
         asked = {name: resolve(name) for name in sources}
-        self._refuse_idle(asked.values(), block)
+        idle = not any(source.engine for source in asked.values())
+        if self.friction is not None and idle and not isinstance(block, SlidingBlock):
+            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
+        if self.dt is not None and not any(source.stepping for source in asked.values()):
+            words = "a solver or an engine that takes equal steps"
+            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
         chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
         for name, source in asked.items():
             if self.friction is not None and source.engine:
@@ -189,14 +199,6 @@ class Yours:
                 self._refuse_uneven(source)
                 chosen[name]["step"] = self.dt * block.p
         return chosen
-
-    def _refuse_idle(self, asked: Collection[Source], block: System) -> None:
-        idle = not any(source.engine for source in asked)
-        if self.friction is not None and idle and not isinstance(block, SlidingBlock):
-            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
-        if self.dt is not None and not any(source.stepping for source in asked):
-            words = "a solver or an engine that takes equal steps"
-            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
 
     def _refuse_uneven(self, source: Source) -> None:
         if not source.accurate:

@@ -70,19 +70,22 @@ def versions() -> dict[str, Any]:
 
 def git_commit() -> dict[str, Any] | None:
     """Return the commit of the source and whether it was edited since; None without git."""
+    if not (ROOT / ".git").exists():
+        return None
     try:
-        commit = _git("rev-parse", "HEAD")
-        return {"commit": commit, "edited": bool(_git("status", "--porcelain", "-uno"))}
+        commit, edited = (
+            subprocess.run(
+                ["git", "-C", str(ROOT), *words.split()],
+                capture_output=True,
+                text=True,
+                timeout=10,
+                check=True,
+            ).stdout.strip()
+            for words in ("rev-parse HEAD", "status --porcelain -uno")
+        )
     except (OSError, subprocess.SubprocessError):
         return None
-
-
-def _git(*arguments: str) -> str:
-    if not (ROOT / ".git").exists():
-        raise FileNotFoundError("not a working copy")
-    command = ["git", "-C", str(ROOT), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
-    return done.stdout.strip()
+    return {"commit": commit, "edited": bool(edited)}
 
 
 def _cpu_model() -> str:
@@ -115,24 +118,24 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     from analytic.kernels.compiled import SOURCES
     from analytic.kernels.kept import are_compiled
 
-    earlier = _earlier(path, subject)
+    earlier, git, here = _earlier(path, subject), git_commit(), versions()
+    for name, version in earlier.get("engines", {}).items():
+        # an engine that is no longer here made its rows in the version of then
+        if here["engines"].get(name) == NOT_INSTALLED:
+            here["engines"][name] = version
     record = {
         **subject,
-        **_versions_of_rows(earlier),
-        "git": git_commit(),
+        **here,
+        "git": git,
         "tools": {name: version_of(name) for name in TOOLS},
-        "machine": {
-            "cpu": _cpu_model(),
-            "cores": usable_cores(),
-            "os": platform.platform(),
-        },
+        "machine": {"cpu": _cpu_model(), "cores": usable_cores(), "os": platform.platform()},
         "tables": dict(earlier.get("tables", {})),
         "runs": [
             *earlier["runs"],
             {
                 "start": datetime.now(UTC).isoformat(timespec="seconds"),
                 "first": not are_compiled(SOURCES),
-                "git": git_commit(),
+                "git": git,
                 **arguments,
             },
         ],
@@ -162,14 +165,6 @@ def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
 def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the runs of a record that computed all rows, and went on until the end."""
     return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
-
-
-def _versions_of_rows(earlier: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the versions here, of an engine that is no longer here those of its rows."""
-    here = versions()
-    gone = {name for name, version in here["engines"].items() if version == NOT_INSTALLED}
-    then = {name: it for name, it in earlier.get("engines", {}).items() if name in gone}
-    return {**here, "engines": here["engines"] | then}
 
 
 def _earlier(path: Path, subject: dict[str, Any]) -> dict[str, Any]:
