@@ -1,6 +1,5 @@
 """The runner and its results folder: failures, resuming, locks, foreign folders."""
 
-import fcntl
 import math
 import os
 import resource
@@ -249,14 +248,6 @@ def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
         line = refusal_of(process)
     assert "removed during the run" in line
     assert "kept" not in line
-
-
-def test_two_runs_never_share_a_folder(tmp_path):
-    with (tmp_path / ".lock").open("a") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        with pytest.raises(FolderError, match="in use"):
-            fill(STUDY, SMALL, tmp_path, ALONE)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".lock"]
 
 
 @pytest.mark.parametrize(
