@@ -8,6 +8,7 @@ import platform
 import subprocess
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -89,13 +90,11 @@ def git_commit() -> dict[str, Any] | None:
 
 
 def _cpu_model() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        return next(
-            line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")
-        )
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
+    with suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
 
 
 def usable_cores() -> int:
@@ -140,8 +139,13 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
             },
         ],
     }
-    write_text(path, json.dumps(record, indent=2) + "\n")
+    write_record(path, record)
     return record
+
+
+def write_record(path: Path, record: Mapping[str, Any]) -> None:
+    """Write a provenance in one piece."""
+    write_text(path, json.dumps(record, indent=2) + "\n")
 
 
 def record_of(folder: Path) -> dict[str, Any]:
@@ -186,7 +190,7 @@ def finish(path: Path, record: dict[str, Any], began: float, **found: Any) -> No
     A command finishes twice: when its tables are written, and when it has reduced and drawn them.
     """
     record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **found}
-    write_text(path, json.dumps(record, indent=2) + "\n")
+    write_record(path, record)
 
 
 def write_text(path: Path, text: str) -> None:
