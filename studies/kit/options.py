@@ -21,13 +21,7 @@ from studies.kit.arguments import (
     refuse_given,
     several_or_none,
 )
-from studies.kit.estimates import (
-    CASE_BYTES,
-    CASE_S,
-    PROCESS_BYTES,
-    refuse_days,
-    refuse_excess,
-)
+from studies.kit.estimates import CASE_BYTES, CASE_S, PROCESS_BYTES, refuse_days, refuse_excess
 from studies.kit.executors import Executor, Local
 from studies.kit.jobs import Job, ask
 from studies.kit.provenance import usable_cores

@@ -23,9 +23,7 @@ _loaded: set[str] = set()
 
 
 def compile_ahead(
-    pool: Pool,
-    ask_: Callable[[Job, Source], Response],
-    asked: Iterable[tuple[Job, Source]],
+    pool: Pool, ask_: Callable[[Job, Source], Response], asked: Iterable[tuple[Job, Source]]
 ) -> None:
     """Compile what engines need on a machine, before any time limit holds.
 
