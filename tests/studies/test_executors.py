@@ -5,6 +5,8 @@ import math
 import os
 import signal
 import threading
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
+from studies.kit.pool import Pool
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
@@ -73,6 +76,20 @@ def test_a_long_solve_has_a_time_limit_too():
     long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
     rows = run_jobs([job("rk4", long)], executor=Local(2, 0.5), reduce=summary)
     assert ["time limit" in row["message"] for row in rows] == [True]
+
+
+def dies_soon():
+    threading.Timer(0.2, os._exit, [3]).start()
+    return os.getpid()
+
+
+def test_a_process_that_ended_between_two_tasks_is_replaced():
+    with Pool(1) as pool:
+        first = pool.schedule(dies_soon, (), PATIENCE_S).result()
+        while Path(f"/proc/{first}").exists():
+            time.sleep(0.05)
+        time.sleep(0.2)  # and whoever keeps it
+        assert pool.schedule(os.getpid, (), PATIENCE_S).result() != first
 
 
 ASKED = []
