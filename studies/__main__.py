@@ -5,7 +5,7 @@ import sys
 
 from studies import page
 from studies.catalogue import STUDIES
-from studies.kit import app, signals, streams
+from studies.kit import app, refusing, signals
 
 COMMANDS = (*STUDIES, page.REPORT, page.REDRAW, page.README)
 """Every command."""
@@ -22,10 +22,10 @@ def main() -> None:
     # by default a tenth of a short command's time goes into looking for garbage among its imports
     gc.set_threshold(10_000)
     app.settle_environment()
-    streams.prepare()
+    refusing.prepare()
     code = run(sys.argv[1:])
     signals.ignore()
-    streams.finish()
+    refusing.finish()
     sys.exit(code)
 
 

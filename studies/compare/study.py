@@ -43,10 +43,16 @@ from studies.kit.options import (
     refuse_two_steps,
     slides,
 )
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
+from studies.kit.posing import (
+    DEFAULT_EXCITATION,
+    ONE_BLOCK,
+    Excitation,
+    Posed,
+    Standing,
+    note_unusual,
+    refuse_endless,
+)
 from studies.kit.runner import exit_code, run_jobs
-from studies.kit.slips import note_unusual
-from studies.kit.standing import ONE_BLOCK, Standing
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import halved, with_estimates
 from studies.sources.groups import core_sources

@@ -10,10 +10,11 @@ import os
 import shutil
 import signal
 import sys
-from typing import TYPE_CHECKING
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-from studies.kit import signals, streams
-from studies.kit.refusing import refuse
+from studies.kit import refusing, signals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,17 +56,17 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
     except KeyboardInterrupt as stop:
         number = stop.number if isinstance(stop, signals.Ended) else signal.SIGINT
         kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
-        streams.say(f"rocking: {kind}; {stop}".rstrip("; "))
+        refusing.say(f"rocking: {kind}; {stop}".rstrip("; "))
         return 128 + number
     except (BrokenPipeError, SystemExit) as stop:
         # what sets the help makes another of it
         if BrokenPipeError not in (type(stop), type(stop.__context__)):
             raise
         # whoever read the output has gone: nothing more can be said there, not even on exit
-        streams.give_up_output()
+        refusing.give_up_output()
         return 128 + signal.SIGPIPE
     except (OSError, ImportError) as error:
-        return refuse(str(error))
+        return refusing.refuse(str(error))
     return code
 
 
@@ -74,15 +75,16 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
 
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
-    from studies.kit.lazily import postpone
 
-    postpone("pandas")
+    sys.modules.setdefault("pandas", Postponed("pandas"))
     if "--version" in arguments and len(arguments) > 1:
-        return refuse(f"--version is one of {len(arguments)} arguments; it must stand alone")
+        return refusing.refuse(
+            f"--version is one of {len(arguments)} arguments; it must stand alone"
+        )
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
         if not argument or (name.startswith("--") and equals and not value):
-            return refuse(f"{name or before} is empty; it must be given")
+            return refusing.refuse(f"{name or before} is empty; it must be given")
     try:
         code = make_app(studies)(
             arguments,
@@ -92,8 +94,25 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
             result_action="return_value",
         )
     except (CycloptsError, BadInputError, FolderError) as error:
-        return refuse(str(error))
+        return refusing.refuse(str(error))
     return code if isinstance(code, int) else 0
+
+
+class Postponed(ModuleType):
+    """Stands for a module until an attribute of it is asked for.
+
+    The loader that the standard library has for this loads a module where it is imported a second
+    time.
+    """
+
+    def __getattr__(self, attribute: str) -> Any:
+        """Load the module, and return its attribute."""
+        name = self.__name__
+        if sys.modules.get(name) is self:
+            sys.modules.pop(name, None)
+        loaded = import_module(name)
+        self.__dict__.update(loaded.__dict__)
+        return getattr(loaded, attribute)
 
 
 NARROWEST, WIDEST = 40, 200

@@ -2,6 +2,7 @@
 
 import errno
 import math
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +14,9 @@ from studies.cases.refusal import BadInputError as BadInputError
 
 MOST = 10**9
 """The largest whole number that an argument takes."""
+
+LARGEST = sys.float_info.max
+"""The largest number."""
 
 
 @contextmanager
@@ -45,62 +49,34 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
     return Parameter(converter=read, n_tokens=1, allow_leading_hyphen=True)
 
 
-def _plain(type_: type, text: str) -> Any:
-    # Python also reads 1_000 and the digits of every script
-    if not text.isascii() or "_" in text:
-        raise ValueError(text)
-    return type_(text)
+def _number(allowed: str, least: float, most: float = LARGEST) -> Any:
+    """Return what makes an argument take a number from `least` to `most`."""
 
-
-def _number(most: float) -> Callable[[type, str], Any]:
     def convert(type_: type, text: str) -> Any:
-        value = _plain(type_, text)
-        if not 0 < value <= most:
+        # Python also reads 1_000 and the digits of every script
+        if not text.isascii() or "_" in text or not least <= (value := type_(text)) <= most:
             raise ValueError(text)
         return value
 
-    return convert
+    return _read(allowed, convert)
 
 
-def _not_negative(type_: type, text: str) -> Any:
-    value = _finite(type_, text)
-    if value < 0:
-        raise ValueError(text)
-    return value
-
-
-def _finite(type_: type, text: str) -> Any:
-    value = _plain(type_, text)
-    if not math.isfinite(value):
-        raise ValueError(text)
-    return value
-
-
-def _step(type_: type, text: str) -> Any:
-    value = _number(math.nextafter(math.inf, 0.0))(type_, text)
-    if value < LEAST_STEP:
-        raise ValueError(text)
-    return value
-
-
-def _path(type_: type, text: str) -> Path:
+def _path(_: type, text: str) -> Path:
     if not text or text.startswith("-") or "\0" in text:
         raise ValueError(text)
     return Path(text)
 
 
-Positive = Annotated[
-    float, _read("a positive finite number", _number(math.nextafter(math.inf, 0.0)))
-]
+Positive = Annotated[float, _number("a positive finite number", math.ulp(0.0))]
 """A positive finite number."""
 
-NotNegative = Annotated[float, _read("a finite number, 0 or more", _not_negative)]
+NotNegative = Annotated[float, _number("a finite number, 0 or more", 0.0)]
 """A finite number that is not negative."""
 
-Finite = Annotated[float, _read("a finite number", _finite)]
+Finite = Annotated[float, _number("a finite number", -LARGEST)]
 """A finite number of either sign."""
 
-Count = Annotated[int, _read(f"a positive whole number up to {MOST}", _number(MOST))]
+Count = Annotated[int, _number(f"a positive whole number up to {MOST}", 1, MOST)]
 """A positive whole number."""
 
 LEAST_STEP = 1e-7
@@ -109,22 +85,15 @@ LEAST_STEP = 1e-7
 MOST_HALF_CYCLES = 10**6
 """Half cycles of which an engine's process holds the times in half a GB."""
 
-Step = Annotated[
-    float,
-    _read(
-        f"a positive number of at least {LEAST_STEP:g}: {1 / LEAST_STEP:g} of them make up 1/p",
-        _step,
-    ),
-]
+_STEP = f"a positive number of at least {LEAST_STEP:g}: {1 / LEAST_STEP:g} of them make up 1/p"
+_CYCLES = (
+    f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory"
+)
+
+Step = Annotated[float, _number(_STEP, LEAST_STEP)]
 """p dt of a solver or an engine."""
 
-HalfCycles = Annotated[
-    int,
-    _read(
-        f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory",
-        _number(MOST_HALF_CYCLES),
-    ),
-]
+HalfCycles = Annotated[int, _number(_CYCLES, 1, MOST_HALF_CYCLES)]
 """Length of a pulse."""
 
 
@@ -133,9 +102,8 @@ def one_of(words: Any) -> Any:
     allowed = get_args(words)
 
     def convert(_: type, text: str) -> str:
-        if text not in allowed:
-            raise ValueError(text)
-        return text
+        # of a tuple: its error is the one that is refused by
+        return str(allowed[allowed.index(text)])
 
     return _read(f"among {', '.join(allowed)}", convert)
 

@@ -1,31 +1,48 @@
-"""A Dask cluster as the place where jobs are run.
+"""A Dask cluster as the place where jobs are run, with a time limit on every question to it.
 
-A case whose worker dies is done again elsewhere, up to the scheduler's `allowed-failures`, after
-which it is a failed row.
+Dask is imported only here and on a worker, and only when a cluster is named. Whether the
+connection is encrypted, and whom it trusts, is Dask's own configuration (`distributed.comm.tls`),
+as on the scheduler and the workers. A case whose worker dies is done again elsewhere, up to the
+scheduler's `allowed-failures`, after which it is a failed row.
 """
 
+import asyncio
+import logging
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from analytic.response import Response
-from studies.kit.dask_client import ClusterError, client_of, gone, workers_of
+from studies.kit.arguments import BadInputError
 from studies.kit.jobs import Job, ask
 from studies.kit.refusing import one_line
-from studies.kit.worker import RefusedError, fitness, work
+from studies.kit.worker import START, RefusedError, fitness, unfit, work
 from studies.sources.registry import Source
 
 if TYPE_CHECKING:
     from distributed import Client
 
+CONNECT_S = 10.0
+"""How long to wait for the scheduler, and for a first worker [s]."""
+ANSWER_S = 60.0
+"""How long to wait for any other answer [s]; a worker may have to import this project first."""
+CLOSE_S = 1.0
+"""How long to wait for the scheduler to see a client off [s]."""
 LOOK_S = 1.0
 """How long to wait for the next answer before asking whether anybody is left to give it [s]."""
 PATIENCE_S = 60.0
 """How long to wait for another worker when the last one has gone [s]."""
+
+
+class ClusterError(BadInputError):
+    """A cluster that cannot be used; the message is one line that says why."""
+
+    def __init__(self, address: str, problem: str) -> None:
+        super().__init__(f"--cluster is {address!r}; {problem}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +65,7 @@ class Cluster:
 
     def check(self) -> None:
         """Raise ClusterError unless the cluster can be used."""
-        with client_of(self.address):
+        with self._client():
             pass
 
     def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
@@ -56,7 +73,7 @@ class Cluster:
         if not jobs:
             return
         ended: SimpleQueue[Future[Response]] = SimpleQueue()
-        with client_of(self.address) as client:
+        with self._client() as client:
             executor, numbers = client.get_executor(pure=False), {}
             for number, job in enumerate(jobs):
                 order = (fitness(), job, job.asked, self.ask, self.time_limit_s)
@@ -67,34 +84,108 @@ class Cluster:
                 task = self._next(client, ended)
                 yield numbers.pop(task), self._response(client, task)
 
+    @contextmanager
+    def _client(self) -> Iterator["Client"]:
+        """Connect to a scheduler whose workers run this very version."""
+        try:
+            from distributed import utils
+        except ImportError:
+            raise self._error("it needs Dask: pip install 'rocking[cluster]'") from None
+        # nobody but this project tells the user what happens to the cluster
+        for name in logging.root.manager.loggerDict:
+            if name.partition(".")[0] in ("distributed", "tornado"):
+                logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+        runner = utils.LoopRunner()
+        runner.start()
+        try:
+            try:
+                found = utils.sync(runner.loop, connected, self.address, callback_timeout=CONNECT_S)
+            except Exception as error:
+                # whoever listens there may have said anything
+                late = isinstance(error, TimeoutError)
+                reason = f"no answer within {CONNECT_S:g} s" if late else one_line(error)
+                problem = f"it must be the address of a running Dask scheduler ({reason})"
+                raise self._error(problem) from None
+            try:
+                self._refuse_unfit(found)
+                yield found
+            finally:
+                utils.sync(runner.loop, _close, found)
+        finally:
+            runner.stop()
+
+    def _refuse_unfit(self, client: "Client") -> None:
+        with suppress(TimeoutError):
+            client.wait_for_workers(1, timeout=CONNECT_S)
+        if not self._answer(client, client.nthreads):
+            raise self._error(f"it has no workers; start one with {START}")
+        problems = self._answer(client, client.run, unfit, fitness(), on_error="return")
+        for worker, problem in problems.items():
+            if problem:
+                words = one_line(problem) if isinstance(problem, Exception) else problem
+                raise self._error(f"its worker {worker} cannot be used: {words}")
+
+    def _answer(self, client: "Client", question: Callable[..., Any], *of: Any, **more: Any) -> Any:
+        """Return the answer to a question that a client puts to the scheduler or its workers."""
+        try:
+            if client.status == "running":
+                return client.sync(question, *of, callback_timeout=ANSWER_S, **more)
+        except TimeoutError:
+            raise self._error(f"no answer within {ANSWER_S:g} s") from None
+        except OSError:
+            pass
+        raise self._gone()
+
     def _next(self, client: "Client", ended: "SimpleQueue[Future[Response]]") -> "Future[Response]":
         """Wait for the next job that ends; raise ClusterError when nobody is left to end one."""
         alone_since = time.monotonic()
         while True:
             with suppress(Empty):
                 return ended.get(timeout=LOOK_S)
-            if workers_of(client, self.address):
+            if self._answer(client, client.nthreads):
                 alone_since = time.monotonic()
             elif time.monotonic() - alone_since > PATIENCE_S:
-                raise ClusterError(self.address, "its workers have all gone; start another one")
+                raise self._error("its workers have all gone; start another one")
 
     def _response(self, client: "Client", task: "Future[Response]") -> Response:
-        """Return a job's response, or the failure as which it ended.
-
-        Raises
-        ------
-        ClusterError
-            If it must not be run, or the scheduler has gone.
-        """
+        """Return a job's response, or the failure as which it ended."""
         from distributed import KilledWorker
 
         try:
             return task.result()
         except RefusedError as error:
-            raise ClusterError(self.address, str(error)) from None
+            raise self._error(str(error)) from None
         except KilledWorker:
             return Response.failure("every worker that ran this case died")
         except (Exception, CancelledError) as error:
             if isinstance(error, CancelledError) or client.status != "running":
-                raise gone(self.address) from None
+                raise self._gone() from None
             return Response.failure(one_line(error))
+
+    def _error(self, problem: str) -> ClusterError:
+        return ClusterError(self.address, problem)
+
+    def _gone(self) -> ClusterError:
+        return self._error("its scheduler has gone")
+
+
+async def connected(address: str) -> "Client":
+    """Return a client of a scheduler, or raise whatever Dask does."""
+    from distributed import Client
+    from distributed.comm.addressing import get_address_host_port
+
+    # Dask itself would try again and again where nobody listens
+    _, writer = await asyncio.open_connection(*get_address_host_port(address, strict=True))
+    writer.close()
+    client = Client(address, asynchronous=True, timeout=CONNECT_S, set_as_default=False)
+    try:
+        await client
+        return client
+    except BaseException:
+        await _close(client)
+        raise
+
+
+async def _close(client: "Client") -> None:
+    with suppress(OSError):
+        await client.close(timeout=CLOSE_S)

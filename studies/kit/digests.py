@@ -2,14 +2,13 @@
 
 import gzip
 import hashlib
-import json
 import os
 import zlib
 from collections.abc import Iterable
 from pathlib import Path
 
 from studies.kit.journal import PACKED, PROVENANCE, FolderError
-from studies.kit.provenance import record_of, write_text
+from studies.kit.provenance import record_of, write_record
 
 
 def seal(folder: Path) -> None:
@@ -24,8 +23,7 @@ def seal(folder: Path) -> None:
     """
     tables = sorted([*folder.glob("*.csv"), *folder.glob(f"*.csv{PACKED}")])
     kept = {path.name.removesuffix(PACKED): digest(path) for path in tables}
-    text = json.dumps(record_of(folder) | {"tables": kept}, indent=2)
-    write_text(folder / PROVENANCE, text + "\n")
+    write_record(folder / PROVENANCE, record_of(folder) | {"tables": kept})
 
 
 def digest(path: Path) -> str:

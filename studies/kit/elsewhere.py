@@ -1,26 +1,16 @@
 """Rows of other results folders: of engines in an environment of their own, of another machine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from engines import ENGINES
-from studies.kit.identity import Makers, changed, why
+from studies.kit.identity import Makers, sorted_rows, why
 from studies.kit.jobs import Job
-from studies.kit.journal import (
-    FORMAT,
-    JOURNAL,
-    PROVENANCE,
-    FolderError,
-    Journal,
-    Kept,
-    Row,
-    belongs_to,
-    differences,
-    rows_in,
-)
+from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Kept, Row, rows_of
 from studies.kit.provenance import record_of
-from studies.kit.streams import say
+from studies.kit.refusing import say
 from studies.sources.registry import resolve
 
 OPTION = "--also"
@@ -44,6 +34,18 @@ class Elsewhere(NamedTuple):
     made: Row
 
 
+@contextmanager
+def _blamed(folder: Path) -> Iterator[None]:
+    """Refuse a folder by the option that it was named by."""
+    problem = f"it must be a results folder, with its {JOURNAL} and {PROVENANCE}"
+    try:
+        yield
+    except FolderError as error:
+        raise FolderError(folder, error.problem, OPTION) from error
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise FolderError(folder, problem, OPTION) from error
+
+
 def read(folder: Path, subject: Mapping[str, Any]) -> Elsewhere:
     """Read results of a study with certain settings.
 
@@ -52,23 +54,12 @@ def read(folder: Path, subject: Mapping[str, Any]) -> Elsewhere:
     FolderError
         If the folder holds no such results.
     """
-    problem = f"it must be a results folder, with its {JOURNAL} and {PROVENANCE}"
-    path = folder / JOURNAL
-    if not (path.is_file() and (folder / PROVENANCE).is_file()):
-        raise FolderError(folder, problem, OPTION)  # on a pipe a run would hang
-    try:
-        found = belongs_to(path)
-        expected = {"journal": FORMAT, **subject}
-        if found != expected:
-            words = "it must hold results of the same study and settings"
-            raise FolderError(folder, f"{words} ({differences(found, expected)})")
+    with _blamed(folder):
         record = record_of(folder)
-        made = {name: record[name] for name in ("git", "machine")}
-        return Elsewhere(folder, rows_in(folder, path.read_bytes()), made)
-    except FolderError as error:
-        raise FolderError(folder, error.problem, OPTION) from error
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        raise FolderError(folder, problem, OPTION) from error
+        if not (folder / JOURNAL).is_file():
+            raise FileNotFoundError  # on a pipe a run would hang
+        kept = rows_of(folder / JOURNAL, subject)
+        return Elsewhere(folder, kept, {name: record[name] for name in ("git", "machine")})
 
 
 def take(other: Elsewhere, jobs: Sequence[Job], journal: Journal, makers: Makers) -> dict[str, Any]:
@@ -96,30 +87,24 @@ def take(other: Elsewhere, jobs: Sequence[Job], journal: Journal, makers: Makers
     FolderError
         If there is no row of the jobs, or none that would be made so here.
     """
-    entries, made_by = other.kept
-    asked = {key: job for job in jobs if (key := job.key) in entries}
-    if not asked:
-        raise FolderError(other.folder, "it holds no row of what is asked for", OPTION)
-    if not all(job.has_made(entries[key].row) for key, job in asked.items()):
-        raise FolderError(other.folder, f"its {JOURNAL} has a row of something else", OPTION)
+    with _blamed(other.folder):
+        valid, stale = sorted_rows(jobs, other.kept, makers, other.folder)
+        if not valid:
+            words = f"all its rows are stale ({why(stale)})"
+            raise FolderError(
+                other.folder, words if stale else "it holds no row of what is asked for"
+            )
     versions: dict[str, str] = {}
-    stale, taken = [], 0
-    for key, job in asked.items():
-        row, then, now = entries[key].row, made_by[entries[key].made], makers.of(job)
-        known = key in journal.entries and not changed(journal.maker_of(key), now)
-        if changed(then, now):
-            stale.append((job.source, then, now))
-        elif not known and _is_wanted(row):
-            journal.append(key, row, then)
-            taken += 1
-            engine = job.asked.engine
-            packages = ENGINES[engine].packages if engine else ()
-            versions |= {name: then[name] for name in packages}
-    if len(stale) == len(asked):
-        raise FolderError(other.folder, f"all its rows are stale ({why(stale)})", OPTION)
+    here, _ = sorted_rows(jobs, journal.kept, makers, journal.folder)
+    taken = [key for key, row in valid.items() if key not in here and _is_wanted(row)]
+    for key in taken:
+        row, then = valid[key], other.kept.maker_of(key)
+        journal.append(key, row, then)
+        engine = resolve(row["source"]).engine
+        versions |= {name: then[name] for name in (ENGINES[engine].packages if engine else ())}
     if stale:
         say(f"not taken from {str(other.folder)!r}: {why(stale)}")
-    return {**other.made, "engines": versions, "rows": taken}
+    return {**other.made, "engines": versions, "rows": len(taken)}
 
 
 def _is_wanted(row: Row) -> bool:

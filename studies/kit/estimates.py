@@ -2,12 +2,9 @@
 
 import contextlib
 import os
-from collections.abc import Sequence
 from pathlib import Path
 
 from studies.kit.arguments import BadInputError
-from studies.kit.provenance import usable_cores
-from studies.sources.registry import DEFAULT_EFFORT, Effort, resolve
 
 DAY_S = 86_400.0
 """What takes longer is begun only with --yes."""
@@ -23,36 +20,6 @@ PROCESS_BYTES = 2e8
 
 CONTAINER = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 """Where Linux says how much memory a container may use."""
-
-
-def expected_s(
-    cases: int,
-    sources: Sequence[str],
-    *,
-    jobs: int | None,
-    time_limit_s: float,
-    effort: Effort = DEFAULT_EFFORT,
-) -> float:
-    """Return about how long so many cases take each of the sources [s].
-
-    Parameters
-    ----------
-    cases : int
-    sources : sequence of str
-    jobs : int or None
-        Processes for the engines; None for the number of cores.
-    time_limit_s : float
-        After which a case is given up [s].
-    effort : Effort, optional
-        A time grows as the step falls.
-    """
-    total = 0.0
-    for name in sources:
-        kind = resolve(name).kind
-        finer = max(1e-3 / float(effort.options(name).get("step", 1e-3)), 1.0)
-        workers = (jobs or usable_cores()) if kind == "engine" else 1
-        total += cases * min(CASE_S[kind] * finer, time_limit_s) / workers
-    return total
 
 
 def refuse_days(asked: str, seconds: float, yes: bool) -> None:

@@ -10,13 +10,10 @@ from analytic.kernels.compiled import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
 from analytic.response import Response
 from engines.parts.compiled import PACKAGE
-from studies.kit import provenance
-from studies.kit.arguments import refuse_given
-from studies.kit.estimates import PROCESS_BYTES, refuse_excess
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool, StartError
-from studies.kit.processes import ask_loaded, ask_one, compile_ahead, outcome_of
-from studies.kit.streams import say
+from studies.kit.processes import ask_apart, compile_ahead, outcome_of
+from studies.kit.refusing import say
 from studies.sources.registry import Source
 
 FEW = 32
@@ -88,44 +85,13 @@ class Local:
                 if Kernel.tell is not None and not are_compiled(PACKAGE):
                     Kernel.tell("compiling what engines need, once: some 10 to 40 s")
                 compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
-            put = ask_loaded if many else ask_one
             # the source travels with the job, so that a worker needs no registry of its own
             tasks = {
-                pool.schedule(put, (self.ask, job, job.asked), self.time_limit_s): number
-                for number, job in jobs.items()
+                pool.schedule(ask_apart, (self.ask, job, job.asked, many), self.time_limit_s): n
+                for n, job in jobs.items()
             }
             try:
                 for task in as_completed(tasks):
-                    yield tasks[task], outcome_of(task.result, self.time_limit_s)
+                    yield tasks[task], outcome_of(task, self.time_limit_s)
             except StartError as error:
                 raise OSError(f"a process could not be started ({error})") from error
-
-
-def choose(
-    jobs: int | None,
-    time_limit_s: float,
-    cluster: str | None,
-    ask: Callable[[Job, Source], Response] = ask,
-    *,
-    at_once: bool = False,
-) -> Executor:
-    """Return the executor that the command line's --jobs, --time-limit and --cluster ask for.
-
-    Raises
-    ------
-    BadInputError
-        If there are more processes than the memory holds, or their number is given beside a
-        cluster, whose workers are as many as were started.
-    studies.kit.dask_client.ClusterError
-        If the cluster cannot be used.
-    """
-    if cluster is None:
-        refuse_excess(f"--jobs is {jobs}", (jobs or 1) * PROCESS_BYTES)
-        return Local(jobs or provenance.usable_cores(), time_limit_s, ask, at_once)
-    # asyncio takes a tenth of a second to load, and most runs have no cluster
-    from studies.kit.cluster import Cluster
-
-    refuse_given({"jobs": jobs}, "only without --cluster")
-    chosen = Cluster(cluster, time_limit_s, ask)
-    chosen.check()
-    return chosen

@@ -20,6 +20,9 @@ ROOT = Path(__file__).parents[__name__.count(".")]
 
 PACKAGES = ("analytic", "engines", "studies")
 
+OF_TYPES = ("annotation", "returns")
+"""Parts of a syntax tree that are annotations."""
+
 Name = tuple[str, str]
 """A module and what is defined at its top level; all of it where that is empty."""
 
@@ -235,26 +238,67 @@ def read(name: str, path: Path) -> Module:
     """Return the definitions of a module."""
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
     found = Module()
-    for statement in ast.parse(path.read_bytes()).body:
-        _take_in(statement, package, found)
+    for statement in _Bare().visit(ast.parse(path.read_bytes())).body:
+        if isinstance(statement, ast.Import | ast.ImportFrom):
+            found.links |= _links(statement, package)
+            continue
+        piece = _piece(statement, package)
+        for bound in set(_bound(statement, found)) or {""}:
+            found.pieces.setdefault(bound, []).append(piece)
+        if not isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            found.links |= piece.links
     return found
 
 
-def _take_in(statement: ast.stmt, package: str, found: Module) -> None:
-    if _is_comment(statement):
-        return
-    if isinstance(statement, ast.If) and _is_for_type_checkers(statement.test):
-        for inside in statement.orelse:
-            _take_in(inside, package, found)
-        return
-    if isinstance(statement, ast.Import | ast.ImportFrom):
-        found.links |= _links(statement, package)
-        return
-    piece = _Reading(package).read(statement)
-    for name in set(_bound(statement, found)) or {""}:
-        found.pieces.setdefault(name, []).append(piece)
-    if not isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        found.links |= piece.links
+class _Bare(ast.NodeTransformer):
+    """Takes away what runs nowhere: docstrings, annotations, and what type checkers alone see."""
+
+    def visit(self, node: ast.AST) -> Any:
+        for name in OF_TYPES:
+            if hasattr(node, name):
+                setattr(node, name, None)
+        return super().visit(node)
+
+    def visit_Expr(self, node: ast.Expr) -> ast.AST | None:
+        value = node.value
+        is_text = isinstance(value, ast.Constant) and isinstance(value.value, str)
+        return None if is_text else self.generic_visit(node)
+
+    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
+        self.generic_visit(node)
+        name = node.test.attr if isinstance(node.test, ast.Attribute) else node.test
+        name = name.id if isinstance(name, ast.Name) else name
+        return node.orelse if name == "TYPE_CHECKING" else node
+
+
+def _piece(statement: ast.stmt, package: str) -> Piece:
+    """Return what a statement consists of."""
+    piece = Piece()
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            piece.links |= _links(node, package)
+        elif isinstance(node, ast.Name | ast.Attribute) and (chain := _chain(node)):
+            piece.uses.add(chain)
+    shape: list[str] = []
+    _add_shape(statement, shape)
+    piece.digest = hashlib.sha256("\n".join(shape).encode()).hexdigest()[:16]
+    return piece
+
+
+def _add_shape(value: object, shape: list[str]) -> None:
+    """Add to a shape that of a part of a syntax tree."""
+    if isinstance(value, ast.AST):
+        shape.append(type(value).__name__)
+        for name in value._fields:
+            if name not in OF_TYPES:
+                _add_shape(getattr(value, name, None), shape)
+    elif isinstance(value, list):
+        shape.append("[")
+        for inside in value:
+            _add_shape(inside, shape)
+        shape.append("]")
+    else:
+        shape.append(repr(value))
 
 
 def _bound(statement: ast.AST, found: Module) -> Iterator[str]:
@@ -292,51 +336,6 @@ def _links(node: ast.Import | ast.ImportFrom, package: str) -> dict[str, Name]:
     return {alias.asname or alias.name: (base, alias.name) for alias in node.names}
 
 
-class _Reading:
-    """One pass over a statement's syntax tree."""
-
-    def __init__(self, package: str) -> None:
-        self._package = package
-        self._shape: list[str] = []
-        self._piece = Piece()
-
-    def read(self, statement: ast.stmt) -> Piece:
-        """Return what a statement consists of."""
-        self._see(statement)
-        digest = hashlib.sha256("\n".join(self._shape).encode()).hexdigest()
-        self._piece.digest = digest[:16]
-        return self._piece
-
-    def _see(self, node: ast.AST) -> None:
-        if _is_comment(node):
-            return
-        if isinstance(node, ast.If) and _is_for_type_checkers(node.test):
-            self._see_all(node.orelse)
-            return
-        if isinstance(node, ast.Import | ast.ImportFrom):
-            self._piece.links |= _links(node, self._package)
-        elif isinstance(node, ast.Name | ast.Attribute) and (chain := _chain(node)):
-            self._piece.uses.add(chain)
-        self._shape.append(type(node).__name__)
-        for name in node._fields:
-            if name not in ("annotation", "returns"):
-                self._see_field(getattr(node, name, None))
-
-    def _see_field(self, value: object) -> None:
-        if isinstance(value, ast.AST):
-            self._see(value)
-        elif isinstance(value, list):
-            self._shape.append("[")
-            self._see_all(value)
-            self._shape.append("]")
-        else:
-            self._shape.append(repr(value))
-
-    def _see_all(self, values: Iterable[object]) -> None:
-        for value in values:
-            self._see_field(value)
-
-
 def _chain(node: ast.Name | ast.Attribute) -> str:
     """Return a name with its attributes; an empty string if it begins with something else."""
     parts: list[str] = []
@@ -345,17 +344,3 @@ def _chain(node: ast.Name | ast.Attribute) -> str:
         parts.append(inner.attr)
         inner = inner.value
     return ".".join([inner.id, *reversed(parts)]) if isinstance(inner, ast.Name) else ""
-
-
-def _is_comment(node: ast.AST) -> bool:
-    """Whether a statement is nothing but a string, as docstrings are."""
-    return (
-        isinstance(node, ast.Expr)
-        and isinstance(node.value, ast.Constant)
-        and isinstance(node.value.value, str)
-    )
-
-
-def _is_for_type_checkers(test: ast.expr) -> bool:
-    name = test.attr if isinstance(test, ast.Attribute) else getattr(test, "id", "")
-    return name == "TYPE_CHECKING"

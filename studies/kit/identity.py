@@ -14,11 +14,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
 from studies.kit.jobs import Job, plain
-from studies.kit.journal import Maker, named
+from studies.kit.journal import JOURNAL, FolderError, Kept, Maker, Row, named
 from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
 from studies.sources.registry import Source
 
@@ -140,14 +140,40 @@ def changed(then: Maker, now: Maker) -> list[str]:
     ]
 
 
-def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
-    """Say of rows that must be made anew how many there are of each source, and why.
+Stale: TypeAlias = tuple[str, Maker, Maker]
+"""The source of a row, what made it, and what would make it now."""
 
-    Parameters
-    ----------
-    stale : iterable of (str, Maker, Maker)
-        The source of a row, what made it, and what would make it now.
+
+def sorted_rows(
+    jobs: Iterable[Job], kept: Kept, makers: Makers, folder: Path
+) -> tuple[dict[str, Row], list[Stale]]:
+    """Return the kept rows of jobs that would be made so now, by their keys, and the others.
+
+    Raises
+    ------
+    FolderError
+        If a row of the folder is not of the job which its key names.
     """
+    valid: dict[str, Row] = {}
+    stale = []
+    for job in jobs:
+        key = job.key
+        if key not in kept.entries:
+            continue
+        row = kept.entries[key].row
+        if not job.has_made(row):
+            problem = f"its {JOURNAL} has a row of something else under the key {key}"
+            raise FolderError(folder, problem)
+        then, now = kept.maker_of(key), makers.of(job)
+        if changed(then, now):
+            stale.append((job.source, then, now))
+        else:
+            valid[key] = row
+    return valid, stale
+
+
+def why(stale: Iterable[Stale]) -> str:
+    """Say of rows that must be made anew how many there are of each source, and why."""
     counts = Counter(
         (source, tuple(_said(name, then, now) for name in changed(then, now)))
         for source, then, now in stale

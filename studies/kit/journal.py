@@ -5,6 +5,7 @@ import gzip
 import hashlib
 import json
 import os
+import re
 import shutil
 import stat
 import zlib
@@ -14,7 +15,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from studies.kit.drafts import draft
-from studies.kit.sealed import seal, unseal
 
 Row = dict[str, Any]
 """One line of a table."""
@@ -30,6 +30,9 @@ JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
 
 PACKED = ".gz"
 """What the name of a packed journal or table ends in; one that is not packed is the newer."""
+
+
+_LINE = re.compile(rb'\{"crc": "([0-9a-f]{8})", (.*\})', re.DOTALL)
 
 
 class FolderError(Exception):
@@ -53,6 +56,10 @@ class Kept(NamedTuple):
     entries: dict[str, Entry]
     makers: dict[str, Maker]
 
+    def maker_of(self, key: str) -> Maker:
+        """Return what made the row of a key; KeyError if there is none."""
+        return self.makers[self.entries[key].made]
+
 
 class Journal:
     """Rows on disk, appended one at a time; a line that was not completed does not count.
@@ -65,7 +72,7 @@ class Journal:
     """
 
     def __init__(self, path: Path, kept: Kept) -> None:
-        self.entries, self._makers = kept
+        self.folder, self.kept = path.parent, kept
         self._path = path
         self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW)
 
@@ -79,15 +86,11 @@ class Journal:
         """
         self.check()
         made = named(maker)
-        if made not in self._makers:
+        if made not in self.kept.makers:
             _write(self._descriptor, {"made": made, "of": dict(maker)})
-            self._makers[made] = maker
+            self.kept.makers[made] = maker
         _write(self._descriptor, {"key": key, "made": made, "row": row})
-        self.entries[key] = Entry(row, made)
-
-    def maker_of(self, key: str) -> Maker:
-        """Return what made the row of a key; KeyError if there is none."""
-        return self._makers[self.entries[key].made]
+        self.kept.entries[key] = Entry(row, made)
 
     def check(self) -> None:
         """Raise FolderError if the folder, or the journal in it, is no longer there."""
@@ -98,11 +101,6 @@ class Journal:
         if not there:
             problem = f"its {JOURNAL} was removed during the run, and its rows with it"
             raise FolderError(self._path.parent, problem)
-
-    def stranger(self, key: str) -> FolderError:
-        """Return the refusal of a row that is not one of the job which its key names."""
-        problem = f"its {JOURNAL} has a row of something else under the key {key}"
-        return FolderError(self._path.parent, problem)
 
     def close(self) -> None:
         """Bring the rows to the disk."""
@@ -133,7 +131,7 @@ def open_journal(
         meanwhile.
     """
     path = folder / JOURNAL
-    header = {"journal": FORMAT, **identity}
+    header = seal({"journal": FORMAT, **identity})
     with ExitStack() as stack:
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -141,8 +139,8 @@ def open_journal(
             stack.enter_context(_locked(folder))
             _unpack(path)
             if _refuse_strangers(path, header, products):
-                _begin(path, header)
-            journal = Journal(path, _finished(path, header))
+                path.write_bytes(header)
+            journal = Journal(path, _finished(path, identity))
         except (FileExistsError, NotADirectoryError) as error:
             raise FolderError(folder, "it must be a folder, not a file") from error
         except OSError as error:
@@ -164,7 +162,7 @@ def _locked(folder: Path) -> Iterator[None]:
         yield
 
 
-def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[str]) -> bool:
+def _refuse_strangers(path: Path, header: bytes, products: Sequence[str]) -> bool:
     """Refuse a folder with files that are not ours; say whether its journal has yet to begin."""
     folder = path.parent
     for name in (LOCK, JOURNAL, JOURNAL + PACKED, PROVENANCE):
@@ -179,7 +177,7 @@ def _refuse_strangers(path: Path, header: Mapping[str, Any], products: Sequence[
         return False
     content = path.read_bytes() if path.exists() else b""
     # a run may have been killed while it wrote the first line
-    if not seal(header).startswith(content) or content.endswith(b"\n"):
+    if not header.startswith(content) or content.endswith(b"\n"):
         return False
     strange = [name for name in (PROVENANCE, *products) if os.path.lexists(folder / name)]
     if (folder / LOCK).exists() and (folder / LOCK).stat().st_size:
@@ -201,22 +199,10 @@ def _unpack(path: Path) -> None:
         raise FolderError(path.parent, f"its {packed.name} is damaged") from error
 
 
-def _begin(path: Path, header: Mapping[str, Any]) -> None:
-    start = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o644)
-    try:
-        _write(start, header)
-    finally:
-        os.close(start)
-
-
-def _finished(path: Path, header: Mapping[str, Any]) -> Kept:
+def _finished(path: Path, identity: Mapping[str, Any]) -> Kept:
     """Read the finished rows, and cut off a last line that a killed run left incomplete."""
-    found = belongs_to(path)
-    if found != header:
-        words = "it must be new, or hold results of the same study and settings"
-        raise FolderError(path.parent, f"{words} ({differences(found, header)})")
+    entries, makers = rows_of(path, identity, "it must be new, or hold")
     content = path.read_bytes()
-    entries, makers = rows_in(path.parent, content)
     whole = content.rfind(b"\n") + 1
     if whole < len(content):
         os.truncate(path, whole)
@@ -224,23 +210,40 @@ def _finished(path: Path, header: Mapping[str, Any]) -> Kept:
     return Kept(good, makers)
 
 
-def belongs_to(path: Path) -> Row:
-    """Return a journal's first line.
+def rows_of(path: Path, identity: Mapping[str, Any], must: str = "it must hold") -> Kept:
+    """Return what a journal holds, failures among it.
+
+    Parameters
+    ----------
+    path : Path
+    identity : mapping
+        Study and settings, which must be those of the journal.
+    must : str, optional
+        How the refusal of another one begins.
 
     Raises
     ------
     FolderError
-        If the file is no journal, or its first line is damaged.
+        If the file is no journal, is damaged, or belongs to something else.
     """
-    with path.open("rb") as file:
-        line = file.readline().removesuffix(b"\n")
+    content = path.read_bytes()
+    line = content.partition(b"\n")[0]
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict) or "journal" not in found:
         raise FolderError(path.parent, f"its {path.name} is not a journal of results")
-    return _entry(path.parent, 1, line) if "crc" in found else found
+    found = _entry(path.parent, 1, line) if "crc" in found else found
+    if found != (asked := {"journal": FORMAT, **identity}):
+        there, here = _leaves(found), _leaves(asked)
+        other = "; ".join(
+            f"{name}: {json.dumps(there.get(name))} there, {json.dumps(here.get(name))} here"
+            for name in here | there
+            if there.get(name) != here.get(name)
+        )
+        raise FolderError(path.parent, f"{must} results of the same study and settings ({other})")
+    return rows_in(path.parent, content)
 
 
 def rows_in(folder: Path, content: bytes) -> Kept:
@@ -274,16 +277,6 @@ def named(maker: Maker) -> str:
     return hashlib.sha256(json.dumps(dict(maker), sort_keys=True).encode()).hexdigest()[:12]
 
 
-def differences(found: Mapping[str, Any], here: Mapping[str, Any]) -> str:
-    """Return where what a folder belongs to is not what is asked for, in words."""
-    there, ours = _leaves(found), _leaves(here)
-    names = [name for name in (*ours, *there) if there.get(name) != ours.get(name)]
-    return "; ".join(
-        f"{name}: {json.dumps(there.get(name))} there, {json.dumps(ours.get(name))} here"
-        for name in dict.fromkeys(names)
-    )
-
-
 def _leaves(values: Mapping[str, Any], prefix: str = "") -> Row:
     """Return the innermost values of nested mappings, each with its path."""
     leaves: Row = {}
@@ -293,6 +286,27 @@ def _leaves(values: Mapping[str, Any], prefix: str = "") -> Row:
         else:
             leaves[prefix + name] = value
     return leaves
+
+
+def seal(entry: Mapping[str, Any]) -> bytes:
+    """Return an entry as a line of JSON whose first member is the checksum of the others."""
+    text = json.dumps(entry).encode()[1:]
+    return b'{"crc": "%08x", %b\n' % (zlib.crc32(text), text)
+
+
+def unseal(line: bytes) -> Row:
+    """Return the entry of a line, which comes without its end.
+
+    Raises
+    ------
+    ValueError
+        If the line is not what `seal` made. Every change of a single bit is noticed, and of two,
+        and of any within four bytes.
+    """
+    match = _LINE.fullmatch(line)
+    if match is None or int(match[1], 16) != zlib.crc32(match[2]):
+        raise ValueError("the line is damaged")
+    return dict(json.loads(b"{" + match[2]))
 
 
 def _entry(folder: Path, number: int, line: bytes) -> Row:

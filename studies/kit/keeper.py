@@ -9,6 +9,7 @@ import os
 import resource
 import signal
 import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
@@ -27,9 +28,11 @@ def work_in_a_child() -> None:
     _end_with_parent(signal.SIGTERM)
     _control(ADOPT, 1)
     signal.signal(signal.SIGTERM, lambda *_: _end(-signal.SIGTERM))
-    child = os.fork()
+    child, ended = os.fork(), 0
     if child:
-        _end(_exit_code_of(child))
+        while ended != child:  # or one of those that were left to this process
+            ended, status = os.wait()
+        _end(os.waitstatus_to_exitcode(status))
     os.setsid()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     _end_with_parent(signal.SIGKILL)
@@ -43,14 +46,6 @@ def _end_with_parent(number: int) -> None:
 
 def _control(what: int, value: int) -> None:
     ctypes.CDLL(None).prctl(what, ctypes.c_ulong(value), 0, 0, 0)
-
-
-def _exit_code_of(child: int) -> int:
-    """Wait for a child, and for those that were left to this process meanwhile."""
-    while True:
-        ended, status = os.wait()
-        if ended == child:
-            return os.waitstatus_to_exitcode(status)
 
 
 def _end(code: int) -> NoReturn:
@@ -70,13 +65,10 @@ def _end(code: int) -> NoReturn:
     os._exit(code)
 
 
-def _children() -> list[int]:
-    return [int(path.name) for path in Path("/proc").glob("[0-9]*") if _parent(path) == os.getpid()]
-
-
-def _parent(process: Path) -> int:
-    try:
-        # behind its name, which may be anything: state, parent, ...
-        return int((process / "stat").read_text(errors="replace").rpartition(")")[2].split()[1])
-    except OSError:
-        return 0
+def _children() -> Iterator[int]:
+    for process in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            # behind its name, which may be anything: state, parent, ...
+            words = (process / "stat").read_text(errors="replace").rpartition(")")[2].split()
+            if int(words[1]) == os.getpid():
+                yield int(process.name)

@@ -1,6 +1,6 @@
 """Options that studies share: each a dataclass, which is the type of a command's parameter."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -18,11 +18,13 @@ from studies.kit.arguments import (
     Positive,
     Step,
     one_of,
+    refuse_given,
     several_or_none,
 )
-from studies.kit.estimates import CASE_BYTES, expected_s, refuse_days, refuse_excess
-from studies.kit.executors import Executor, choose
+from studies.kit.estimates import CASE_BYTES, CASE_S, PROCESS_BYTES, refuse_days, refuse_excess
+from studies.kit.executors import Executor, Local
 from studies.kit.jobs import Job, ask
+from studies.kit.provenance import usable_cores
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, Source, resolve
 
 
@@ -52,10 +54,20 @@ class Computing:
 
         Raises
         ------
-        BadInputError, studies.kit.dask_client.ClusterError
-            As `studies.kit.executors.choose`.
+        BadInputError
+            If there are more processes than the memory holds, or their number is given beside a
+            cluster, whose workers are as many as were started, or that cannot be used.
         """
-        return choose(self.jobs, self.time_limit, self.cluster, ask, at_once=at_once)
+        if self.cluster is None:
+            refuse_excess(f"--jobs is {self.jobs}", (self.jobs or 1) * PROCESS_BYTES)
+            return Local(self.jobs or usable_cores(), self.time_limit, ask, at_once)
+        # asyncio takes a tenth of a second to load, and most runs have no cluster
+        from studies.kit.cluster import Cluster
+
+        refuse_given({"jobs": self.jobs}, "only without --cluster")
+        chosen = Cluster(self.cluster, self.time_limit, ask)
+        chosen.check()
+        return chosen
 
     def refuse_too_much(
         self,
@@ -87,8 +99,13 @@ class Computing:
         BadInputError
         """
         refuse_excess(asked, cases * (case_bytes + len(sources) * CASE_BYTES))
-        limit = self.time_limit
-        seconds = expected_s(cases, sources, jobs=self.jobs, time_limit_s=limit, effort=effort)
+        seconds = 0.0
+        for name in sources:
+            kind = resolve(name).kind
+            # a time grows as the step falls
+            finer = max(1e-3 / float(effort.options(name).get("step", 1e-3)), 1.0)
+            workers = (self.jobs or usable_cores()) if kind == "engine" else 1
+            seconds += cases * min(CASE_S[kind] * finer, self.time_limit) / workers
         refuse_days(asked, seconds, yes)
 
 
@@ -162,7 +179,12 @@ class Yours:
             If one takes no step of its own, or none takes what is given.
         """
         asked = {name: resolve(name) for name in sources}
-        self._refuse_idle(asked.values(), block)
+        idle = not any(source.engine for source in asked.values())
+        if self.friction is not None and idle and not isinstance(block, SlidingBlock):
+            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
+        if self.dt is not None and not any(source.stepping for source in asked.values()):
+            words = "a solver or an engine that takes equal steps"
+            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
         chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
         for name, source in asked.items():
             if self.friction is not None and source.engine:
@@ -171,14 +193,6 @@ class Yours:
                 self._refuse_uneven(source)
                 chosen[name]["step"] = self.dt * block.p
         return chosen
-
-    def _refuse_idle(self, asked: Collection[Source], block: System) -> None:
-        idle = not any(source.engine for source in asked)
-        if self.friction is not None and idle and not isinstance(block, SlidingBlock):
-            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
-        if self.dt is not None and not any(source.stepping for source in asked):
-            words = "a solver or an engine that takes equal steps"
-            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
 
     def _refuse_uneven(self, source: Source) -> None:
         if not source.accurate:

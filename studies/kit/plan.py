@@ -101,9 +101,12 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     subject = provenance.subject(study.name, **plan.settings)
     others = [elsewhere.read(folder, subject) for folder in running.also or ()]
     with open_journal(out, subject, study.products) as journal:
-        _refuse_a_part(out, [entry.row for entry in journal.entries.values()], plan.growing)
+        _refuse_a_part(out, [entry.row for entry in journal.kept.entries.values()], plan.growing)
         path = out / PROVENANCE
-        asked = {column: _short(values) for column, values in plan.growing.items()}
+        asked = {
+            column: str(values) if isinstance(values, range) else list(values)
+            for column, values in plan.growing.items()
+        }
         record = provenance.begin(path, subject, asked)
         jobs = plan.jobs() if callable(plan.jobs) else plan.jobs
         makers = Makers(plan.ask, plan.reduce)
@@ -125,7 +128,10 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
                 write_table(out / f"{name}.csv", table)
             computed = {"rows": len(rows), "computed": len(answered)}
             found: dict[str, Any] = computed if jobs else {}
-            found |= {"drivers": _listed(drivers)} if drivers else {}
+            if drivers:
+                # for each engine that this run asked what took its steps
+                words = {engine: ", ".join(sorted(drivers[engine])) for engine in sorted(drivers)}
+                found["drivers"] = words
             found |= {"also": taken} if taken else {}
             record["made"] = makers.of_tables(jobs, tabulate)
             provenance.finish(path, record, began, **found)
@@ -135,15 +141,6 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
 
 def _whole(name: str, rows: Sequence[Row]) -> Tables:
     return {name: pd.DataFrame(rows)}
-
-
-def _listed(drivers: Mapping[str, set[str]]) -> dict[str, str]:
-    """Return for each engine that this run asked what took its steps."""
-    return {engine: ", ".join(sorted(found)) for engine, found in sorted(drivers.items())}
-
-
-def _short(values: Sequence[Any]) -> Any:
-    return str(values) if isinstance(values, range) else list(values)
 
 
 def _refuse_a_part(folder: Path, rows: Iterable[Row], growing: Mapping[str, Sequence[Any]]) -> None:
@@ -183,7 +180,7 @@ def _going_on(journal: Journal, folder: Path, count: int) -> Iterator[None]:
         journal.check()
         if not count:
             raise
-        kept = f"{len(journal.entries)} of {count} rows are kept in {str(folder)!r}"
+        kept = f"{len(journal.kept.entries)} of {count} rows are kept in {str(folder)!r}"
         words = f"{stop}; " if str(stop) else ""
         text = f"{words}{kept}; the same command goes on from there"
         if isinstance(stop, KeyboardInterrupt):

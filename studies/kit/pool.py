@@ -1,32 +1,25 @@
 """Processes that do one task after another, whatever the tasks do to them.
 
-Each has a thread of this process, which waits for it no longer than a task may take, starts another
-in its place when it ends, and ends it with all that it started.
+Each is waited for no longer than its task may take; it is ended with all that it started, and
+another one is started when it is needed.
 """
 
-import atexit
 import os
 import resource
+import signal
 import sys
-import time
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import suppress
-from multiprocessing import get_context
+from multiprocessing import Pipe, get_context
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from queue import SimpleQueue
-from threading import Event, Thread
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import Any, Self
 
 from studies.kit.keeper import work_in_a_child
 from studies.kit.refusing import one_line
 from studies.kit.signals import left_to_this_process
 
-if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-
-LOOK_S = 0.1
-"""How long to wait for an answer before asking whether somebody is left to give it [s]."""
 LOADING_S = 300.0
 """How long a process may take to load what a task needs [s]."""
 ENDING_S = 5.0
@@ -35,33 +28,16 @@ MEMORY_BYTES = 4e9
 """What a process may take beside what it begins with [byte]; only Linux keeps it to that."""
 
 
-class EndedError(Exception):
-    """A process that ended before it gave an answer; a negative exit code is that of a signal."""
-
-    def __init__(self, exitcode: int) -> None:
-        super().__init__(exitcode)
-        self.exitcode = exitcode
-
-
-class OvertimeError(Exception):
-    """A task that took longer than it may."""
-
-
 class TaskError(Exception):
-    """What a task raised, in one line."""
+    """Why a task returns nothing, in one line: what it raised, or how its process ended."""
+
+
+class OvertimeError(TaskError):
+    """A task that took longer than it may."""
 
 
 class StartError(Exception):
     """A process that could not be started."""
-
-
-class Task(NamedTuple):
-    """What to call, and for how long at most [s]."""
-
-    future: Future[Any]
-    call: Callable[..., Any]
-    arguments: tuple[Any, ...]
-    limit_s: float
 
 
 class Pool:
@@ -73,13 +49,10 @@ class Pool:
     """
 
     def __init__(self, workers: int) -> None:
-        self._tasks: SimpleQueue[Task | None] = SimpleQueue()
-        self._stopped = Event()
-        self._threads = [Thread(target=self._serve, daemon=True) for _ in range(workers)]
-        with left_to_this_process():
-            for thread in self._threads:
-                thread.start()
-        atexit.register(self.stop)
+        # a thread for each process: who starts one must live as long
+        self._threads = ThreadPoolExecutor(workers)
+        self._idle: list[_Worker] = []
+        self._stopped, self._stop = Pipe(duplex=False)
 
     def __enter__(self) -> Self:
         return self
@@ -95,51 +68,50 @@ class Pool:
         Returns
         -------
         Future
-            Of what it returns; EndedError, OvertimeError, TaskError or StartError if nothing, and
-            CancelledError once the pool is stopped.
+            Of what it returns; TaskError if nothing, OvertimeError if not in time, StartError if
+            there is no process, and CancelledError once the pool is stopped.
         """
-        if self._stopped.is_set():
+        if self._stop.closed:
             raise CancelledError
-        task = Task(Future(), call, arguments, limit_s)
-        self._tasks.put(task)
-        return task.future
+        with left_to_this_process():
+            return self._threads.submit(self._do, call, arguments, limit_s)
 
     def stop(self) -> None:
         """End every process; return when they have ended."""
-        atexit.unregister(self.stop)
-        self._stopped.set()
-        for _ in self._threads:
-            self._tasks.put(None)
-        for thread in self._threads:
-            thread.join()
-
-    def _serve(self) -> None:
-        worker: _Worker | None = None
-        while task := self._tasks.get():
-            try:
-                if worker and not worker.process.is_alive():
-                    worker.end()
-                    worker = None
-                worker = worker or _Worker(self._stopped)
-                task.future.set_result(worker.answer(task))
-            except TaskError as error:
-                task.future.set_exception(error)
-            except BaseException as error:
-                if worker:
-                    worker.end()
-                worker, known = None, isinstance(error, Exception)
-                task.future.set_exception(error if known else TaskError(one_line(error)))
-        if worker:
+        self._stop.close()
+        self._threads.shutdown(cancel_futures=True)
+        for worker in self._idle:
             worker.end()
+        self._stopped.close()
+
+    def _do(self, call: Callable[..., Any], arguments: tuple[Any, ...], limit_s: float) -> Any:
+        worker = self._worker()
+        try:
+            done, answer = worker.answer(call, arguments, limit_s)
+        except BaseException as error:
+            worker.end()
+            if isinstance(error, Exception):
+                raise
+            raise TaskError(one_line(error)) from None
+        self._idle.append(worker)
+        if not done:
+            raise TaskError(answer)
+        return answer
+
+    def _worker(self) -> "_Worker":
+        with suppress(IndexError):
+            worker = self._idle.pop()
+            if worker.process.is_alive():
+                return worker
+            worker.end()
+        return _Worker(self._stopped)
 
 
 class _Worker:
-    """A process, as the thread sees it that gives it tasks."""
+    """A process, as the thread sees it that gives it a task."""
 
-    def __init__(self, stopped: Event) -> None:
+    def __init__(self, stopped: Connection) -> None:
         self._stopped = stopped
-        if stopped.is_set():
-            raise CancelledError
         # engines hold state of their own: no fork of a process that has loaded them
         context = get_context("spawn")
         try:
@@ -150,15 +122,12 @@ class _Worker:
             raise StartError(str(error)) from error
         theirs.close()
 
-    def answer(self, task: Task) -> Any:
-        """Return what a task returns; see `Pool.schedule`."""
+    def answer(self, call: Callable[..., Any], arguments: tuple[Any, ...], limit_s: float) -> Any:
+        """Return whether a call succeeded, and what it returned or raised."""
         with suppress(BrokenPipeError):  # it has ended: its exit code says more
-            self._channel.send((task.call, task.arguments))
+            self._channel.send((call, arguments))
         self._receive(LOADING_S)
-        done, answer = self._receive(task.limit_s)
-        if not done:
-            raise TaskError(answer)
-        return answer
+        return self._receive(limit_s)
 
     def end(self) -> None:
         """End the process and all that it started."""
@@ -169,22 +138,26 @@ class _Worker:
         self._channel.close()
 
     def _receive(self, limit_s: float) -> Any:
-        deadline = time.monotonic() + limit_s
-        while not self._channel.poll(max(min(LOOK_S, deadline - time.monotonic()), 0.0)):
-            if self._stopped.is_set():
-                raise CancelledError
-            if time.monotonic() > deadline:
-                raise OvertimeError
-            if not self.process.is_alive() and not self._channel.poll():
-                raise EndedError(self.process.exitcode or 0)
-        try:
-            return self._channel.recv()
-        except (EOFError, ConnectionResetError):
-            self.process.join(ENDING_S)
-            raise EndedError(self.process.exitcode or 0) from None
+        ready = wait([self._channel, self.process.sentinel, self._stopped], limit_s)
+        if not ready:
+            raise OvertimeError(f"not within {limit_s:g} s")
+        if self._stopped in ready:
+            raise CancelledError
+        with suppress(EOFError, ConnectionResetError):
+            if self._channel.poll():
+                return self._channel.recv()
+        self.process.join(ENDING_S)
+        raise TaskError(_cause_of_death(self.process.exitcode or 0))
 
 
-def _work(channel: "Connection") -> None:
+def _cause_of_death(exitcode: int) -> str:
+    """Say how a process ended, from its exit code."""
+    if exitcode < 0:
+        return f"the process was ended by signal {signal.Signals(-exitcode).name}"
+    return f"the process ended by itself with exit code {exitcode}"
+
+
+def _work(channel: Connection) -> None:
     """Do in a process of its own what comes along a channel."""
     work_in_a_child()
     _be_silent()

@@ -1,7 +1,10 @@
-"""From the options of a command line to a block, the motion of its base, and how it starts."""
+"""From the options of a command line to what stands on the base, how that moves, and the start.
+
+Slips of a unit: what was meant in another one is asked about, what is only unusual is noted.
+"""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
@@ -9,14 +12,17 @@ from typing import Annotated, Literal, NamedTuple
 from cyclopts import Parameter
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
+from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import (
     BadInputError,
+    Count,
     Finite,
     HalfCycles,
     Place,
@@ -25,6 +31,7 @@ from studies.kit.arguments import (
     one_of,
     refuse_given,
 )
+from studies.kit.refusing import say
 
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
 OF_A_RECORD = ("units", "scale", "pga", "baseline")
@@ -39,7 +46,20 @@ solver minutes and an engine hours."""
 MOST_DEGREES = 90.0
 """Tilt beyond which it was not meant in degrees either."""
 
+SMALL_M, LARGE_M = 0.005, 20.0
+"""Sizes [m] beyond which a block is unusual."""
+STRONG_G = 2.0
+"""Amplitude of a pulse [g] from which it is unusual."""
+STRONG_RECORD_G = 3.0
+"""The same of a record; the strongest ever recorded had some 3 to 4 g."""
+SLOW_RAD_S = 1.0
+"""Frequency of a pulse [rad/s] below which it is unusual: its period is more than 6 s."""
+
+LEAST_COLUMNS = 2
+"""Of a frame."""
+
 Pulse = Literal["half-sine", "full-sine"]
+SceneName = Literal["block", "frame", "slide"]
 
 
 class Posed(NamedTuple):
@@ -127,24 +147,31 @@ class Excitation:
     def _motion(self) -> Motion:
         if self.record is not None:
             refuse_given(self._given(OF_A_PULSE), "only without --record")
-            return _recorded(self.record, self.units, self.scale, self.pga, self.baseline)
+            return self._recorded(self.record)
         refuse_given(self._given(OF_A_RECORD), "only with --record")
         pulse = any(value is not None for value in self._given(OF_A_PULSE).values())
         released = (self.tilt or self.rate) and not pulse
         return Still() if released else self._pulse()
 
+    def _recorded(self, path: Path) -> Record:
+        if self.scale is not None and self.pga is not None:
+            both = f"--scale is {self.scale:g} and --pga is {self.pga:g}"
+            raise BadInputError(f"{both}; give one or the other")
+        record = read_record(path, self.units)
+        with as_bad_input("--record: "):
+            record = corrected(record, self.baseline)
+            if self.pga is not None:
+                return record.scaled_to(self.pga * GRAVITY)
+            return record.scaled(1.0 if self.scale is None else self.scale)
+
     def _pulse(self) -> SinePulse:
         if self.pulse and self.half_cycles:
-            raise BadInputError(
-                f"--half-cycles is {self.half_cycles} and --pulse is {self.pulse}; "
-                "give one or the other"
-            )
+            both = f"--half-cycles is {self.half_cycles} and --pulse is {self.pulse}"
+            raise BadInputError(f"{both}; give one or the other")
         if self.amplitude is None or self.omega is None:
-            values = (("--amplitude", self.amplitude), ("--omega", self.omega))
-            missing = " and ".join(name for name, value in values if not value)
-            raise BadInputError(
-                f"{missing} missing; a pulse requires both, or give --record, --tilt or --rate"
-            )
+            missing = [f"--{name}" for name in ("amplitude", "omega") if not getattr(self, name)]
+            words = "a pulse requires both, or give --record, --tilt or --rate"
+            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
         with as_bad_input():
             return SinePulse.in_g(
                 self.amplitude,
@@ -157,11 +184,14 @@ class Excitation:
         theta = self._angle(self.tilt or 0.0, block.alpha)
         rate = self._angle(self.rate or 0.0, block.alpha * block.p)
         if not abs(theta) < 0.5 * math.pi:
-            side = math.degrees(0.5 * math.pi) if self.degrees else 0.5 * math.pi / block.alpha
-            unit = "°, where" if self.degrees else "α, where"
+            tilt = self.tilt or 0.0
+            side = f"{90.0 if self.degrees else 0.5 * math.pi / block.alpha:.6g}"
+            unit = "°" if self.degrees else "α"
+            asked = not self.degrees and abs(tilt) < MOST_DEGREES
+            meant = f"; {tilt:g}°? --tilt {tilt:g} --degrees" if asked else ""
             raise BadInputError(
-                f"--tilt is {self.tilt:g}; it must lie between -{side:.6g} and {side:.6g} {unit} "
-                f"the side of the block lies on the ground{self._meant_degrees()}"
+                f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
+                f"where the side of the block lies on the ground{meant}"
             )
         if not math.isfinite(rate * rate):
             raise BadInputError(f"--rate is {self.rate:g}; it must be less, its energy overflows")
@@ -171,12 +201,6 @@ class Excitation:
                 "balances"
             )
         return theta, rate
-
-    def _meant_degrees(self) -> str:
-        tilt = self.tilt or 0.0
-        if self.degrees or abs(tilt) >= MOST_DEGREES:
-            return ""
-        return f"; {tilt:g}°? --tilt {tilt:g} --degrees"
 
     def _angle(self, value: float, unit: float) -> float:
         return math.radians(value) if self.degrees else value * unit
@@ -244,18 +268,82 @@ def posed_block(width: float, height: float) -> RigidBlock:
         return RigidBlock(width=width, height=height)
 
 
-def _recorded(
-    path: Path,
-    units: str | None,
-    scale: float | None,
-    pga: float | None,
-    baseline: Baseline | None = None,
-) -> Record:
-    if scale is not None and pga is not None:
-        raise BadInputError(f"--scale is {scale:g} and --pga is {pga:g}; give one or the other")
-    record = read_record(path, units)
-    with as_bad_input("--record: "):
-        record = corrected(record, baseline)
-        if pga is not None:
-            return record.scaled_to(pga * GRAVITY)
-        return record.scaled(1.0 if scale is None else scale)
+@Parameter(name="*")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standing:
+    """What stands on the base.
+
+    Attributes
+    ----------
+    scene
+        block: one block that rocks. frame: a beam on columns that rock, of --width and --height
+        each, with --load. slide: one block that slides, by a --friction below B/H.
+    columns
+        Of a frame, 2 or more.
+    load
+        Of a frame: the mass of its beam over that of all columns.
+    """
+
+    scene: Annotated[SceneName, one_of(SceneName)] = "block"
+    columns: Count | None = None
+    load: Positive | None = None
+
+    def system(self, width: float, height: float, friction: float | None) -> System:
+        """Return the system of these sizes [m].
+
+        Raises
+        ------
+        BadInputError
+            If an option is missing, contradicts the scene, or has a value that is not allowed.
+        """
+        if self.scene != "frame":
+            refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        block = posed_block(width, height)
+        with as_bad_input():
+            if self.scene == "frame":
+                if self.load is None:
+                    words = "a frame requires the mass of its beam, over that of all columns"
+                    raise BadInputError(f"--load missing; {words}")
+                columns = LEAST_COLUMNS if self.columns is None else self.columns
+                return RockingFrame(width=width, height=height, columns=columns, load=self.load)
+            if self.scene == "slide":
+                if friction is None:
+                    words = "a block that slides requires one below B/H"
+                    raise BadInputError(f"--friction missing; {words}")
+                return SlidingBlock(width=width, height=height, friction=friction)
+            return block
+
+
+ONE_BLOCK = Standing()
+"""One block."""
+
+
+def note_unusual(width: float, height: float, excitation: Excitation, motion: Motion) -> None:
+    """Say on stderr which values are unusual, and what they are in another unit."""
+    for words in _unusual(width, height, excitation, motion):
+        say(f"note: {words}")
+
+
+def _unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
+    for name, size in (("width", width), ("height", height)):
+        if size > LARGE_M:
+            less = 1e-3 * size
+            yield f"--{name} is {size:g} m, large for a block; --{name} {less:g} for as many mm"
+        if size < SMALL_M:
+            yield f"--{name} is {size:g} m, small for a block"
+    if given.amplitude is not None and given.amplitude > STRONG_G:
+        less = given.amplitude / GRAVITY
+        yield (
+            f"--amplitude is {given.amplitude:g} g, strong for a pulse; "
+            f"--amplitude {less:.4g} for as many m/s²"
+        )
+    if given.omega is not None and given.omega < SLOW_RAD_S:
+        more = 2.0 * math.pi * given.omega
+        yield f"--omega is {given.omega:g} rad/s, slow for a pulse; {more:.4g} for as many Hz"
+    if given.tilt is not None and abs(given.tilt) > 1.0 and not given.degrees:
+        yield f"--tilt is {given.tilt:g} α, from where a block falls; --degrees for an angle"
+    if isinstance(motion, Record) and motion.peak > STRONG_RECORD_G * GRAVITY:
+        yield (
+            f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record; "
+            "its header, or --units, says in which unit it is"
+        )

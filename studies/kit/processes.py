@@ -1,6 +1,5 @@
 """A job in a process of its own: how it is put to its source there, and what came of it."""
 
-import signal
 from collections.abc import Callable, Iterable
 from concurrent.futures import CancelledError, Future
 from contextlib import suppress
@@ -12,7 +11,7 @@ from analytic.response import Reason, Response
 from engines import ENGINES
 from engines.run.look import compile_look
 from studies.kit.jobs import Job, ask, short
-from studies.kit.pool import MEMORY_BYTES, EndedError, OvertimeError, Pool, StartError, TaskError
+from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
 from studies.kit.refusing import one_line
 from studies.sources.registry import Source
 
@@ -24,9 +23,7 @@ _loaded: set[str] = set()
 
 
 def compile_ahead(
-    pool: Pool,
-    ask_: Callable[[Job, Source], Response],
-    asked: Iterable[tuple[Job, Source]],
+    pool: Pool, ask_: Callable[[Job, Source], Response], asked: Iterable[tuple[Job, Source]]
 ) -> None:
     """Compile what engines need on a machine, before any time limit holds.
 
@@ -46,26 +43,24 @@ def compile_ahead(
         if not tasks:
             tasks.append(pool.schedule(compile_look, (), COMPILING_S))
         if source.declared.compiles:
-            tasks.append(pool.schedule(ask_loaded, (ask_, short(job), source), COMPILING_S))
+            tasks.append(pool.schedule(ask_apart, (ask_, short(job), source, True), COMPILING_S))
     for task in tasks:
         with suppress(Exception):  # the cases will say what is wrong
             task.result()
 
 
-def ask_loaded(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -> Response:
-    """Put a job to its source in a process of its own.
+def ask_apart(
+    ask_: Callable[[Job, Source], Response], job: Job, source: Source, many: bool
+) -> Response:
+    """Put a job to its source in a process of its own; one of a few need not be compiled.
 
     A job that is long is not asked twice: what loads the compiled kernels is a short one.
     """
-    compile_all()
-    if source.kind != "engine" and job.source not in _loaded:
-        _loaded.add(job.source)
-        ask(short(job), source)
-    return ask_one(ask_, job, source)
-
-
-def ask_one(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -> Response:
-    """Put one of a few jobs, which need not be compiled, to its source in a process of its own."""
+    if many:
+        compile_all()
+        if source.kind != "engine" and job.source not in _loaded:
+            _loaded.add(job.source)
+            ask(short(job), source)
     response = ask_(job, source)
     if response.message.startswith(MemoryError.__name__):
         words = f"{response.message.rstrip(': ')}; a process may take {MEMORY_BYTES / 1e9:g} GB"
@@ -73,25 +68,14 @@ def ask_one(ask_: Callable[[Job, Source], Response], job: Job, source: Source) -
     return response
 
 
-def outcome_of(result: Callable[[], Response], time_limit_s: float) -> Response:
-    """Return the result of a process, or the failure as which it ended."""
+def outcome_of(task: Future[Response], time_limit_s: float) -> Response:
+    """Return what came of a job in a process, its failure if that is to blame for it."""
     try:
-        return result()
+        return task.result()
+    except (CancelledError, StartError):
+        raise
     except OvertimeError:
         words = f"no result within the time limit of {time_limit_s:g} s"
         return Response.failure(words, reason=Reason.UNDECIDED)
-    except EndedError as error:
-        return Response.failure(cause_of_death(error.exitcode))
-    except TaskError as error:
-        return Response.failure(str(error))
-    except (CancelledError, StartError):
-        raise  # no case is to blame
     except Exception as error:
-        return Response.failure(one_line(error))
-
-
-def cause_of_death(exitcode: int) -> str:
-    """Say how a process ended, from its exit code."""
-    if exitcode < 0:
-        return f"the process was ended by signal {signal.Signals(-exitcode).name}"
-    return f"the process ended by itself with exit code {exitcode}"
+        return Response.failure(str(error) if isinstance(error, TaskError) else one_line(error))

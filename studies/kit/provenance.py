@@ -8,6 +8,7 @@ import platform
 import subprocess
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -70,29 +71,30 @@ def versions() -> dict[str, Any]:
 
 def git_commit() -> dict[str, Any] | None:
     """Return the commit of the source and whether it was edited since; None without git."""
+    if not (ROOT / ".git").exists():
+        return None
     try:
-        commit = _git("rev-parse", "HEAD")
-        return {"commit": commit, "edited": bool(_git("status", "--porcelain", "-uno"))}
+        commit, edited = (
+            subprocess.run(
+                ["git", "-C", str(ROOT), *words.split()],
+                capture_output=True,
+                text=True,
+                timeout=10,
+                check=True,
+            ).stdout.strip()
+            for words in ("rev-parse HEAD", "status --porcelain -uno")
+        )
     except (OSError, subprocess.SubprocessError):
         return None
-
-
-def _git(*arguments: str) -> str:
-    if not (ROOT / ".git").exists():
-        raise FileNotFoundError("not a working copy")
-    command = ["git", "-C", str(ROOT), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
-    return done.stdout.strip()
+    return {"commit": commit, "edited": bool(edited)}
 
 
 def _cpu_model() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        return next(
-            line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")
-        )
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
+    with suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
 
 
 def usable_cores() -> int:
@@ -115,30 +117,35 @@ def begin(path: Path, subject: dict[str, Any], arguments: dict[str, Any]) -> dic
     from analytic.kernels.compiled import SOURCES
     from analytic.kernels.kept import are_compiled
 
-    earlier = _earlier(path, subject)
+    earlier, git, here = _earlier(path, subject), git_commit(), versions()
+    for name, version in earlier.get("engines", {}).items():
+        # an engine that is no longer here made its rows in the version of then
+        if here["engines"].get(name) == NOT_INSTALLED:
+            here["engines"][name] = version
     record = {
         **subject,
-        **_versions_of_rows(earlier),
-        "git": git_commit(),
+        **here,
+        "git": git,
         "tools": {name: version_of(name) for name in TOOLS},
-        "machine": {
-            "cpu": _cpu_model(),
-            "cores": usable_cores(),
-            "os": platform.platform(),
-        },
+        "machine": {"cpu": _cpu_model(), "cores": usable_cores(), "os": platform.platform()},
         "tables": dict(earlier.get("tables", {})),
         "runs": [
             *earlier["runs"],
             {
                 "start": datetime.now(UTC).isoformat(timespec="seconds"),
                 "first": not are_compiled(SOURCES),
-                "git": git_commit(),
+                "git": git,
                 **arguments,
             },
         ],
     }
-    write_text(path, json.dumps(record, indent=2) + "\n")
+    write_record(path, record)
     return record
+
+
+def write_record(path: Path, record: Mapping[str, Any]) -> None:
+    """Write a provenance in one piece."""
+    write_text(path, json.dumps(record, indent=2) + "\n")
 
 
 def record_of(folder: Path) -> dict[str, Any]:
@@ -164,14 +171,6 @@ def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
 
 
-def _versions_of_rows(earlier: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the versions here, of an engine that is no longer here those of its rows."""
-    here = versions()
-    gone = {name for name, version in here["engines"].items() if version == NOT_INSTALLED}
-    then = {name: it for name, it in earlier.get("engines", {}).items() if name in gone}
-    return {**here, "engines": here["engines"] | then}
-
-
 def _earlier(path: Path, subject: dict[str, Any]) -> dict[str, Any]:
     if not path.exists():
         return {"runs": []}
@@ -191,7 +190,7 @@ def finish(path: Path, record: dict[str, Any], began: float, **found: Any) -> No
     A command finishes twice: when its tables are written, and when it has reduced and drawn them.
     """
     record["runs"][-1] |= {"duration_s": round(time.perf_counter() - began, 3), **found}
-    write_text(path, json.dumps(record, indent=2) + "\n")
+    write_record(path, record)
 
 
 def write_text(path: Path, text: str) -> None:

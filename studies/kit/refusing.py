@@ -1,6 +1,9 @@
-"""A refusal as a user sees it: one line, whatever it repeats."""
+"""What a user is told beside the results: in one line, by streams that can be written to."""
 
-from studies.kit import streams
+import io
+import os
+import sys
+from contextlib import suppress
 
 LONGEST_WORD, LONGEST_LINE = 255, 1000
 """Letters of a refusal beyond which the middle of a word, and of the line, is left out."""
@@ -8,7 +11,7 @@ LONGEST_WORD, LONGEST_LINE = 255, 1000
 
 def refuse(message: str) -> int:
     """Say why a command cannot be run; return the exit code."""
-    streams.say(f"rocking: {brief(message)}")
+    say(f"rocking: {brief(message)}")
     return 2
 
 
@@ -31,3 +34,41 @@ def one_line(error: BaseException) -> str:
 def _shortened(text: str, longest: int) -> str:
     half = longest // 2
     return text if len(text) <= longest else f"{text[:half]}…{text[-half:]}"
+
+
+def prepare() -> None:
+    """Send what goes to a closed stream nowhere, and show what a terminal cannot as marks.
+
+    A descriptor that stays free would be taken by the next file that is opened, and whatever an
+    engine prints would go into it.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
+    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # a terminal without Greek letters shows question marks instead
+            stream.reconfigure(errors="replace")
+
+
+def say(line: str) -> None:
+    """Write a line to stderr, if somebody is there to read it."""
+    with suppress(OSError):
+        print(line, file=sys.stderr)
+
+
+def finish() -> None:
+    """Write what is waiting to be written, or give it up where that has failed before."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        give_up_output()
+
+
+def give_up_output() -> None:
+    """Send further output nowhere, what is waiting to be written included."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -8,10 +8,10 @@ from tqdm import tqdm
 
 from analytic.response import Outcome, Response
 from studies.kit.executors import Executor
-from studies.kit.identity import Makers, changed, why
+from studies.kit.identity import Makers, sorted_rows, why
 from studies.kit.jobs import Job
 from studies.kit.journal import Journal, Row
-from studies.kit.streams import say
+from studies.kit.refusing import say
 
 _LABELS = (
     *("name", "record", "scale"),
@@ -38,7 +38,11 @@ def run_jobs(
     is said on stderr. Progress is shown there if it is a terminal.
     """
     keys = [job.key for job in jobs]
-    done = valid_rows(jobs, journal, makers) if journal and makers else {}
+    done: dict[str, Row] = {}
+    if journal and makers:
+        done, stale = sorted_rows(jobs, journal.kept, makers, journal.folder)
+        if stale:
+            say(f"{len(done)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
     pending = [number for number, key in enumerate(keys) if key not in done]
     finished = len(jobs) - len(pending)
     with (
@@ -57,33 +61,6 @@ def run_jobs(
                 journal.append(keys[number], row, makers.of(jobs[number]))
             bar.update()
     return [done[key] for key in keys]
-
-
-def valid_rows(jobs: Sequence[Job], journal: Journal, makers: Makers) -> dict[str, Row]:
-    """Return the rows that need not be computed again, by the keys of their jobs.
-
-    Raises
-    ------
-    FolderError
-        If a row is not of the job which its key names.
-    """
-    valid: dict[str, Row] = {}
-    stale = []
-    for job in jobs:
-        key = job.key
-        if key not in journal.entries:
-            continue
-        row = journal.entries[key].row
-        if not job.has_made(row):
-            raise journal.stranger(key)
-        then, now = journal.maker_of(key), makers.of(job)
-        if changed(then, now):
-            stale.append((job.source, then, now))
-        else:
-            valid[key] = row
-    if stale:
-        say(f"{len(valid)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
-    return valid
 
 
 def exit_code(rows: Sequence[Row], shown: int = 10) -> int:

@@ -20,7 +20,7 @@ from studies.kit import provenance
 from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job
 from studies.kit.pool import Pool
-from studies.kit.processes import ask_loaded, compile_ahead, outcome_of
+from studies.kit.processes import ask_apart, compile_ahead, outcome_of
 from studies.sources.registry import Source
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ def _work_in_process(
             if job.source not in _compiled:
                 compile_ahead(pool, ask, [(job, source)])
                 _compiled.add(job.source)
-        task = pool.schedule(ask_loaded, (ask, job, source), time_limit_s)
-        return outcome_of(task.result, time_limit_s)
+        task = pool.schedule(ask_apart, (ask, job, source, True), time_limit_s)
+        return outcome_of(task, time_limit_s)
     except CancelledError:  # this worker is closing
         raise Reschedule from None
 

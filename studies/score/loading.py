@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from engines.registry import announce
-from studies.kit.pool import EndedError, OvertimeError, Pool, TaskError
-from studies.kit.processes import cause_of_death
+from studies.kit.pool import Pool, TaskError
 from studies.kit.signals import ENDING
 
 LOADING_S = 60.0
@@ -28,13 +27,8 @@ def problem_elsewhere(place: str) -> str:
     with Pool(1) as pool:
         try:
             return str(pool.schedule(problem_of, (place,), LOADING_S).result())
-        except EndedError as error:
-            problem = cause_of_death(error.exitcode)
-        except OvertimeError:
-            problem = f"not within {LOADING_S:g} s"
         except TaskError as error:
-            problem = str(error)
-    return f"engine {place!r} cannot be loaded: {problem}"
+            return f"engine {place!r} cannot be loaded: {error}"
 
 
 def problem_of(place: str) -> str:

@@ -8,6 +8,7 @@ import warnings
 from pathlib import Path
 
 import pytest
+from commanding import BLOCK, CASE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -21,21 +22,15 @@ from studies.page import report
 
 BACKSTOP_S = 600
 """Ends a test that hangs; nothing is expected within it."""
-CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
-RECORD = ("--record", "RECORD", "--units", "g", "--width", "0.5", "--height", "1.5")
-RELEASE = ("--tilt", "0.5", "--width", "0.5", "--height", "1.5")
-PEER = "\n".join(
-    [
-        *("PEER", "A", "ACCELERATION TIME SERIES IN UNITS OF G", "NPTS= 5, DT= .1 SEC"),
-        "0 .1 .3 .1 0",
-    ]
-)
+RECORD = ("--record", "RECORD", "--units", "g", *BLOCK)
+RELEASE = ("--tilt", "0.5", *BLOCK)
+PEER = """PEER
+A
+ACCELERATION TIME SERIES IN UNITS OF G
+NPTS= 5, DT= .1 SEC
+0 .1 .3 .1 0"""
 BEGINNINGS = {
-    "compare": [
-        (*CASE, "--sources", "exact"),
-        (*RECORD, "--sources", "exact"),
-        (*RELEASE, "--sources", "exact"),
-    ],
+    "compare": [(*begin, "--sources", "exact") for begin in (CASE, RECORD, RELEASE)],
     "blocks": [("CABINETS", "--record", "RECORD", "--units", "g", "--out", "FOLDER")],
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
@@ -45,29 +40,18 @@ BEGINNINGS = {
     "readme": [()],
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
+ODD_WORDS = """
+0 1 2 -1 -5 1.5 1,5 1_000 ١٢ +3 0x10 1e5 1e-7 5e-324 1e-308 1e308 -1e308 1e400 1000000000 1000000001
+9223372036854775808 18446744073709551616 inf -inf nan NaN -0.0 - -- --- --= = --help -h --version
+--out --quick=1 --no-quick . .. / ~ * /nowhere/x /dev/null /dev/full /dev/zero /dev/stdin
+/proc/self/mem PIPE FOLDER RECORD /dev/full/x.png FOLDER/x.png x/y.pdf exact exact: : mujoco:
+mujoco:best core core:naive engines:x EXACT tcp://127.0.0.1:1 tcp:// tls://127.0.0.1:1 http://x
+127.0.0.1 tcp://[::1]:9 g gal half-sine figure 6 6.0 true None [] {} png
+"""
 ODD = [
-    *("0", "1", "2", "-1", "-5", "1.5", "1,5", "1_000", "١٢", "+3", "0x10", " 7 ", "1e5", "1e-7"),
-    *("5e-324", "1e-308", "1e308", "-1e308", "1e400", "inf", "-inf", "nan", "NaN", "-0.0"),
-    *("1" * 400, f"0.{'0' * 400}1", "1000000000", "1000000001", str(2**63), str(2**64)),
-    *("", " ", "\0", "a\0b", "\n", "\t", "\r\n", "\x1b[31m", "\udc80", "é" * 5000, "x" * 5000),
-    *(
-        "-",
-        "--",
-        "---",
-        "--=",
-        "=",
-        "--help",
-        "-h",
-        "--version",
-        "--out",
-        "--quick=1",
-        "--no-quick",
-    ),
-    *(".", "..", "/", "/nowhere/x", "/dev/null", "/dev/full", "/dev/zero", "/dev/stdin", "~", "*"),
-    *("/proc/self/mem", "PIPE", "FOLDER", "RECORD", "/dev/full/x.png", "FOLDER/x.png", "x/y.pdf"),
-    *("exact", "exact:", ":", "mujoco:", "mujoco:best", "core", "core:naive", "engines:x", "EXACT"),
-    *("tcp://127.0.0.1:1", "tcp://", "tls://127.0.0.1:1", "http://x", "127.0.0.1", "tcp://[::1]:9"),
-    *("g", "gal", "half-sine", "figure", "6", "6.0", "true", "None", "[]", "{}", "png", "rm -rf"),
+    *ODD_WORDS.split(),
+    *("", " ", " 7 ", "\0", "a\0b", "\n", "\t", "\r\n", "\x1b[31m", "\udc80", "rm -rf"),
+    *("1" * 400, f"0.{'0' * 400}1", "é" * 5000, "x" * 5000),
 ]
 """Text that has been trouble somewhere."""
 
@@ -99,7 +83,7 @@ def place(tmp_path_factory):
         patch.setattr(Local, "_in_processes", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
-        patch.setattr("studies.kit.dask_client.CONNECT_S", 0.5)
+        patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
         yield folder
     assert Path.cwd() == kept
 
@@ -210,3 +194,22 @@ def command_lines(draw):
 @given(arguments=command_lines())
 def test_any_text_for_any_option(arguments, place):
     check(arguments)
+
+
+COLUMNS = 100
+
+
+@pytest.mark.parametrize("study", COMMANDS, ids=lambda study: study.name)
+def test_every_command_has_its_help(study, capsys, monkeypatch):
+    """Its words, its options, and no line that a terminal would break."""
+    monkeypatch.setenv("COLUMNS", str(COLUMNS))
+    assert run([study.name, "--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert study.help.splitlines()[0] in " ".join(lines)
+    assert max(map(len, lines)) <= COLUMNS
+    # "│ * --option kind ...", the asterisk where it is required
+    rows = [line.replace("*", " ", 1).split()[1:] for line in lines if line.startswith("│")]
+    told = {row[0]: row for row in rows if row}
+    for name in OPTIONS[study.name]:
+        # the option and its kind, then at least a word of what it is
+        assert len(told[name]) > 3, name

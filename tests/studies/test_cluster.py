@@ -1,17 +1,25 @@
 """Studies on a Dask cluster: a real scheduler and real workers, each a process of its own."""
 
+import http.server
 import json
 import signal
+import socketserver
+import sys
+import threading
 import time
-from contextlib import ExitStack
+from concurrent.futures import CancelledError, Future
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import dask
 import grimp
 import pandas as pd
 import pytest
 from dask_station import (
+    BLOCK,
+    PULSE,
     exits,
     half_held,
     hangs,
@@ -27,11 +35,13 @@ from dask_station import (
     wait_for_workers,
     working,
 )
+from distributed import Security
+from distributed.comm import CommClosedError
 
+from analytic import simulate
 from studies.__main__ import run
-from studies.kit import dask_client, worker
-from studies.kit.cluster import Cluster
-from studies.kit.dask_client import ClusterError
+from studies.kit import cluster, worker
+from studies.kit.cluster import Cluster, ClusterError
 from studies.kit.jobs import summary
 from studies.kit.options import Running
 from studies.kit.plan import fill
@@ -44,8 +54,8 @@ from studies.validate.study import plan
 @pytest.fixture(autouse=True)
 def patience(monkeypatch):
     """Wait for whoever answers, however slow; a test of who does not has less."""
-    monkeypatch.setattr(dask_client, "CONNECT_S", 600.0)
-    monkeypatch.setattr(dask_client, "ANSWER_S", 600.0)
+    for limit in ("CONNECT_S", "ANSWER_S"):
+        monkeypatch.setattr(cluster, limit, 600.0)
 
 
 @pytest.fixture(scope="module")
@@ -85,10 +95,8 @@ def test_what_compiles_itself_does_so_outside_the_time_limit(station, monkeypatc
     source = Source("engine", slow_at_first, resolve("mujoco").engine)
     assert source.declared.compiles
     monkeypatch.setitem(SOURCES, "slow_at_first", source)
-    asked = [
-        replace(job, options={"marker": str(tmp_path / "compiled")})
-        for job in jobs_of("slow_at_first", 2)
-    ]
+    marker = {"marker": str(tmp_path / "compiled")}
+    asked = [replace(job, options=marker) for job in jobs_of("slow_at_first", 2)]
     rows = run_jobs(asked, executor=Cluster(station[0], 3.0), reduce=summary)
     assert [(row["outcome"], row["message"]) for row in rows] == [("rocked", "")] * 2
 
@@ -101,31 +109,28 @@ def test_a_worker_of_another_version_is_refused(station, monkeypatch, tmp_path, 
         line = refusal(station[0], capsys, tmp_path)
     finally:
         worker.fitness.cache_clear()
+    assert "its worker tcp://127.0.0.1:" in line
     assert "code " in line
     assert "there, other code here" in line
 
 
 def test_a_workers_address_is_no_schedulers(station, tmp_path, capsys):
     first, _ = wait_for_workers(station[0], 2)
-    assert "of a scheduler, not of a Worker" in refusal(first, capsys, tmp_path)
+    assert "scheduler (TypeError: Worker." in refusal(first, capsys, tmp_path)
 
 
 def test_who_was_stopped_is_not_waited_for(station, monkeypatch, tmp_path, capsys):
     address, running, workers = station
-    with monkeypatch.context() as patch, stopped(workers[0]):
-        patch.setattr(dask_client, "ANSWER_S", 1.0)
-        line = refusal(address, capsys, tmp_path)
-        assert "its worker tcp://127.0.0.1:" in line
-        assert "no answer within 1 s" in line
-    with monkeypatch.context() as patch, stopped(running):
-        patch.setattr(dask_client, "CONNECT_S", 1.0)
-        assert "no answer within 1 s" in refusal(address, capsys, tmp_path)
+    for limit, process in (("ANSWER_S", workers[0]), ("CONNECT_S", running)):
+        with monkeypatch.context() as patch, stopped(process):
+            patch.setattr(cluster, limit, 1.0)
+            assert "no answer within 1 s" in refusal(address, capsys, tmp_path)
     monkeypatch.setitem(SOURCES, "held", Source("model", held))
     answers = Cluster(address, 10.0)(half_held(tmp_path / "released"))
     assert next(answers)[0] == 0
     with stopped(running):
-        monkeypatch.setattr(dask_client, "ANSWER_S", 1.0)
-        with pytest.raises(ClusterError, match="scheduler was silent for 1 s"):
+        monkeypatch.setattr(cluster, "ANSWER_S", 1.0)
+        with pytest.raises(ClusterError, match="no answer within 1 s"):
             list(answers)
     (tmp_path / "released").touch()
 
@@ -134,7 +139,7 @@ def test_who_was_stopped_is_not_waited_for(station, monkeypatch, tmp_path, capsy
 def test_workers_are_needed_and_a_nanny_is_refused(tmp_path, monkeypatch):
     with scheduler(tmp_path) as (address, _):
         with monkeypatch.context() as patch, pytest.raises(ClusterError, match="no workers; start"):
-            patch.setattr(dask_client, "CONNECT_S", 1.0)
+            patch.setattr(cluster, "CONNECT_S", 1.0)
             Cluster(address, 1.0).check()
         with (
             working(address, "--nworkers", 1, "--nanny"),
@@ -214,7 +219,172 @@ def test_a_case_that_kills_every_worker_is_a_row(tmp_path, monkeypatch):
 
 def test_a_cluster_knows_nothing_of_who_chooses_it():
     graph = grimp.build_graph("studies")
-    for module in ("cluster", "dask_client", "worker", "processes"):
+    for module in ("cluster", "worker", "processes"):
         assert not graph.chain_exists(
-            importer=f"studies.kit.{module}", imported="studies.kit.executors"
+            importer=f"studies.kit.{module}", imported="studies.kit.options"
         )
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nowhere", "::::", "tcp://"])
+def test_an_address_where_nobody_answers(address, tmp_path, capsys):
+    assert "scheduler" in refusal(address, capsys, tmp_path)
+
+
+class Silent(socketserver.BaseRequestHandler):
+    """Accepts, and never answers."""
+
+    said = b""
+
+    def handle(self):
+        with suppress(ConnectionError):
+            self.request.sendall(self.said)
+            while self.request.recv(1024):
+                pass
+
+
+class Shell(Silent):
+    """Speaks first, as an SSH server does."""
+
+    said = b"SSH-2.0-OpenSSH_9.6\r\n"
+
+
+class Web(http.server.BaseHTTPRequestHandler):
+    def do_GET(self):
+        self.send_response(200)
+        self.end_headers()
+
+    def log_message(self, *_):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("handler", "limit_s", "reason"),
+    [
+        (Silent, 1.0, "no answer within 1 s"),
+        (Web, 1.0, "no answer within 1 s"),
+        (Shell, 600.0, "MemoryError"),
+    ],
+)
+def test_a_server_that_is_no_scheduler(handler, limit_s, reason, monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(cluster, "CONNECT_S", limit_s)
+    with socketserver.ThreadingTCPServer(("127.0.0.1", 0), handler) as serving:
+        serving.daemon_threads = True
+        threading.Thread(target=serving.serve_forever, daemon=True).start()
+        place = "127.0.0.1:{1}".format(*serving.server_address)
+        assert reason in refusal(f"tcp://{place}", capsys, tmp_path)
+        assert "TLS configuration" in refusal(f"tls://{place}", capsys, tmp_path)
+        serving.shutdown()
+
+
+def test_missing_dask_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ClusterError, match=r"rocking\[cluster\]"):
+        Cluster("tcp://127.0.0.1:1", 1.0).check()
+
+
+class Breaking:
+    """A client, and its executor, whose answer to every question is an error."""
+
+    nthreads = None
+
+    def __init__(self, status, error):
+        self.status, self.error = status, error
+
+    def sync(self, *_, **__):
+        raise self.error
+
+    def get_executor(self, **_):
+        return self
+
+    def submit(self, *_):
+        future = Future()
+        future.set_exception(self.error)
+        return future
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Return what puts a job to a cluster with a client that breaks."""
+
+    def ask(client):
+        monkeypatch.setattr(Cluster, "_client", lambda _: nullcontext(client))
+        ((_, response),) = Cluster("tcp://127.0.0.1:1", 1.0)(jobs_of("exact"))
+        return response
+
+    return ask
+
+
+BROKEN = [CommClosedError("in <TCP>: Stream is closed"), OSError("gone"), CancelledError()]
+
+
+@pytest.mark.parametrize(
+    ("status", "error"),
+    [
+        ("running", BROKEN[-1]),
+        *((status, error) for status in ("connecting", "closed") for error in BROKEN),
+    ],
+)
+def test_a_connection_that_breaks_before_the_answer_is_a_scheduler_that_has_gone(
+    status, error, asked
+):
+    with pytest.raises(ClusterError, match="scheduler has gone"):
+        asked(Breaking(status, error))
+
+
+@pytest.mark.parametrize("error", BROKEN[:2])
+def test_a_connection_that_breaks_at_a_question_is_a_scheduler_that_has_gone(
+    error, asked, monkeypatch
+):
+    monkeypatch.setattr(cluster, "LOOK_S", 0.01)
+    client = Breaking("running", error)
+    client.submit = lambda *_: Future()
+    with pytest.raises(ClusterError, match="scheduler has gone"):
+        asked(client)
+
+
+def test_an_error_of_a_job_is_a_row(asked):
+    response = asked(Breaking("running", OSError("no room")))
+    assert response.outcome.value == "failed"
+    assert "no room" in response.message
+
+
+def certificates(folder):
+    """Make a certificate that signs itself, and return the files of authority, it and its key."""
+    made = Security.temporary()
+    texts = (made.tls_ca_file, made.tls_client_cert, made.tls_client_key)
+    folder.mkdir()
+    files = [folder / name for name in ("ca.pem", "cert.pem", "key.pem")]
+    for file, text in zip(files, texts, strict=True):
+        file.write_text(text)
+    return files
+
+
+@contextmanager
+def configured(files):
+    """Let Dask's own configuration name these files."""
+    names = ("ca-file", "client.cert", "client.key")
+    places = zip((f"distributed.comm.tls.{name}" for name in names), map(str, files), strict=True)
+    with dask.config.set(dict(places)):
+        yield
+
+
+def test_an_encrypted_cluster_answers_who_has_its_certificate(tmp_path, capsys):
+    ours, others = certificates(tmp_path / "ours"), certificates(tmp_path / "others")
+    options = [
+        *("--tls-ca-file", ours[0], "--tls-cert", ours[1], "--tls-key", ours[2]),
+        *("--protocol", "tls"),
+    ]
+    with scheduler(tmp_path, *options) as (address, _), working(address, "--no-nanny", *options):
+        assert address.startswith("tls://")
+        with configured(ours):
+            wait_for_workers(address, 1)
+            ((_, response),) = Cluster(address, 10.0)(jobs_of("exact"))
+            plain = address.replace("tls:", "tcp:")
+            with dask.config.set({"distributed.comm.require-encryption": True}):
+                assert "encryption required" in refusal(plain, capsys, tmp_path)
+        assert response.peak_ratio == simulate(BLOCK, PULSE).peak_ratio
+        assert "TLS configuration" in refusal(address, capsys, tmp_path)
+        with configured(others):
+            assert "certificate does not match" in refusal(address, capsys, tmp_path)
+        with configured([tmp_path / "missing.pem"] * 3):
+            assert "No such file" in refusal(address, capsys, tmp_path)

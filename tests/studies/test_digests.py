@@ -8,13 +8,15 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from commanding import CASE, refused
 
 from studies.__main__ import run
 from studies.advise.evidence import TABLES
 from studies.advise.tried import RANDOM
 from studies.catalogue import CHAPTERS
-from studies.kit.sealed import seal as sealed_line
-from studies.kit.sealed import unseal
+from studies.kit.digests import digest, seal
+from studies.kit.journal import seal as sealed_line
+from studies.kit.journal import unseal
 from studies.measures import halving
 from studies.page import readme
 from studies.score import report as score
@@ -48,8 +50,6 @@ def folder(swept, tmp_path, capsys):
 @pytest.fixture
 def published(tmp_path):
     """The published tables, sealed as their studies do it now."""
-    from studies.kit.digests import seal
-
     root = tmp_path / "root"
     copy = Path(shutil.copytree(PUBLISHED, root / readme.PUBLISHED))
     for record in copy.glob("*/provenance.json"):
@@ -57,76 +57,48 @@ def published(tmp_path):
     return copy
 
 
-def refused(capsys, arguments, *named):
-    """Assert that a command ends with 2, one line that names things, and no other word."""
-    assert run([str(argument) for argument in arguments]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1, output.err
-    for name in named:
-        assert name in output.err
-
-
-def one_digit(folder):
-    path = folder / "sweep.csv"
+def edit(path):
+    """Change the last digit of a table."""
     text = path.read_text()
-    place = text.index("\n", len(text) // 2) - 12
-    digit = next(place + n for n in range(200) if text[place + n].isdigit())
-    path.write_text(text[:digit] + str(9 - int(text[digit])) + text[digit + 1 :])
+    place = max(place for place in range(len(text)) if text[place].isdigit())
+    path.write_text(text[:place] + str(9 - int(text[place])) + text[place + 1 :])
 
 
-def cut_at_a_line(folder):
-    path = folder / "sweep.csv"
-    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-50]))
+def rewritten(change, name="sweep.csv"):
+    """Return what changes the content of a file in a folder."""
+    return lambda folder: (folder / name).write_bytes(change((folder / name).read_bytes()))
 
 
-def cut_anywhere(folder):
-    path = folder / "sweep.csv"
-    path.write_bytes(path.read_bytes()[:-777])
-
-
-def saved_by_a_spreadsheet(folder):
-    path = folder / "sweep.csv"
-    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-
-
-def no_provenance(folder):
-    (folder / "provenance.json").unlink()
-
-
-def a_folder(folder):
-    (folder / "sweep.csv").unlink()
-    (folder / "sweep.csv").mkdir()
+def replaced(make, name):
+    """Return what puts something else in the place of a file in a folder."""
+    return lambda folder: ((folder / name).unlink(), make(folder / name))
 
 
 def packed_and_cut(folder):
-    path = folder / "sweep.csv"
-    (folder / "sweep.csv.gz").write_bytes(gzip.compress(path.read_bytes())[:-100])
+    content = (folder / "sweep.csv").read_bytes()
+    (folder / "sweep.csv.gz").write_bytes(gzip.compress(content)[:-100])
 
 
-def provenance_of(text):
-    return lambda folder: (folder / "provenance.json").write_text(text)
-
-
-def a_pipe_for_provenance(folder):
-    (folder / "provenance.json").unlink()
-    os.mkfifo(folder / "provenance.json")
-
-
+PROVENANCE = {
+    "an empty provenance": b"",
+    "a provenance without digests": b'{"study": "sweep"}',
+    "a list of digests": b'{"study": "sweep", "tables": [1]}',
+    "a number for digests": b'{"study": "sweep", "tables": 3}',
+    "a provenance too deep": b"[" * 200_000,
+}
 HARM = {
-    "a pipe for provenance": a_pipe_for_provenance,
-    "one digit": one_digit,
-    "cut at a line": cut_at_a_line,
-    "cut anywhere": cut_anywhere,
-    "saved by a spreadsheet": saved_by_a_spreadsheet,
-    "no provenance": no_provenance,
-    "a folder": a_folder,
+    "one digit": lambda folder: edit(folder / "sweep.csv"),
+    "cut at a line": rewritten(lambda text: b"".join(text.splitlines(keepends=True)[:-50])),
+    "cut anywhere": rewritten(lambda text: text[:-777]),
+    "saved by a spreadsheet": rewritten(lambda text: text.replace(b"\n", b"\r\n")),
+    "no provenance": lambda folder: (folder / "provenance.json").unlink(),
+    "a pipe for provenance": replaced(os.mkfifo, "provenance.json"),
+    "a folder": replaced(Path.mkdir, "sweep.csv"),
     "packed and cut": packed_and_cut,
-    "an empty provenance": provenance_of(""),
-    "a provenance without digests": provenance_of('{"study": "sweep"}'),
-    "a list of digests": provenance_of('{"study": "sweep", "tables": [1]}'),
-    "a number for digests": provenance_of('{"study": "sweep", "tables": 3}'),
-    "a provenance too deep": provenance_of("[" * 200_000),
+    **{
+        name: rewritten(lambda _, text=text: text, "provenance.json")
+        for name, text in PROVENANCE.items()
+    },
 }
 
 
@@ -169,7 +141,7 @@ def test_every_table_of_a_folder_has_its_digest_and_may_be_packed(folder):
 
 
 def test_the_command_run_again_makes_the_tables_anew(folder, swept, capsys):
-    one_digit(folder)
+    edit(folder / "sweep.csv")
     refused(capsys, ["redraw", folder], "sweep.csv")
     sweep(folder)
     assert (folder / "sweep.csv").read_bytes() == (swept / "sweep.csv").read_bytes()
@@ -199,21 +171,11 @@ def test_a_forged_row_is_one_line(forge, count, folder, capsys):
     kept = path.read_bytes().splitlines()
     rows = [number for number, line in enumerate(kept) if b'"row"' in line]
     for number in rows[:count]:
-        kept[number] = forged(kept[number], forge)
+        entry = unseal(kept[number])
+        kept[number] = sealed_line({**entry, "row": forge(entry["row"])})[:-1]
     path.write_bytes(b"\n".join(kept) + b"\n")
     few = ["--figure", "6", "--sources", "exact", "housner"]
     refused(capsys, ["sweep", *few, "--out", folder], "--out", "journal.jsonl")
-
-
-def forged(line, forge):
-    entry = unseal(line)
-    return sealed_line({**entry, "row": forge(entry["row"])})[:-1]
-
-
-def edit(path):
-    text = path.read_text()
-    place = max(place for place in range(len(text)) if text[place].isdigit())
-    path.write_text(text[:place] + str(9 - int(text[place])) + text[place + 1 :])
 
 
 @pytest.mark.parametrize(
@@ -238,9 +200,8 @@ def test_no_bound_from_an_edited_factor(published, monkeypatch, capsys):
         halving.published_trust, "__defaults__", (published / "estimate" / "factors.csv",)
     )
     edit(published / "estimate" / "factors.csv")
-    case = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
     few = ["--sources", "mujoco", "--jobs", "1", "--step", "0.02"]
-    refused(capsys, ["compare", *case, *few, "--estimate"], "factors.csv")
+    refused(capsys, ["compare", *CASE, *few, "--estimate"], "factors.csv")
 
 
 def test_no_score_beside_an_edited_table(published, monkeypatch, tmp_path, capsys):
@@ -271,8 +232,6 @@ def test_whatever_is_checked_comes_with_an_installation():
 
 @pytest.mark.parametrize("chapter", [chapter for _, chapter in CHAPTERS], ids=lambda c: c.folder)
 def test_every_published_table_has_its_digest(chapter):
-    from studies.kit.digests import digest
-
     folder = PUBLISHED / chapter.folder
     if (folder / "provenance.json").is_file():
         tables = json.loads((folder / "provenance.json").read_text())["tables"]

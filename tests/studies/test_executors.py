@@ -4,26 +4,24 @@ import ast
 import math
 import os
 import signal
-import subprocess
-import sys
 import threading
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commanding import PATIENCE_S, python
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
+from studies.kit.pool import Pool
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
-ROOT = Path(__file__).parents[2]
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
-PATIENCE_S = 900.0
-"""Guards against a test that hangs; nothing is expected within it."""
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -78,6 +76,20 @@ def test_a_long_solve_has_a_time_limit_too():
     long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
     rows = run_jobs([job("rk4", long)], executor=Local(2, 0.5), reduce=summary)
     assert ["time limit" in row["message"] for row in rows] == [True]
+
+
+def dies_soon():
+    threading.Timer(0.2, os._exit, [3]).start()
+    return os.getpid()
+
+
+def test_a_process_that_ended_between_two_tasks_is_replaced():
+    with Pool(1) as pool:
+        first = pool.schedule(dies_soon, (), PATIENCE_S).result()
+        while Path(f"/proc/{first}").exists():
+            time.sleep(0.05)
+        time.sleep(0.2)  # and whoever keeps it
+        assert pool.schedule(os.getpid, (), PATIENCE_S).result() != first
 
 
 ASKED = []
@@ -139,8 +151,7 @@ for name in ("exact", "modified", "rk4", "average-acceleration"):
 
 
 def test_a_short_question_loads_the_kernels_of_the_long_one():
-    command = [sys.executable, "-c", KERNELS]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    done = python("-c", KERNELS)
     assert (done.returncode, done.stderr) == (0, "")
 
 

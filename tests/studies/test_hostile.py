@@ -4,7 +4,6 @@ import inspect
 import math
 import os
 import signal
-import subprocess
 import sys
 import time
 from functools import partial
@@ -13,6 +12,7 @@ from pathlib import Path
 import hostile
 import pandas as pd
 import pytest
+from commanding import CASE, PATIENCE_S, python, refused
 
 from analytic import RigidBlock, SinePulse
 from engines import registry
@@ -28,10 +28,7 @@ from studies.score import loading
 from studies.score import study as score
 from studies.sources.registry import SOURCES, Source
 
-ROOT = Path(__file__).parents[2]
 BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=6.0, omega=6.0)
-PATIENCE_S = 900.0
-"""Guards against a test that hangs; nothing is expected within it."""
 REASONS = {
     "Exits": "SystemExit",
     "ExitsAtOnce": "the process ended by itself with exit code 0",
@@ -167,27 +164,23 @@ def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, m
     source, words = LOADED[module]
     Path(f"{module}.py").write_text(source)
     monkeypatch.setattr(loading, "LOADING_S", 5.0 if module == "loops" else PATIENCE_S)
-    assert run(["score", f"{module}:World", "--out", "out"]) == 2
-    (line,) = capfd.readouterr().err.splitlines()
+    line = refused(capfd, ["score", f"{module}:World", "--out", "out"], words)
     assert line.startswith(f"rocking: ENGINE: engine '{module}:World' ")
-    assert words in line
     assert not Path("out").exists()
 
 
 def test_what_is_built_in_is_no_engine(announced, capfd):
-    assert run(["score", "os:system", "--out", "out"]) == 2
-    assert "'os:system' is neither a declaration nor what builds" in capfd.readouterr().err
+    words = "'os:system' is neither a declaration nor what builds"
+    refused(capfd, ["score", "os:system", "--out", "out"], words)
 
 
 @pytest.mark.parametrize("source", ["import sys; sys.exit()", "World = 7"])
 def test_an_engine_that_was_announced_and_cannot_be_loaded_is_a_line(source, tmp_path):
     (tmp_path / "mine.py").write_text(source)
-    case = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
-    done = subprocess.run(
-        [sys.executable, "-m", "studies", "compare", *case, "--sources", "exact"],
-        env={**os.environ, FURTHER: "mine=mine:World", "PYTHONPATH": f"{ROOT}:{tmp_path}"},
-        capture_output=True,
-        text=True,
+    done = python(
+        *("-m", "studies", "compare", *CASE, "--sources", "exact"),
+        path=[tmp_path],
+        env={FURTHER: "mine=mine:World"},
     )
     assert (done.returncode, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()

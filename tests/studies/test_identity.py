@@ -3,24 +3,29 @@
 import shutil
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from analytic import Record, RigidBlock, SinePulse
+from analytic.response import Outcome, Response
 from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
 from studies.histories import study as histories
 from studies.kit import identity, plan
-from studies.kit.fingerprint import PACKAGES, ROOT, everything, reached
+from studies.kit.fingerprint import PACKAGES, ROOT, everything, reached, read
 from studies.kit.identity import FOUND_BY_NAME, Makers, changed
 from studies.kit.jobs import Job, ask, summary
+from studies.kit.provenance import record_of
+from studies.kit.study import Study
 from studies.sources.registry import Source, resolve
 from studies.stability import study as stability
 
 AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
-DEAR = ("overturning", "precision")
+DEAR = ("overturning", "precision", "versions")
 """Studies that take many seconds before their first row."""
 RESUMABLE = [
     pytest.param(study, chapter, id=chapter.folder, marks=[pytest.mark.slow] * (study.name in DEAR))
@@ -70,6 +75,47 @@ def edit(root, file, old, new):
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
+
+
+ASKED = []
+
+
+def answered(job, source):
+    """Answer at once, but for the tenth question, at which the user has enough."""
+    ASKED.append(job.source)
+    if len(ASKED) == 10:
+        raise KeyboardInterrupt
+    return Response(outcome=Outcome.ROCKED, peak_ratio=0.5)
+
+
+def test_a_run_that_is_taken_up_computes_again_what_an_edit_made_stale(
+    copy, tmp_path, monkeypatch, capsys
+):
+    """The question before the first of each source only loads it: 4 and 3 rows are kept."""
+    monkeypatch.setattr(Job, "needs_process", lambda *_: False)
+    monkeypatch.setattr(plan, "Makers", partial(Makers, root=copy))
+    names = ("exact", "pymunk", "box2d")
+    jobs = [replace(job(name), labels={"case": n}) for name in names for n in range(4)]
+    study = Study(name="made-up", module="", help="", products=("made-up.csv",))
+
+    def go_on():
+        read.cache_clear()
+        plan.fill(study, plan.Plan(jobs=jobs, ask=answered), tmp_path / "out")
+        assert list(pd.read_csv(tmp_path / "out" / "made-up.csv")["case"]) == [0, 1, 2, 3] * 3
+        return capsys.readouterr().err, record_of(tmp_path / "out")["runs"][-1]["computed"]
+
+    with pytest.raises(KeyboardInterrupt, match="7 of 12 rows are kept"):
+        go_on()
+    adapter, added = "engines/pymunk/settings.py", "added = 1\n\n    def __post_init__(self)"
+    edit(copy, adapter, "def __post_init__(self)", added)
+    said = f"4 of 12 rows are kept; computed again: pymunk: 3 rows made by another {adapter}\n"
+    assert go_on() == (said, 8)
+    edit(copy, adapter, "added = 1", "# a comment\n    added = 1")
+    assert go_on() == ("", 0)
+    edit(copy, "engines/box2d/build.py", "return ", "return 0 or ")
+    said, computed = go_on()
+    assert "computed again: box2d: 4 rows" in said
+    assert computed == 4
 
 
 EDITS = {

@@ -4,11 +4,10 @@ import json
 import os
 import resource
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commanding import CASE, PATIENCE_S, python
 
 from analytic import RigidBlock, SinePulse
 from analytic.response import Response
@@ -19,32 +18,8 @@ from studies.kit.runner import run_jobs
 from studies.precision import cost
 from studies.sources.registry import SOURCES, Source
 
-ROOT = Path(__file__).parents[2]
-PATIENCE_S = 900.0
-"""Guards against a test that hangs; nothing is expected within it."""
-CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
 COMPARE = ["compare", *CASE, "--sources", "exact", "--json"]
 ENDING = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-
-
-def python(*arguments, before=None, path=(), **options):
-    def prepare():
-        for number in ENDING:
-            # whoever runs the tests may ignore it
-            signal.signal(number, signal.SIG_DFL)
-        if before:
-            before()
-
-    return subprocess.run(
-        [sys.executable, *map(str, arguments)],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join([*map(str, path), str(ROOT)])},
-        stdout=options.pop("stdout", subprocess.PIPE),
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=prepare,
-        timeout=PATIENCE_S,
-        **options,
-    )
 
 
 @pytest.mark.parametrize("count", [1, 20])

@@ -1,34 +1,30 @@
 """The runner and its results folder: failures, resuming, locks, foreign folders."""
 
-import fcntl
 import math
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import PATIENCE_S
 
 from analytic import RigidBlock, SinePulse, simulate
 from studies.__main__ import run
 from studies.kit import signals
 from studies.kit.executors import Local
-from studies.kit.fingerprint import PACKAGES, ROOT
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import FolderError, open_journal, rows_in
+from studies.kit.journal import FolderError, open_journal, seal, unseal
 from studies.kit.options import Running
 from studies.kit.plan import fill
-from studies.kit.provenance import record_of, subject
+from studies.kit.provenance import subject
 from studies.kit.runner import run_jobs
-from studies.kit.sealed import seal, unseal
 from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
@@ -38,14 +34,9 @@ PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 HERE = Path(__file__).parent
 SMALL = sweep.plan([6], ["exact"])
 ALONE = Running(jobs=1, time_limit=1.0)
-PATIENCE_S = 900.0
-"""Guards against a test that hangs; nothing is expected within it."""
-
-
 ANSWERED = []
 FREE = 30
 """Cases that the source `waits` answers before it waits."""
-CASE = ["pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
 HEAD = 2
 """Lines of a journal before its rows, where one source made them all."""
 
@@ -138,14 +129,10 @@ def lines_of(folder):
 def start(folder, function=whole_sweep):
     """Start a sweep in a process of its own; its gate is a file beside the folder."""
     program = f"import test_runner; test_runner.{function.__name__}({str(folder)!r})"
-    environment = {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[1])]),
-        "GATE": str(gate_of(folder)),
-    }
+    known = os.pathsep.join(map(str, (HERE, HERE.parent, HERE.parents[1])))
     return subprocess.Popen(
         [sys.executable, "-c", program],
-        env=environment,
+        env={**os.environ, "PYTHONPATH": known, "GATE": str(gate_of(folder))},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -177,6 +164,14 @@ def finish(folder):
         output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, errors) == (0, "")
     return output
+
+
+def refusal_of(process):
+    """Return the one line with which a sweep ends that cannot go on."""
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (2, "")
+    (line,) = errors.splitlines()
+    return line
 
 
 def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
@@ -214,11 +209,9 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
     folder = tmp_path / "out"
     gate_of(folder).touch()
     with start(folder, sweep_on_a_full_disk) as first:
-        output, errors = first.communicate(timeout=PATIENCE_S)
-    assert (first.returncode, output) == (2, "")
-    assert len(errors.splitlines()) == 1
-    assert "the disk is full" in errors
-    assert "the same command goes on" in errors
+        line = refusal_of(first)
+    assert "the disk is full" in line
+    assert "the same command goes on" in line
     # the last line may be torn; the ones before are whole
     finished = lines_of(folder)[:-1]
     assert 30 <= len(finished) < HEAD + 240
@@ -235,10 +228,7 @@ def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
     with start(folder) as first:
         wait_at_the_gate(folder, first)
         with start(folder) as second:
-            output, errors = second.communicate(timeout=PATIENCE_S)
-        assert (second.returncode, output) == (2, "")
-        assert len(errors.splitlines()) == 1
-        assert "in use by another run" in errors
+            assert "in use by another run" in refusal_of(second)
         gate_of(folder).touch()
         _, errors = first.communicate(timeout=PATIENCE_S)
     assert (first.returncode, errors) == (0, "")
@@ -255,19 +245,9 @@ def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
         if what == "the folder":
             folder.rmdir()
         gate_of(folder).touch()
-        output, errors = process.communicate(timeout=PATIENCE_S)
-    assert (process.returncode, output) == (2, "")
-    assert len(errors.splitlines()) == 1
-    assert "removed during the run" in errors
-    assert "kept" not in errors
-
-
-def test_two_runs_never_share_a_folder(tmp_path):
-    with (tmp_path / ".lock").open("a") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        with pytest.raises(FolderError, match="in use"):
-            fill(STUDY, SMALL, tmp_path, ALONE)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".lock"]
+        line = refusal_of(process)
+    assert "removed during the run" in line
+    assert "kept" not in line
 
 
 @pytest.mark.parametrize(
@@ -287,59 +267,6 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path, change, named):
     with pytest.raises(FolderError, match=named):
         fill(STUDY, SMALL, tmp_path, ALONE)
     assert {item.name: item.read_bytes() for item in tmp_path.iterdir()} == before
-
-
-def in_a_copy(root, *arguments):
-    """Start a command line of the packages in a folder."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "studies", *arguments],
-        cwd=root,
-        env=os.environ | {"PYTHONPATH": str(root)},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def test_rows_made_by_other_code_are_computed_again_and_no_others(tmp_path):
-    """A run is killed, one adapter edited, and the run taken up again."""
-    for name in PACKAGES:
-        ignored = shutil.ignore_patterns("__pycache__", "published")
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
-    folder = tmp_path / "out"
-    command = ("sweep", "--figure", "6", "--sources", "exact", "pymunk", "box2d", "--out", "out")
-
-    def again(changed, old, new):
-        file = tmp_path / changed
-        text = file.read_text()
-        assert old in text
-        file.write_text(text.replace(old, new, 1))
-        with in_a_copy(tmp_path, *command) as process:
-            _, said = process.communicate(timeout=PATIENCE_S)
-        assert process.returncode == 0
-        return said, record_of(folder)["runs"][-1]["computed"]
-
-    with in_a_copy(tmp_path, *command) as first:
-        wait_at_the_gate(folder, first, rows=300)
-        first.kill()
-    adapter = "engines/pymunk/settings.py"
-    made = sources_of(folder)
-    said, computed = again(
-        adapter, "def __post_init__(self)", "added = 1\n\n    def __post_init__(self)"
-    )
-    assert f"computed again: pymunk: {made['pymunk']} rows made by another {adapter}" in said
-    assert computed == 720 - made["exact"] - made["box2d"]
-    assert sources_of(folder) == {"exact": 240, "pymunk": 240, "box2d": 240}
-    assert pd.read_csv(folder / "sweep.csv").duplicated(["source", *CASE]).sum() == 0
-    assert again(adapter, "added = 1", "# a comment\n    added = 1") == ("", 0)
-    said, computed = again("engines/box2d/build.py", "return ", "return 0 or ")
-    assert (said.count("240 rows"), computed) == (1, 240)
-
-
-def sources_of(folder):
-    """Return how many rows of each source a journal holds."""
-    entries, _ = rows_in(folder, (folder / "journal.jsonl").read_bytes())
-    return Counter(entry.row["source"] for entry in entries.values())
 
 
 def test_a_folder_grows_and_never_shrinks(tmp_path):

@@ -4,11 +4,10 @@ import math
 import re
 
 import pytest
+from commanding import BLOCK, PULSE, refused
 
 from studies.__main__ import run
 
-BLOCK = ["--width", "0.5", "--height", "1.5"]
-PULSE = ["--amplitude", "0.4", "--omega", "6.2832"]
 EXACT = ["--sources", "exact"]
 
 
@@ -24,30 +23,27 @@ def test_a_size_in_millimetres_is_asked_about(name, millimetres, command, tmp_pa
     }
     sizes = {"width": "0.5", "height": "1.5", name: str(millimetres)}
     given = [word for size, value in sizes.items() for word in (f"--{size}", value)]
-    assert run([command, *given, *more.get(command, [])]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f"--{name} is {millimetres:g}; it must be at most 200 m" in line
+    words = f"--{name} is {millimetres:g}; it must be at most 200 m"
+    line = refused(capsys, [command, *given, *more.get(command, [])], words)
     meant = re.search(rf"In metres: --{name} (\S+) for (\S+) mm$", line)
     assert float(meant[1]) == pytest.approx(1e-3 * float(meant[2]), rel=1e-12)
     assert not list(tmp_path.iterdir())
 
 
 def test_the_answer_to_the_question_works(capsys):
-    assert run(["compare", "--width", "500", "--height", "1.5", *PULSE, *EXACT]) == 2
-    meant = re.search(r"--width \S+ for", capsys.readouterr().err)[0].split()[:2]
+    line = refused(capsys, ["compare", "--width", "500", "--height", "1.5", *PULSE, *EXACT])
+    meant = re.search(r"--width \S+ for", line)[0].split()[:2]
     assert run(["compare", *meant, "--height", "1.5", *PULSE, *EXACT]) == 0
     assert "0.385153" in capsys.readouterr().out
 
 
 def test_a_tilt_in_degrees_is_asked_about(capsys):
-    assert run(["compare", *BLOCK, "--tilt", "10", *EXACT]) == 2
-    line = capsys.readouterr().err.rstrip()
+    line = refused(capsys, ["compare", *BLOCK, "--tilt", "10", *EXACT])
     assert line.endswith("the side of the block lies on the ground; 10°? --tilt 10 --degrees")
     assert run(["compare", *BLOCK, *re.search("--tilt.*", line[-24:])[0].split(), *EXACT]) == 0
     capsys.readouterr()
     for given in (["--tilt", "100"], ["--tilt", "91", "--degrees"]):
-        assert run(["compare", *BLOCK, *given, *EXACT]) == 2
-        assert "?" not in capsys.readouterr().err
+        assert "?" not in refused(capsys, ["compare", *BLOCK, *given, *EXACT])
 
 
 UNUSUAL = [
