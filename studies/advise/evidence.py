@@ -64,15 +64,15 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
     steps = lines["value"].fillna(pd.Series(map(declared_step, uses)))
     preset = lines.groupby(SETTING[:2], sort=False).ngroup()
-    lines["driver"] = lines["engine"].map(drivers(published))
+    lines = lines.merge(drivers(published), how="left")
     return lines.iloc[np.lexsort((-steps, preset))].reset_index(drop=True)
 
 
-def drivers(published: Path) -> dict[str, str]:
-    """Return who takes the steps of each engine: Python, or a compiled loop."""
+def drivers(published: Path) -> pd.DataFrame:
+    """Return who takes the steps of each engine and preset: Python, or a compiled loop."""
     table = pd.read_csv(published / LADDER, usecols=["method", "driver"]).dropna()
-    first = table["method"].str.partition(" ")[0]
-    return dict(zip(first, table["driver"], strict=True))
+    table[["engine", "preset"]] = table["method"].str.extract(r"(\S+) ([^,]*)")
+    return table[["engine", "preset", "driver"]].drop_duplicates()
 
 
 def published_engines(published: Path) -> list[str]:

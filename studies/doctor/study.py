@@ -17,8 +17,8 @@ from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE
 from studies.cases.paper import HISTORIES
 from studies.kit.arguments import Positive
-from studies.kit.executors import choose
 from studies.kit.jobs import Job
+from studies.kit.options import Computing
 from studies.kit.provenance import (
     NUMERICAL_PACKAGES,
     project_version,
@@ -85,7 +85,7 @@ def answers(time_limit_s: float) -> Iterator[Line]:
     """Ask every engine that is here about one block, and name those that are not."""
     here = installed_engines()
     jobs = [Job(labels={}, block=ASKED.block, motion=ASKED.motion, source=name) for name in here]
-    found = dict(choose(None, time_limit_s, None, at_once=True)(jobs))
+    found = dict(Computing(time_limit=time_limit_s).executor(at_once=True)(jobs))
     yield from (judged(job.asked, found[number]) for number, job in enumerate(jobs))
     others = [f"{name} (pip install '{ENGINES[name].install}')" for name in ENGINES.keys() - here]
     if others:
