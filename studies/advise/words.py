@@ -15,8 +15,8 @@ from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset
 from engines.parts.settings import given
 from studies.advise.evidence import in_words, options_at
-from studies.measures.costs import LOOPS, cost_text
-from studies.measures.words import duration, listed, per_cent
+from studies.measures.costs import cost_text
+from studies.measures.words import duration, gathered, per_cent
 
 USE = ["target", "engine", "preset"]
 SHOWN = (
@@ -100,14 +100,13 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None
 
 
 def claim(lines: pd.DataFrame) -> str:
-    """Say which engine keeps which error at what cost with each loop, and where nothing does."""
-    alike: dict[str, list[str]] = {}
+    """Say what each error costs at the least, with whom, and where nothing keeps it."""
+    said = []
     for target, group in lines.groupby("target", sort=False):
-        found = [_advised(best) for best in best_by_driver(group).values()]
-        by = " and ".join(found) or "nothing"
-        alike.setdefault(by, []).append(per_cent(float(str(target))))
-    words = [f"{listed(targets)} by {by}" for by, targets in alike.items()]
-    return f"Errors are kept cheapest: {'; '.join(words)}."
+        cheapest = group[group["message"] == ""].nsmallest(1, "wall_s")
+        words = [f"costs {_price(line)}" for _, line in cheapest.iterrows()] or ["cannot be had"]
+        said.append((per_cent(float(str(target))), words[0]))
+    return f"An error of {gathered(said)}."
 
 
 def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
@@ -116,10 +115,10 @@ def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
     return {str(line["driver"]): line for _, line in kept.sort_values("driver").iterrows()}
 
 
-def _advised(line: pd.Series[Any]) -> str:
-    """Return a line of advice in words: setting, time, who takes the steps."""
+def _price(line: pd.Series[Any]) -> str:
+    """Return what a line of advice costs, and with whom."""
     cost = cost_text(line["wall_s"], line["runs"], " a case")
-    return f"{setting_text(line)} ({cost}, {LOOPS[str(line['driver'])]})"
+    return f"{cost} ({line['engine']} {line['preset']})"
 
 
 def setting_text(line: pd.Series[Any]) -> str:

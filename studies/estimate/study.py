@@ -26,7 +26,7 @@ from studies.kit.options import (
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, halved
-from studies.measures.words import listed, out_of, part
+from studies.measures.words import alike, listed, out_of, part
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 
@@ -141,11 +141,11 @@ def first_claim(table: pd.DataFrame) -> str:
     good, blind = table[bound], table[~bound]
     claim, said = "The difference from half the step", []
     if not good.empty:
-        words = [f"{line['source']} ({line['factor_95_high']:.2g})" for _, line in good.iterrows()]
+        ends = [f"{end(good['factor_95_high']):.2g}" for end in (min, max)]
         tried = out_of(int(good["bounded"].sum()), int(good["tested"].sum()))
         said += [
-            f", times the number in brackets, bounds {part(BOUNDED)} of the errors of "
-            f"{listed(words)} (of other cases than gave the numbers {tried})"
+            f", times {alike(ends, 'to')}, bounds {part(BOUNDED)} of the "
+            f"errors with {out_of(len(good), len(table))} presets ({tried} on other cases)"
         ]
     if not blind.empty:
         said += [f"{' it' if said else ''} gives {NO_BOUND} with {listed(list(blind['source']))}"]

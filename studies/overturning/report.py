@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ import pandas as pd
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import write_table
-from studies.measures.words import gathered, in_kinds, listed, part
+from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.words import between, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.overturning.areas import read, window_of, with_verdicts
 from studies.overturning.checks import checks
@@ -88,11 +90,17 @@ def headline(folder: Path) -> str:
     words = f"Of an overturning map is wrong: {listed(shares)}"
     if engines.empty:
         return f"{words}."
-    cells = ((row["source"], in_kinds(_kinds(row))) for _, row in engines.iterrows())
-    return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {gathered(cells)}."
+    counts = pd.DataFrame(map(_kinds, engines.to_dict("records")))
+    groups = counts.assign(source=[*engines["source"]]).groupby([*engines["source"].map(preset_of)])
+    cells = [
+        f"{in_words(name)} {between(group, group['source'])}"
+        for name in in_order(map(str, groups.groups))
+        for group in [groups.get_group(name)]
+    ]
+    return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {'; '.join(cells)}."
 
 
-def _kinds(line: pd.Series[Any]) -> dict[str, int]:
+def _kinds(line: Mapping[Any, Any]) -> dict[str, int]:
     """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
     fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
     return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}

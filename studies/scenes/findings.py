@@ -24,7 +24,7 @@ def frame_sentence(lines: pd.DataFrame) -> str:
 def slide_sentence(lines: pd.DataFrame) -> str:
     """Say for each preset how far off the slips are; empty without any."""
     largest = _largest(lines, "largest_slip_error_m")
-    said = [f"{1e3 * most:.2g} mm {words}" for words, most in largest]
+    said = [f"{float(f'{1e3 * most:.2g}'):g} mm {words}" for words, most in largest]
     return f"The slips of a block are off by up to {listed(said)}." if said else ""
 
 

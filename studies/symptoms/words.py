@@ -14,7 +14,7 @@ from studies.measures.words import listed, part
 from studies.symptoms.lines import NUMBERS
 from studies.symptoms.patch import BLOCK, named
 
-SHORT = 60
+SHORT = 28
 """Letters up to which a sentence quotes what a setting is in the library's words."""
 
 SHOWN = ("engine", "shown_by", "setting", *NUMBERS)

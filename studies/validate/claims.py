@@ -58,7 +58,7 @@ def first_claim(compared: pd.DataFrame) -> str:
     ]
     calm = compared[sensitivity_of(compared) < WELL_CONDITIONED]
     return (
-        f"Outcomes right on random cases that nothing was tuned on ({width(compared)}): "
+        "Outcomes right on random cases that nothing was tuned on: "
         f"{gathered(right)}; largest errors of the peak {_sizes(compared)}, and {_sizes(calm)} "
         f"where neither κ nor the sensitivity reaches {WELL_CONDITIONED:g}."
     )

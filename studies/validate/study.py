@@ -26,7 +26,7 @@ from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.bounds import HALVES, bounded, half_jobs, with_bounds
-from studies.validate.claims import bands, census, first_claim, quantiles, worst
+from studies.validate.claims import bands, census, first_claim, quantiles, width, worst
 from studies.validate.hints import CALM, HINTED, hint_jobs, leanings
 
 S_IS = (
@@ -132,7 +132,7 @@ def report(folder: Path) -> str:
     left, in_bands = census(settings["seed"], compared["case"].nunique()), bands(compared)
     kept = {"errors": compared, "drawn": left, "bands": in_bands}
     tables = {
-        "Errors of the peak where both survive": quantiles(compared),
+        f"Errors of the peak where both survive, {width(compared)}": quantiles(compared),
         f"The same where S is below {WELL_CONDITIONED:g}": quantiles(
             compared[judged < WELL_CONDITIONED]
         ),

@@ -242,7 +242,7 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert run(["advise", "--engines", *CORE, "--out", str(out)]) == 0
     assert capsys.readouterr().out == (out / "findings.txt").read_text()
     assert (out / "advice.png").stat().st_size > 7_000
-    assert study.headline(out).startswith("Errors are kept cheapest: 10 % ")
+    assert study.headline(out).startswith("An error of 10 % ")
     assert Path(out / "provenance.json").is_file()
 
 

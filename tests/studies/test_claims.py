@@ -267,9 +267,9 @@ def test_random_cases_say_how_wide_they_are_and_what_is_right():
             "amplitude_g": [0.6, 0.399, 0.5],
         }
     )
-    wide = "(H/B 2 to 10, B 0.02 to 9.8 m, 1 to 4 half cycles, ω/p 0.3 to 11.9, 1.2 to 3.99 onsets)"
-    first = validate.first_claim(rows)
-    assert f"{wide}: mujoco:fixed 2 of 3 (at rest for rocked in 1); largest" in first
+    wide = "H/B 2 to 10, B 0.02 to 9.8 m, 1 to 4 half cycles, ω/p 0.3 to 11.9, 1.2 to 3.99 onsets"
+    assert validate.width(rows) == wide
+    assert ": mujoco:fixed 2 of 3 (at rest for rocked in 1); largest" in validate.first_claim(rows)
 
 
 def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
@@ -281,8 +281,8 @@ def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
     ]
     pd.DataFrame(lines).to_csv(tmp_path / "differences.csv")
     assert overturning.headline(tmp_path).endswith(
-        "Of 1024 cells of a coarse grid: mujoco the fall wrong in 1; dart none wrong; "
-        "rapier at rest for rocked in 3 and no answer in 2."
+        "the fall wrong in up to 1 (mujoco), at rest for rocked in up to 3 (rapier) and no answer "
+        "in up to 2 (rapier)."
     )
 
 
