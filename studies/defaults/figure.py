@@ -37,7 +37,7 @@ LABELS = {
     NO_ANSWER: WORDS[NO_ANSWER],
     INVALID: "not judged: it should slide or lift off",
 }
-ACROSS = 4
+ACROSS = 3
 SHOWN_PULSE, SHOWN_ASPECT = "full-sine", 3.0
 
 
@@ -61,7 +61,8 @@ def draw_maps(rows: pd.DataFrame) -> Figure:
         axes.set_xlabel("frequency  ω/p")
     width = rows["width_m"].iloc[0]
     drawing.suptitle(
-        f"As documented: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m",
+        f"As documented: full sines, B = {width:g} m, H = {SHOWN_ASPECT * width:g} m;\nevery "
+        "other one comes after a second of rest",
         fontsize=11,
     )
     seen = {name: colour for name, colour in COLOURS.items() if name in set(rows["verdict"])}
