@@ -161,7 +161,8 @@ def table(response: Response) -> pd.DataFrame:
     --------
     >>> from analytic import RigidBlock, Still
     >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), times=[0.0, 0.1])
+    >>> seen = {"times": [0.0, 0.1], "duration": 0.1}
+    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), **seen)
     >>> table(response).round(3).to_dict("list")
     {'time_s': [0.0, 0.1], 'theta_rad': [0.1, 0.09], 'velocity_rad_s': [0.0, -0.208]}
     """
@@ -201,7 +202,8 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     --------
     >>> from analytic import RigidBlock, Still
     >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), times=[0.0, 0.1])
+    >>> seen = {"times": [0.0, 0.1], "duration": 0.1}
+    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), **seen)
     >>> plot(response).get_xlabel()
     'time  t  [s]'
     """
