@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-from pandas.core.groupby import DataFrameGroupBy
 
 from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
@@ -15,6 +14,9 @@ from studies.cases.paper import PULSES
 from studies.measures.presets import engine_of
 from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
+
+if TYPE_CHECKING:
+    from pandas.core.groupby import DataFrameGroupBy
 
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""

@@ -1,5 +1,7 @@
 """Free rocking: the period and the decay of each source against the closed forms."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated

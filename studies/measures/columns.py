@@ -3,6 +3,8 @@
 A line there is for the columns of that name in all tables, or in the one that it names.
 """
 
+from __future__ import annotations
+
 from functools import cache
 from pathlib import Path
 

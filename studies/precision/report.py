@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from scipy.stats import linregress
 
 from analytic import simulate
 from analytic.response import Outcome, Response
@@ -200,6 +199,8 @@ def observed_order(line: pd.DataFrame, method: Method) -> tuple[float, float]:
     A line through the logarithms, over the settings whose error is above three times the floor, and
     that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
     """
+    from scipy.stats import linregress
+
     usable = line[(line["failed"] == 0) & np.isfinite(line["median_error"])]
     floor = usable["median_error"].min()
     reached = usable["value"][usable["median_error"] == floor].max()
