@@ -3,6 +3,8 @@
 Scenes and bounds were read in their repositories, at the commits named.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any, NamedTuple
