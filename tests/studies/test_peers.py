@@ -44,6 +44,7 @@ def test_each_exact_number_comes_out_by_another_way():
     )
     assert list(found["exact_passes"]) == ["True"] * 8 + ["False"]
     assert set(found["source"]) == {""} and found["found"].isna().all()
+    assert len(peers(rows().head(0))) == 2  # nothing is said of what was not asked
 
 
 def test_what_the_bounds_let_pass():
