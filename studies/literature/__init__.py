@@ -9,10 +9,11 @@ STUDY = Study(
 
 Steady states under harmonic shaking and their limits of stability, least accelerations that
 overturn a block, the end of a mode, a drop without friction, measured velocity ratios: each with
-its source, the printed value and its digits, and why where it does not come out. Writes
-literature.csv, agreement.csv, literature.png and findings.txt; resumable. Less than a minute.""",
+its source, the printed value and its digits, and why where it does not come out. Also tests of
+engines by their authors, and their exact numbers. Writes literature.csv, agreement.csv, peers.csv,
+literature.png and findings.txt; resumable. Less than a minute.""",
     table="literature.csv",
-    products=("literature.csv", "agreement.csv", "literature.png", "findings.txt"),
+    products=("literature.csv", "agreement.csv", "peers.csv", "literature.png", "findings.txt"),
     chapters=(
         Chapter(
             folder="literature",

@@ -15,9 +15,10 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import read_table, write_table
 from studies.literature import STUDY
+from studies.literature.peers import PEERS, peers, put, read_off
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
-from studies.literature.readings import NAMED, reduce, solve_problem, times_of
+from studies.literature.readings import NAMED, times_of
 from studies.measures.words import out_of
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
@@ -36,7 +37,8 @@ def command(
     """Hold printed numbers against the models that they are about, and the engines beside.
 
     An engine joins where the printed block has ideally inelastic impacts, as the engine's has, and
-    the print is a threshold.
+    the print is a threshold; and in its authors' own tests, whose bounds are held against exact
+    numbers, too.
 
     Parameters
     ----------
@@ -50,8 +52,10 @@ def command(
         for source in dict.fromkeys((problem.model, "exact", *sources))
         if can_answer(problem, source)
     ]
+    engines = {resolve(source).engine for source in sources}
+    jobs += [job for test in PEERS for job in test.jobs(engines)]
     asked = tuple(dict.fromkeys(job.source for job in jobs))
-    plan = Plan(jobs=jobs, growing={"source": asked}, ask=solve_problem, reduce=reduce)
+    plan = Plan(jobs=jobs, growing={"source": asked}, ask=put, reduce=read_off)
     return carry_out(STUDY, plan, out, running, report)
 
 
@@ -92,11 +96,20 @@ def _observed(problem: Problem) -> float | None:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's literature.csv; write and return the text."""
-    table = agreement(_read(folder, "literature"))
+    rows = _read(folder, "literature")
+    tests = rows["problem"].isin([test.name for test in PEERS])
+    table, tested = agreement(rows[~tests]), peers(rows[tests])
     write_table(folder / "agreement.csv", table)
+    write_table(folder / "peers.csv", tested)
     shown = {
         "Printed numbers, and the answers": answers(table),
         "Who printed them": table[["work"]].drop_duplicates(),
+        "Tests by engines' authors: what passes, exact numbers, and engines here": in_digits(
+            tested
+        ),
+        "What else passes, and where they stand": tested[
+            ["test", "says", "work"]
+        ].drop_duplicates(),
     }
     return tell(folder, pictures(folder), headline(folder), shown)
 
@@ -153,7 +166,13 @@ def answers(table: pd.DataFrame) -> pd.DataFrame:
     place = ["problem", "side"]
     mine = table[table["source"] == table["model"]].set_index(place)
     values = table.pivot(index=place, columns="source", values="value")[table["source"].unique()]
-    shown = values.map("{:.6g}".format).replace("nan", "")  # a print may have many digits
+    shown = in_digits(values)
     why = mine["why"].where(mine["agrees"] != "True", "")
     words = mine[["quantity", "printed", "measured", "agrees", "miss"]]
     return words.join(shown).assign(why=why).reset_index("problem")
+
+
+def in_digits(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with its numbers in six digits, as far as it is no words."""
+    numbers = table.select_dtypes("number").map("{:.6g}".format).replace("nan", "")
+    return table.drop(columns=["says", "work"], errors="ignore").assign(**numbers)
