@@ -9,14 +9,16 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.paper import sweep_cases
+from studies.cases.paper import Case, sweep_cases
 from studies.drawing.kept import Pictures, tell
+from studies.kit import provenance
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
+from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.claims import write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
@@ -84,6 +86,7 @@ def report(folder: Path) -> str:
     tables = {
         "All figures": over_all(table),
         "The case where each source errs most": worst_cases(compared),
+        WORST_AGAIN: worst_again(again(folder)),
         "The paper's conclusions": pd.DataFrame(
             {
                 "holds": [item.verdict for item in found],
@@ -114,6 +117,13 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
         return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
     by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
     return {"overview": draw_overview(table), **by_preset}
+
+
+def again(folder: Path) -> pd.DataFrame:
+    """Return the case where each source errs most, with the commands that ask it again."""
+    compared = with_reference(read(folder))
+    settings = provenance.record_of(folder)["settings"]
+    return asked_again(worst_cases(compared), compared, Case, settings)
 
 
 def headline(folder: Path) -> str:
