@@ -64,11 +64,15 @@ def commands(
     watched = "" if usual else f" --duration {duration}"
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
-    asked = resolve(source)
-    told = usual and outcome in ("rocked", "overturned")
-    if not (told and asked.engine and asked.declared.script and not asked.accurate):
+    if not (usual and outcome in ("rocked", "overturned") and written_out(source)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"
+
+
+def written_out(source: str) -> bool:
+    """Say whether `rocking export` writes a source out: an engine with equal steps and a script."""
+    asked = resolve(source)
+    return bool(asked.engine and asked.declared.script) and not asked.accurate
 
 
 def asked_again(
