@@ -21,7 +21,7 @@ FLAGS = ("start", "friction", "step", "accuracy")
 ROCKING = "rocking "
 """How a command begins; what else stands in its place says why there is none."""
 
-WORST_AGAIN = "The worst of these, asked again"
+WORST_AGAIN = "The worst, asked again"
 """Title of `worst_again`."""
 
 
