@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -13,6 +14,7 @@ from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import Motion, SinePulse, Still
 from engines.layouts import System
 from studies.cases.paper import free_rocking_window
+from studies.kit.provenance import record_of
 from studies.sources.registry import Effort, resolve
 
 FLAGS = ("start", "friction", "step", "accuracy")
@@ -76,19 +78,20 @@ def written_out(source: str) -> bool:
 
 
 def asked_again(
-    worst: pd.DataFrame, rows: pd.DataFrame, kind: type[Any], settings: Mapping[str, Any]
+    folder: Path, worst: pd.DataFrame, rows: pd.DataFrame, kind: type[Any]
 ) -> pd.DataFrame:
     """Return worst cases, the largest error first, with the commands that ask them again.
 
     Parameters
     ----------
+    folder : Path
+        Its step and accuracy were every source's.
     worst, rows : DataFrame
         Some rows of a table, and all with every column, under the same index.
     kind : type
         The dataclass of a case, whose fields are columns.
-    settings : mapping
-        Of the folder; its step and accuracy were every source's.
     """
+    settings = record_of(folder)["settings"]
     effort = Effort(step=settings["step"], accuracy=settings["accuracy"])
     first = worst.sort_values("error", key=abs, ascending=False, na_position="first", kind="stable")
     asked = []

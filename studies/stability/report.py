@@ -67,10 +67,10 @@ def again(folder: Path) -> pd.DataFrame:
     wrong = failures(_table(folder, "stability"))
     wrong = wrong.sort_values("remedy", key=lambda said: said != NOTHING, kind="stable")
     cases, asked = {case.name: case for case in extremes(False)}, []
-    for row in wrong.to_dict("records"):
-        case, source = cases[row["case"]], row["source"]
-        known = {"duration": case.duration, "outcome": row["outcome"]}
-        asked.append(commands(case.block, case.motion, source, case.options(source), **known))
+    for name, source, outcome in wrong[["case", "source", "outcome"]].itertuples(index=False):
+        case = cases[name]
+        job = (case.block, case.motion, source, case.options(source))
+        asked.append(commands(*job, duration=case.duration, outcome=outcome))
     return with_commands(wrong[["case", "source", "reason", "remedy"]], asked)
 
 

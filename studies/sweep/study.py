@@ -11,7 +11,6 @@ import pandas as pd
 
 from studies.cases.paper import Case, sweep_cases
 from studies.drawing.kept import Pictures, tell
-from studies.kit import provenance
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -122,8 +121,7 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
 def again(folder: Path) -> pd.DataFrame:
     """Return the case where each source errs most, with the commands that ask it again."""
     compared = with_reference(read(folder))
-    settings = provenance.record_of(folder)["settings"]
-    return asked_again(worst_cases(compared), compared, Case, settings)
+    return asked_again(folder, worst_cases(compared), compared, Case)
 
 
 def headline(folder: Path) -> str:

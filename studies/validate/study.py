@@ -140,7 +140,7 @@ def report(folder: Path) -> str:
         "Errors over S": quantiles(compared.assign(error=compared["error"] / judged)),
         **{f"In bands of {by}": rows for by, rows in in_bands.groupby("by", sort=False)},
         "The largest errors": worst(compared),
-        WORST_AGAIN: worst_again(asked_again(worst(compared), compared, RandomCase, settings)),
+        WORST_AGAIN: worst_again(asked_again(folder, worst(compared), compared, RandomCase)),
     }
     if (folder / "hints.csv").exists():
         kept["leaning"] = leanings(compared, compare(folder, "hints"))
@@ -159,8 +159,7 @@ def report(folder: Path) -> str:
 def again(folder: Path) -> pd.DataFrame:
     """Return the cases in which each source errs most, with the commands that ask them again."""
     compared = pd.read_csv(folder / "errors.csv")
-    settings = provenance.record_of(folder)["settings"]
-    return asked_again(worst(compared), compared, RandomCase, settings)
+    return asked_again(folder, worst(compared), compared, RandomCase)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:
