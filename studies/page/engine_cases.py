@@ -11,6 +11,7 @@ import pandas as pd
 from studies.cases.paper import PULSES
 from studies.defaults.claims import INVALID
 from studies.defaults.study import read
+from studies.measures.again import written_out
 
 DIGITS = 5
 OVERTURNED = -1.0
@@ -27,7 +28,8 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     dict
         Of each of AXES its values; peaks: source -> the peaks of all cases, in their order, without
         the study's table of no source; judged: of each case 1, or 0 where the block would slide or
-        lift off.
+        lift off; rests: for how long all is at rest before the pulse of each [s]; written: the
+        sources that `rocking export` writes out.
     """
     path = folder / "defaults" / "defaults.csv"
     if not path.is_file():
@@ -43,7 +45,14 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
     slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
     judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
-    return {**axes, "peaks": found, "judged": judged.tolist()}
+    rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
+    return {
+        **axes,
+        "peaks": found,
+        "judged": judged.tolist(),
+        "rests": rests.tolist(),
+        "written": list(filter(written_out, found)),
+    }
 
 
 def _short(value: float) -> float | None:

@@ -6,6 +6,7 @@ import base64
 import io
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import read_table
+from studies.measures.again import WORST_AGAIN
 from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
 from studies.measures.wrongness import KINDS
@@ -113,7 +115,7 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
             for name, drawn in module.pictures(folder).items()
         ],
         "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
-        "tables": [(name, *table(folder / name)) for name in chapter.tables],
+        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, module)],
         "failures": failures(folder, study.table),
     }
 
@@ -149,9 +151,15 @@ def _address(kind: str, image: io.BytesIO) -> str:
     return f"data:image/{kind};base64," + base64.b64encode(image.getvalue()).decode()
 
 
-def table(path: Path) -> tuple[list[str], list[list[Cell]]]:
-    """Return the heads and rows of a CSV."""
-    rows = read_table(path)
+def _tables(chapter: Chapter, folder: Path, study: Any) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield a chapter's tables, and of a study that has them the commands of its worst cases."""
+    yield from ((name, read_table(folder / name)) for name in chapter.tables)
+    if hasattr(study, "again"):
+        yield WORST_AGAIN, study.again(folder)
+
+
+def table(rows: pd.DataFrame) -> tuple[list[str], list[list[Cell]]]:
+    """Return the heads and rows of a table as cells."""
     return list(rows.columns), [[cell(value) for value in row] for row in rows.to_numpy(object)]
 
 

@@ -125,3 +125,12 @@ function rock(alpha, eta, shaking, until, times = [], step = 1 / 400) {
   }
   return done("failed", NaN);
 }
+
+// the words that ask a source about a pulse again, and that write it out where an engine can be
+function commands(width, aspect, halfCycles, amplitude, omega, source, write) {
+  const words = `--width ${width} --height ${width * aspect} --half-cycles ${halfCycles}`
+    + ` --amplitude ${amplitude} --omega ${omega}`;
+  const beside = source === "exact" ? "" : ` ${source}`;
+  const compare = `rocking compare ${words} --sources exact${beside}`;
+  return write ? [compare, `rocking export ${words} --engine ${source} --out DIR`] : [compare];
+}

@@ -189,6 +189,14 @@ const blockOf = first => {
     aspect: held.aspect[Math.floor(block / held.width_m.length) % held.aspect.length] };
 };
 
+// a button that copies a command, named by what it does
+function copying(command) {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", value: command, title: command, textContent: command.split(" ")[1] });
+  button.dataset.copy = "";
+  return button;
+}
+
 function sayEngines(now) {
   const first = firstOf(now);
   part("engines").hidden = first < 0;
@@ -198,7 +206,8 @@ function sayEngines(now) {
   const j = nearestOf(held.onsets, now.amplitude / Math.tan(now.alpha));
   const place = first + j * held.omega_over_p.length + i, exact = held.peaks.exact[place];
   const amplitude = held.onsets[j] / aspect, omega = held.omega_over_p[i] * Math.sqrt((0.75 * G) / R);
-  part("case").textContent = `H/B ${aspect}, B ${width} m, ${digits(amplitude)} g, ${digits(omega)} rad/s`;
+  const rest = held.rests[place] ? `, after ${held.rests[place]} s of rest, which no command asks for` : "";
+  part("case").textContent = `H/B ${aspect}, B ${width} m, ${digits(amplitude)} g, ${digits(omega)} rad/s${rest}`;
   const words = peak => (peak === null ? "no result" : peak < 0 ? "overturns" : `${peak.toFixed(4)} θcr`);
   const off = peak => (!held.judged[place] ? "should slide or lift off" : peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
     : exact < 0 ? "wrong" : `${peak < exact ? "−" : "+"}${digits(100 * Math.abs(peak / exact - 1), 2)} %`);
@@ -209,6 +218,9 @@ function sayEngines(now) {
     head.textContent = source;
     line.append(head);
     for (const text of [words(peak), source === "exact" ? "" : off(peak)]) line.insertCell().textContent = text;
+    const cell = line.insertCell(), write = peak && held.written.includes(source);
+    const asks = commands(width, aspect, now.halfCycles, amplitude, omega, source, write);
+    if (!rest) cell.append(...asks.map(copying));
     return line;
   }));
   part("go").onclick = () => put({ aspect, width, amplitude, omega });

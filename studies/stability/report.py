@@ -7,8 +7,10 @@ from pathlib import Path
 import pandas as pd
 
 from analytic.response import Reason
+from studies.cases.extreme import extremes
 from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import read_table, write_table
+from studies.measures.again import WORST_AGAIN, commands, with_commands, worst_again
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import resolve
 from studies.stability.findings import failures, first_claim
@@ -40,6 +42,7 @@ def report(folder: Path) -> str:
         "Failures, and the first setting that avoids each": (
             failures(matrix)[["case", "source", "reason", "remedy"]]
         ),
+        WORST_AGAIN: worst_again(again(folder)),
         "Cases for which the reference itself does not hold": (
             matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
         ).drop_duplicates("case"),
@@ -57,6 +60,18 @@ def report(folder: Path) -> str:
         ),
     }
     return tell(folder, pictures(folder), first_claim(matrix), tables)
+
+
+def again(folder: Path) -> pd.DataFrame:
+    """Return the failures, those that nothing mends first, with the commands that ask them."""
+    wrong = failures(_table(folder, "stability"))
+    wrong = wrong.sort_values("remedy", key=lambda said: said != NOTHING, kind="stable")
+    cases, asked = {case.name: case for case in extremes(False)}, []
+    for name, source, outcome in wrong[["case", "source", "outcome"]].itertuples(index=False):
+        case = cases[name]
+        job = (case.block, case.motion, source, case.options(source))
+        asked.append(commands(*job, duration=case.duration, outcome=outcome))
+    return with_commands(wrong[["case", "source", "reason", "remedy"]], asked)
 
 
 def headline(folder: Path) -> str:

@@ -23,10 +23,10 @@ from studies.sources.registry import Source
 from studies.stability import STUDY
 from studies.stability.largest_step import reduce_steps, search, step_jobs
 from studies.stability.remedies import Remedied, answer
-from studies.stability.report import headline, pictures, report
+from studies.stability.report import again, headline, pictures, report
 from studies.stability.sensitivity import condition_number, reduce_sensitivity, sensitivity_jobs
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["again", "command", "headline", "pictures", "report"]
 
 METHODS = (
     "exact",

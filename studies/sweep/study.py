@@ -9,7 +9,7 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.paper import sweep_cases
+from studies.cases.paper import Case, sweep_cases
 from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
@@ -17,6 +17,7 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
+from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.claims import write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
@@ -84,6 +85,7 @@ def report(folder: Path) -> str:
     tables = {
         "All figures": over_all(table),
         "The case where each source errs most": worst_cases(compared),
+        WORST_AGAIN: worst_again(again(folder)),
         "The paper's conclusions": pd.DataFrame(
             {
                 "holds": [item.verdict for item in found],
@@ -114,6 +116,12 @@ def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
         return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
     by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
     return {"overview": draw_overview(table), **by_preset}
+
+
+def again(folder: Path) -> pd.DataFrame:
+    """Return the case where each source errs most, with the commands that ask it again."""
+    compared = with_reference(read(folder))
+    return asked_again(folder, worst_cases(compared), compared, Case)
 
 
 def headline(folder: Path) -> str:

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.drawn import draw
+from studies.cases.drawn import RandomCase, draw
 from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
 from studies.kit.arguments import Count, Out, check_sources
@@ -20,6 +20,7 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
+from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import ELSEWHERE
 from studies.sources.groups import core_sources
@@ -139,6 +140,7 @@ def report(folder: Path) -> str:
         "Errors over S": quantiles(compared.assign(error=compared["error"] / judged)),
         **{f"In bands of {by}": rows for by, rows in in_bands.groupby("by", sort=False)},
         "The largest errors": worst(compared),
+        WORST_AGAIN: worst_again(asked_again(folder, worst(compared), compared, RandomCase)),
     }
     if (folder / "hints.csv").exists():
         kept["leaning"] = leanings(compared, compare(folder, "hints"))
@@ -152,6 +154,12 @@ def report(folder: Path) -> str:
     for name, table in kept.items():
         write_table(folder / f"{name}.csv", table)
     return tell(folder, pictures(folder), f"{first_claim(compared)} {S_IS}", tables)
+
+
+def again(folder: Path) -> pd.DataFrame:
+    """Return the cases in which each source errs most, with the commands that ask them again."""
+    compared = pd.read_csv(folder / "errors.csv")
+    return asked_again(folder, worst(compared), compared, RandomCase)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:

@@ -17,6 +17,7 @@ from analytic.block import GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
 from studies.page.engine_cases import AXES, engine_cases
+from studies.sweep import study as sweep
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -94,6 +95,13 @@ def test_the_page_says_what_the_tables_say(made):
     assert f"mujoco {record['engines']['mujoco']}" in text
 
 
+def test_a_worst_case_is_copied_as_a_command(made):
+    text = (made / "report.html").read_text()
+    words = sweep.again(made / "sweep").set_index("source").loc["modified", "compare"]
+    assert words.startswith("rocking compare --width")
+    assert f'<td><button type="button" data-copy value="{words}">copy</button></td>' in text
+
+
 def test_a_picture_is_described_and_what_is_weaker_is_said(made):
     text = (made / "report.html").read_text()
     described = re.findall('<img [^>]*alt="([^"]*)"', text)
@@ -129,6 +137,7 @@ def test_the_engines_answers_are_those_of_the_tables():
         )
     )
     assert len(shown) == len(cases) > 1000
+    assert held["rests"] == list(cases["rest_s"])
     for case in cases.iloc[::97].itertuples():
         half_cycles = {"half-sine": 1, "full-sine": 2}[case.pulse]
         peak = shown[half_cycles, case.aspect, case.width_m, case.onsets, case.omega_over_p]
