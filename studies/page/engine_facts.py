@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,21 @@ def rules_of_engines(published: Path) -> str:
         for place, (rule, *errors) in enumerate(rules(lines, name))
     ]
     return table(("engine", "rule", "error without it", "with it"), rows)
+
+
+def own_tests(published: Path) -> str:
+    """Return what tests of engines' authors pass, the exact number, and what is found here."""
+    lines = pd.read_csv(published / "literature" / "peers.csv").fillna({"source": ""})
+    rows = []
+    for test, group in lines.groupby("test", sort=False):
+        line, low, high = group.iloc[0], group["low"].iloc[0], group["high"].iloc[0]
+        passes = f"{low:.5g} or more" if math.isinf(high) else f"{low:.5g} to {high:.5g}"
+        exact = f"{line['exact']:.5g}" + ("" if line["exact_passes"] else ", which fails")
+        found = "<br>".join(
+            f"`{row['source']}` {row['found']:.5g}" for _, row in group.iterrows() if row["source"]
+        )
+        rows.append((str(test), line["quantity"], passes, exact, found or "–", line["says"]))
+    return table(("test", "of", "passes", "exact", "here", "what else passes"), rows)
 
 
 def frames_of_engines(published: Path) -> str:

@@ -91,6 +91,7 @@ def pages(root: Path) -> dict[Path, str]:
         "objections": objections(published, lines),
         "slippery": slippery(),
         "troubles": engine_facts.troubles(),
+        "own_tests": engine_facts.own_tests(published),
         "rules": engine_facts.rules_of_engines(published),
         "ninth": facts.ninth(root),
         "random_fixed": engine_facts.random_fixed(published),
