@@ -91,11 +91,12 @@ def headline(folder: Path) -> str:
     if engines.empty:
         return f"{words}."
     counts = pd.DataFrame(map(_kinds, engines.to_dict("records")))
-    groups = counts.assign(source=[*engines["source"]]).groupby([*engines["source"].map(preset_of)])
+    counts = counts.assign(source=[*engines["source"]])
+    presets = counts["source"].map(preset_of)
     cells = [
         f"{in_words(name)} {between(group, group['source'])}"
-        for name in in_order(map(str, groups.groups))
-        for group in [groups.get_group(name)]
+        for name in in_order(presets)
+        for group in [counts[presets == name]]
     ]
     return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {'; '.join(cells)}."
 
