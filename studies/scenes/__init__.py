@@ -31,7 +31,7 @@ summaries and pictures, and findings.txt; resumable.""",
         Chapter(
             folder="scenes",
             question="Does it hold for several bodies, for friction alone, on a moving floor?",
-            tables=("frame-summary", "slide-summary", "floor-summary", "block-summary"),
+            tables=tuple(f"{kind}-summary.csv" for kind in ("frame", "slide", "floor", "block")),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, two places of the steps.",
         ),

@@ -43,6 +43,11 @@ def test_every_study_is_a_chapter_but_those_shown_elsewhere():
     assert {study.name for study in STUDIES} - shown == alone
 
 
+def test_what_a_chapter_shows_is_what_its_study_writes():
+    for study, chapter in CHAPTERS:
+        assert set(chapter.tables) <= set(study.products), study.name
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
