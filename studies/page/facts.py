@@ -16,6 +16,7 @@ from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
+from studies.kit.provenance import NOT_INSTALLED
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
@@ -330,10 +331,14 @@ def lasts(*records: Mapping[str, Any]) -> str:
         not know, neither asked.
     """
     same = ("study", "version", "machine", "settings")
-    known = sorted(set.intersection(*(set(record["engines"]) for record in records)))
-    told = [
-        [*(record[name] for name in same), *(record["engines"][engine] for engine in known)]
+    engines = [
+        {name: kept for name, kept in record["engines"].items() if kept != NOT_INSTALLED}
         for record in records
+    ]
+    known = sorted(set.intersection(*map(set, engines)))
+    told = [
+        [*(record[name] for name in same), *(found[engine] for engine in known)]
+        for record, found in zip(records, engines, strict=True)
     ]
     if any(one != told[0] for one in told):
         raise ValueError(f"the provenances of two runs differ in engines or {', '.join(same)}")

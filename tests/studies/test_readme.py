@@ -146,6 +146,8 @@ def test_the_first_run_and_a_later_one_are_timed_apart():
     assert facts.lasts({**later, "runs": [{"duration_s": 5.0}]}).count(unknown) == 2
     ninth = {**later, "engines": {**versions, "a ninth": "1.0"}}
     assert facts.lasts(ninth, first) == both  # which neither asked
+    absent = {**first, "engines": {**versions, "a ninth": "not installed"}}
+    assert facts.lasts(ninth, absent) == both
     with pytest.raises(ValueError, match="the provenances of two runs differ"):
         facts.lasts(later, {**first, "engines": {"mujoco": "2.0"}})
     with pytest.raises(ValueError, match="the provenances of two runs differ"):
