@@ -56,9 +56,10 @@ def read(folder: Path, subject: Mapping[str, Any]) -> Elsewhere:
     """
     with _blamed(folder):
         record = record_of(folder)
-        if not (folder / JOURNAL).is_file():
+        path = folder / JOURNAL
+        if not path.is_file():
             raise FileNotFoundError  # on a pipe a run would hang
-        kept = rows_of(folder / JOURNAL, subject)
+        kept = rows_of(path, path.read_bytes(), subject)
         return Elsewhere(folder, kept, {name: record[name] for name in ("git", "machine")})
 
 

@@ -201,8 +201,8 @@ def _unpack(path: Path) -> None:
 
 def _finished(path: Path, identity: Mapping[str, Any]) -> Kept:
     """Read the finished rows, and cut off a last line that a killed run left incomplete."""
-    entries, makers = rows_of(path, identity, "it must be new, or hold")
     content = path.read_bytes()
+    entries, makers = rows_of(path, content, identity, "it must be new, or hold")
     whole = content.rfind(b"\n") + 1
     if whole < len(content):
         os.truncate(path, whole)
@@ -210,12 +210,16 @@ def _finished(path: Path, identity: Mapping[str, Any]) -> Kept:
     return Kept(good, makers)
 
 
-def rows_of(path: Path, identity: Mapping[str, Any], must: str = "it must hold") -> Kept:
+def rows_of(
+    path: Path, content: bytes, identity: Mapping[str, Any], must: str = "it must hold"
+) -> Kept:
     """Return what a journal holds, failures among it.
 
     Parameters
     ----------
     path : Path
+    content : bytes
+        Of the journal there.
     identity : mapping
         Study and settings, which must be those of the journal.
     must : str, optional
@@ -226,7 +230,6 @@ def rows_of(path: Path, identity: Mapping[str, Any], must: str = "it must hold")
     FolderError
         If the file is no journal, is damaged, or belongs to something else.
     """
-    content = path.read_bytes()
     line = content.partition(b"\n")[0]
     try:
         found = json.loads(line)

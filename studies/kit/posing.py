@@ -169,7 +169,8 @@ class Excitation:
             both = f"--half-cycles is {self.half_cycles} and --pulse is {self.pulse}"
             raise BadInputError(f"{both}; give one or the other")
         if self.amplitude is None or self.omega is None:
-            missing = [f"--{name}" for name in ("amplitude", "omega") if not getattr(self, name)]
+            given = {"--amplitude": self.amplitude, "--omega": self.omega}
+            missing = [name for name, value in given.items() if value is None]
             words = "a pulse requires both, or give --record, --tilt or --rate"
             raise BadInputError(f"{' and '.join(missing)} missing; {words}")
         with as_bad_input():

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from textwrap import fill
 from typing import TypeAlias
 
 import pandas as pd
@@ -25,12 +24,6 @@ class Finding:
     statement: str
     holds: bool | None
     numbers: str
-
-    @property
-    def text(self) -> str:
-        """The finding as a reader sees it."""
-        lines = fill(self.numbers, 99, initial_indent="    ", subsequent_indent="    ")
-        return f"{self.verdict}: {self.statement}\n{lines}"
 
     @property
     def verdict(self) -> str:
@@ -63,11 +56,6 @@ class Claim:
         if self.needs and not set(table["source"]).issuperset(self.needs):
             return Finding(self.statement, None, f"needs the sources {', '.join(self.needs)}")
         return Finding(self.statement, *self.check(table))
-
-
-def findings_text(items: Iterable[Finding]) -> str:
-    """Return the findings, one after the other."""
-    return "\n".join(item.text for item in items)
 
 
 def tally(items: Sequence[Finding], whose: str) -> str:

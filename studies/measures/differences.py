@@ -20,7 +20,7 @@ from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES
-from studies.measures.wrongness import KINDS, NO_ANSWER, REST, counted, kinds_of, wrong_in
+from studies.measures.wrongness import KINDS, counted, kinds_of, wrong_in
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
@@ -179,32 +179,6 @@ def _line(group: pd.DataFrame) -> list[object]:
         int(group["missed_overturning"].sum()),
         group["wall_s"].sum(),
     ]
-
-
-def summary_text(summary: pd.DataFrame) -> str:
-    """Return the summary as an aligned table; errors are relative, over the survivors.
-
-    fall are those wrong about the fall, overturned falsely + missed; rest and none the other kinds.
-    """
-    sides = [summary[f"{side}_overturnings"].astype(str) for side in ("false", "missed")]
-    shown = pd.DataFrame(
-        {
-            "figure": summary["figure"].astype(str),
-            "source": summary["source"],
-            "outcomes": summary["agree"].astype(str) + "/" + summary["cases"].astype(str),
-            "median": summary["median_error"].map(scientific),
-            "p90": summary["p90_error"].map(scientific),
-            "max": summary["max_error"].map(scientific),
-            "max/S": summary["max_error_over_kappa"].map(scientific),
-            "fall": sides[0] + "+" + sides[1],
-            "rest": summary[REST],
-            "none": summary[NO_ANSWER],
-            "time s": summary["wall_s"].map("{:.3g}".format),
-        }
-    )
-    repeated = shown["figure"].eq(shown["figure"].shift())
-    shown["figure"] = shown["figure"].mask(repeated, "")
-    return shown.to_string(index=False)
 
 
 def scientific(value: float) -> str:

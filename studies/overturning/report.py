@@ -90,14 +90,12 @@ def headline(folder: Path) -> str:
     words = f"Of an overturning map is wrong: {listed(shares)}"
     if engines.empty:
         return f"{words}."
-    counts = pd.DataFrame(map(_kinds, engines.to_dict("records")))
-    counts = counts.assign(source=[*engines["source"]])
-    presets = counts["source"].map(preset_of)
-    cells = [
-        f"{in_words(name)} {between(group, group['source'])}"
-        for name in in_order(presets)
-        for group in [counts[presets == name]]
-    ]
+    presets = engines["source"].map(preset_of)
+    cells = []
+    for name in in_order(presets):
+        group = engines[presets == name]
+        counts = pd.DataFrame(map(_kinds, group.to_dict("records")))
+        cells.append(f"{in_words(name)} {between(counts, group['source'])}")
     return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {'; '.join(cells)}."
 
 

@@ -16,7 +16,6 @@ from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
-from studies.kit.provenance import NOT_INSTALLED
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
@@ -332,7 +331,7 @@ def lasts(*records: Mapping[str, Any]) -> str:
     """
     same = ("study", "version", "machine", "settings")
     engines = [
-        {name: kept for name, kept in record["engines"].items() if kept != NOT_INSTALLED}
+        {name: kept for name, kept in record["engines"].items() if kept != provenance.NOT_INSTALLED}
         for record in records
     ]
     known = sorted(set.intersection(*map(set, engines)))
