@@ -131,7 +131,8 @@ def report(folder: Path) -> str:
         compared = with_bounds(compared, compare(folder, HALVES))
     judged = sensitivity_of(compared)
     left, in_bands = census(settings["seed"], compared["case"].nunique()), bands(compared)
-    kept = {"errors": compared, "drawn": left, "bands": in_bands}
+    kept = {"drawn": left, "bands": in_bands}
+    write_table(folder / "errors.csv", compared)
     tables = {
         f"Errors of the peak where both survive, {width(compared)}": quantiles(compared),
         f"The same where S is below {WELL_CONDITIONED:g}": quantiles(
@@ -140,7 +141,7 @@ def report(folder: Path) -> str:
         "Errors over S": quantiles(compared.assign(error=compared["error"] / judged)),
         **{f"In bands of {by}": rows for by, rows in in_bands.groupby("by", sort=False)},
         "The largest errors": worst(compared),
-        WORST_AGAIN: worst_again(asked_again(folder, worst(compared), compared, RandomCase)),
+        WORST_AGAIN: worst_again(again(folder)),
     }
     if (folder / "hints.csv").exists():
         kept["leaning"] = leanings(compared, compare(folder, "hints"))
