@@ -107,6 +107,17 @@ def test_equal_steps(engine):
     assert times[1] - times[0] == pytest.approx(swing, rel=1e-2)
 
 
+@pytest.mark.parametrize("engine", core_engines())
+def test_steps_are_of_second_order_from_the_first_on(engine):
+    """A first step with the wrong inertia, or a whole kick, would leave an error of first order."""
+    exact = quarter_period(BLOCK, TILT)
+    coarse, fine = (
+        abs(released(engine, (TILT, 0.0), step=step).impacts[0].time - exact)
+        for step in (4e-2, 1e-2)
+    )
+    assert fine < 0.15 * coarse
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize(("engine", "preset", "frame"), LANDING_IN_FRAMES)
 def test_start_then_pulse(engine, preset, frame, side):
@@ -139,6 +150,17 @@ def test_lifted_at_once(engine, preset, frame, side):
     assert found.outcome is exact.outcome
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=band(engine))
     assert found.uplifts[0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("engine", core_engines())
+def test_lifted_at_once_is_of_second_order(engine):
+    """Steps of a fifth: an error of first order would keep a fifth."""
+    exact = simulate(BLOCK, COSINE[1.0]).peak_ratio
+    coarse, fine = (
+        abs(rocked(engine, COSINE[1.0], accuracy=name).peak_ratio / exact - 1.0)
+        for name in ("loose", "standard")
+    )
+    assert fine < 0.12 * coarse
 
 
 @pytest.mark.parametrize("engine", HERE)
