@@ -17,13 +17,13 @@ from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike
 
 from studies.measures.presets import in_order, told
+from studies.measures.words import power
 
 STRIP = "#eeeeee"
 """Behind what has no place on a scale: failed or wrong."""
 ERRORS = "cividis_r"
 """Colours of errors from small to large, the same in order of lightness for every reader."""
 HALO = [withStroke(linewidth=2.5, foreground="white")]
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def panels(
@@ -56,9 +56,7 @@ def panels(
 
 def mark(error: float) -> str:
     """Return an error as a mark along an axis: in per cent from 0.1 % on, else a power of ten."""
-    if error >= 0.999e-3:
-        return f"{100.0 * error:g} %"
-    return "10" + str(round(math.log10(error))).translate(SUPERSCRIPTS)
+    return f"{100.0 * error:g} %" if error >= 0.999e-3 else power(error)
 
 
 def error_scale(axis: Axis, low: float, high: float, every: int = 2) -> None:

@@ -15,6 +15,7 @@ from analytic.block import RigidBlock
 from studies.drawing.block import GROUND, INK, SOFT, outline
 from studies.drawing.styles import style_of, title_of
 from studies.measures.presets import engine_of, is_engine, preset_of, told
+from studies.measures.words import power
 
 MAGNIFIED = 2.5
 """How many times their size the rotations of the outlines are drawn."""
@@ -69,7 +70,7 @@ def _verdict(line: pd.Series[Any]) -> str:
         return str(line["outcome"])
     error = float(line["error"])
     if abs(error) < 1e-3:
-        return f"peak to {abs(error):.0e}"
+        return f"peak to {power(abs(error))}"
     return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
 
 

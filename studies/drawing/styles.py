@@ -54,9 +54,10 @@ STYLES = {
 }
 
 # from Tol's muted palette, but for the first two; an engine has a marker of its own besides,
-# because no eight colours stay apart for every reader, and 8 colours with 9 markers make 72 looks
+# because no eleven colours stay apart for every reader; with 9 markers they make 99 looks
 ENGINE_COLOURS = (
     *("#009E73", "#7A4FBF", "#882255", "#999933", "#332288", "#44AA99", "#AA4499", "#661100"),
+    *("#CC6677", "#117733", "#DDAA33"),
 )
 ENGINE_MARKERS = "o^sDvPXph"
 

@@ -11,10 +11,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from engines.declaration import UNTUNED
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import line_of, name_of, style_of
 from studies.ensemble.fragility import BLOCK
-from studies.measures.presets import in_words, is_engine, preset_of
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.words import part
+
+EXACT = "exact"
+"""How its sources begin, of whom those of stronger motions have no name in the registry."""
 
 LEAST, BEYOND = 1e-2, 3.0
 """Ends of the scale of the peaks: less is drawn at its foot, and overturned blocks at its top."""
@@ -42,7 +47,7 @@ def draw_singles(rows: pd.DataFrame) -> Figure:
         foot.set_xlabel("exact peak  |θ|/θcr  [–]")
         top.set_title(kind, fontsize=11)
         for number, source in enumerate(sources):
-            top.text(0.04, 0.93 - 0.06 * number, name_of(source), fontsize=8,
+            top.text(0.04, 0.93 - 0.06 * number, _called(source), fontsize=8,
                      color=style_of(source).colour, transform=top.transAxes)  # fmt: skip
     drawing.suptitle("One response at a time: on the line it is the exact one", fontsize=11)
     return drawing
@@ -50,9 +55,24 @@ def draw_singles(rows: pd.DataFrame) -> Figure:
 
 def _kind(source: str) -> str:
     """Return the column that a source is drawn in."""
-    if source.startswith("exact "):
+    if source.startswith(EXACT):
         return "the exact solution, nudged"
     return "engines " + in_words(preset_of(source)) if is_engine(source) else "linearizations"
+
+
+def _is_tuned(source: str) -> bool:
+    """Return whether a source is an engine that is not used as its library says."""
+    if source.startswith(EXACT):
+        return False
+    return is_engine(source) and preset_of(source) not in UNTUNED
+
+
+def _called(source: str) -> str:
+    """Return how a source is called; the exact solution of stronger motions by how much."""
+    strength = source.removeprefix(EXACT).removeprefix(" at ")
+    if strength in ("", source):
+        return name_of(source)
+    return f"exact, motions {100.0 * (float(strength) - 1.0):+.3g} %"
 
 
 def _name(block: tuple[Any, ...]) -> str:
@@ -73,7 +93,9 @@ def _singles(axes: Axes, rows: pd.DataFrame, sources: Sequence[str]) -> None:
 
 
 def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.DataFrame) -> Figure:
-    """Draw who overturns at which intensity, and above what a source's capacity is off.
+    """Draw who overturns at which intensity, and below by how much a source's capacity is off.
+
+    Engines that are tuned are drawn below alone: above they would lie on the exact curve.
 
     Parameters
     ----------
@@ -96,8 +118,18 @@ def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.Da
         upper.set_title(_name(blocks[0][0]), fontsize=10)
     grid[0, 0].set_ylabel("overturned  [–]")
     beside(grid[0, -1], ends, 7.5)
-    drawing.suptitle("Fragility; grey: the 95 % interval of the exact curve", fontsize=11)
+    drawing.suptitle(_finding(agreement), fontsize=11)
     return drawing
+
+
+def _finding(agreement: pd.DataFrame) -> str:
+    """Say by how much capacities are off at most, by preset."""
+    engines = agreement[~agreement["source"].str.startswith(EXACT)]
+    engines = engines[engines["source"].map(is_engine)]
+    off = (engines["capacity_ratio"] - 1.0).abs().groupby(engines["source"].map(preset_of)).max()
+    words = [f"{part(off[preset])} {in_words(preset)}" for preset in in_order(off.index)]
+    known = f"Engines put the capacity off by up to {', '.join(words)}\n" if words else ""
+    return f"{known}grey: the 95 % interval of the exact curve"
 
 
 def _curves(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> list[Name]:
@@ -105,7 +137,9 @@ def _curves(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> list[Nam
     exact = curves[curves["source"] == "exact"]
     even = exact["intensity"].iloc[int((exact["probability"].fillna(0.0) - 0.5).abs().argmin())]
     axes.fill_between(exact["intensity"], exact["low"], exact["high"], color="#dddddd")
-    names, sources = [], list(stripes["source"].unique())
+    named = list(stripes["source"].unique())
+    untuned = [source for source in named if not _is_tuned(source)]
+    names, sources = [], untuned if len(untuned) > 1 else named
     for number, source in enumerate(sources):
         style, curve = style_of(source), curves[curves["source"] == source]
         axes.plot(curve["intensity"], curve["probability"], line_of(source), color=style.colour,
@@ -115,7 +149,7 @@ def _curves(axes: Axes, stripes: pd.DataFrame, curves: pd.DataFrame) -> list[Nam
         nudge = 1.0 + 0.008 * (number - 0.5 * len(sources))
         axes.plot(nudge * stripe["intensity"], stripe["share"], **style.points(4.0))
         level = float(np.interp(even, curve["intensity"], curve["probability"]))
-        names.append(Name(name_of(source), float(even), level, style.colour))
+        names.append(Name(_called(source), float(even), level, style.colour))
     axes.set(xscale="log", xlabel="peak acceleration / (g tan α)", ylim=(-0.03, 1.03))
     ticks = sorted(stripes["intensity"].unique())
     axes.xaxis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
@@ -136,5 +170,5 @@ def _capacities(axes: Axes, lines: pd.DataFrame) -> None:
         axes.plot(ratio, place, **style.points(6.0))
     axes.axvline(1.0, color="#999999", linewidth=0.8, zorder=0)
     axes.set(ylim=(len(lines) - 0.4, -0.6), xlabel="capacity / exact  [–]")
-    axes.set_yticks(range(len(lines)), [*map(name_of, lines["source"])], fontsize=8)
+    axes.set_yticks(range(len(lines)), [*map(_called, lines["source"])], fontsize=8)
     axes.grid(axis="x", alpha=0.25)

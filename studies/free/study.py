@@ -20,7 +20,7 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import read_table
-from studies.measures.differences import scientific
+from studies.measures.words import part
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 
@@ -120,7 +120,7 @@ def headline(folder: Path) -> str:
     worst = errors(read_table(folder / "free.csv"), ["source"])[
         ["period_error", "decay_error"]
     ].max(axis=1)
-    words = [f"{name} {scientific(value)}" for name, value in worst.items()]
+    words = [f"{name} {part(value)}" for name, value in worst.items()]
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
 
 

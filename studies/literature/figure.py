@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from studies.drawing.facets import key
 from studies.drawing.styles import name_of, style_of
-from studies.measures.differences import scientific
+from studies.measures.words import part
 
 WIDEST = 12.0
 """Answers further than this from the print, in units of its half interval, stand at the edge."""
@@ -33,16 +33,16 @@ def draw_literature(table: pd.DataFrame) -> Figure:
         style = style_of(str(source))
         look = {**style.points(6.0), "marker": style.marker or "D"}
         nudge = 0.6 * ((number + 0.5) / len(sources) - 0.5)
-        for printed, part in rows.groupby(rows["model"] == source):
+        for printed, here in rows.groupby(rows["model"] == source):
             look["fillstyle"] = "full" if printed else "none"
-            axes.plot(part["off"], part["height"] - nudge, **look, zorder=3)
+            axes.plot(here["off"], here["height"] - nudge, **look, zorder=3)
         name = NAMES.get(str(source), name_of(str(source)))
         handles.append(Line2D([], [], label=name, **{**look, "fillstyle": "full"}))
     # by what part of the print the furthest of those at either edge misses it
     far = table[table["off"].abs() == WIDEST].groupby(["height", "off"], as_index=False)["miss"]
     for height, off, miss in far.max().to_numpy(dtype=np.float64).tolist():
         side = "right" if off > 0.0 else "left"
-        axes.text(0.965 * off, height, scientific(miss), ha=side, va="center", fontsize=7.5,
+        axes.text(0.965 * off, height, part(miss), ha=side, va="center", fontsize=7.5,
                   color="#444444")  # fmt: skip
     labels = prints.first().reset_index()
     axes.set_yticks(

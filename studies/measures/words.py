@@ -8,7 +8,6 @@ from typing import Any
 
 import pandas as pd
 
-from studies.measures.differences import scientific
 from studies.measures.wrongness import MEANINGS, WORDS, Counts, counted, wrong_in
 
 NAMED = 2
@@ -16,6 +15,8 @@ NAMED = 2
 
 WHOLE = 0.1
 """From this part on a number is given in whole per cent."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def out_of(count: float, total: float) -> str:
@@ -55,6 +56,15 @@ def gathered(said: Iterable[tuple[str, str]]) -> str:
     return "; ".join(f"{listed(group)} {words}" for words, group in names.items())
 
 
+def power(value: float) -> str:
+    """Return a number in two digits with its power of ten: "2.9·10⁻⁶", "10⁻⁴"."""
+    if not value:
+        return "0"
+    digits, exponent = f"{value:.1e}".split("e")
+    ten = "10" + str(int(exponent)).translate(SUPERSCRIPTS)
+    return ten if digits == "1.0" else f"{digits.removesuffix('.0')}·{ten}"
+
+
 def part(value: float) -> str:
     """Return a part of a whole: in per cent from a thousandth on, as a power of ten below."""
     if math.isnan(value):
@@ -62,7 +72,7 @@ def part(value: float) -> str:
     if math.isinf(value):
         return "without bound"
     if abs(value) < 1e-3:
-        return scientific(value)
+        return power(value)
     if 0.99 < value < 1.0:
         return f"{math.floor(1e3 * value) / 10.0:.1f} %"  # not all of it
     return f"{value:.0%}".replace("%", " %") if abs(value) >= WHOLE else f"{100.0 * value:.2g} %"

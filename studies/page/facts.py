@@ -19,7 +19,7 @@ from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
-from studies.measures.differences import WELL_CONDITIONED, scientific
+from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
 from studies.measures.presets import in_order, in_words
 from studies.measures.presets import told as as_told
@@ -30,6 +30,7 @@ from studies.measures.words import (
     out_of,
     part,
     per_cent,
+    power,
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
@@ -278,7 +279,7 @@ def hero_lines(published: Path) -> dict[str, str]:
 def _off(error: float) -> str:
     """Return the error of a peak, with its sign where it can be seen."""
     if abs(error) < 1e-3:
-        return scientific(abs(error))
+        return power(abs(error))
     return f"{error:+.0%}".replace("%", " %").replace("-", "−")
 
 

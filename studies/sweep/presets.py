@@ -13,7 +13,7 @@ from engines.declaration import AT_REST
 from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
 from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of, told
-from studies.measures.words import part
+from studies.measures.words import out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
 LEAST, MOST = 1e-6, 1.0
@@ -69,7 +69,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
     words = [f"by up to {most[name]} {told(name).words}" for name in (presets[0], presets[-1])]
     cases = int(table["cases"].max())
-    drawing.suptitle(f"In {cases} cases peaks are off {', '.join(words)}", fontsize=12)
+    drawing.suptitle(f"In {cases} cases peaks are off\n{', '.join(words)}", fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
 
@@ -102,19 +102,19 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
             axes.set_yticks([])
         names = [title_of(engine_of(source)) for source in sources]
         line[0].set_yticks(range(len(names)), names, fontsize=8.5)
-        share = f"{told(preset).short}: {part((group['wrong'] != '').mean())} of outcomes wrong"
-        line[0].set_title(share.replace(": 0 ", ": none "), color=told(preset).colour, loc="left",
-                          fontsize=9.5, fontweight="bold")  # fmt: skip
+        wrong = out_of((group["wrong"] != "").sum(), len(group))
+        line[0].set_title(f"{told(preset).short}: {wrong} outcomes wrong", loc="left",
+                          color=told(preset).colour, fontsize=9.5, fontweight="bold")  # fmt: skip
     for axes, aspect in zip(grid[-1], aspects, strict=True):
         axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
     bar = drawing.colorbar(shown, ax=grid, extend="both", aspect=40, pad=0.015)
     error_scale(bar.ax.yaxis, LEAST, MOST, 1)
     bar.ax.set_title("error", fontsize=9)
     median = {name: part(groups[name]["error"].abs().median()) for name in presets}
-    words = [f"{median[name]} {told(name).short}" for name in (presets[0], presets[-1])]
+    words = [f"{median[name]} {told(name).words}" for name in (presets[0], presets[-1])]
     number = rows["figure"].iloc[0]
     drawing.suptitle(
-        f"Figure {number}: half of the errors are below {', '.join(words)}", fontsize=12
+        f"Figure {number}: half of the engines' errors are below\n{', '.join(words)}", fontsize=12
     )
     key(drawing, [dot(WORDS[kind], look, "#d00000", markersize=5) for kind, look in MARKERS.items()]
         + [dot("both overturn, as they should", "s", STRIP, markersize=8)])  # fmt: skip
