@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from declared import announced
 from uses import BLOCK, all_but_times, pulse, rocked, scene
 
 from analytic import Outcome, RigidBlock, RockingFrame
@@ -20,12 +21,9 @@ MOTIONS = [pulse(onsets, 3.0, 2) for onsets in (0.8, 1.3, 1.45, 1.9)]
 
 
 @pytest.fixture(autouse=True)
-def _announced(monkeypatch):
-    monkeypatch.setenv(registry.FURTHER, f"{NAME}=engines.mujoco.rollout:ENGINE")
-    registry._places.cache_clear()
-    yield
-    monkeypatch.undo()
-    registry._places.cache_clear()
+def _announced():
+    with announced(NAME, "engines.mujoco.rollout:ENGINE"):
+        yield
 
 
 def both(scenes):

@@ -11,11 +11,12 @@ import pandas as pd
 import pytest
 import rocking_batch
 from commanding import PATIENCE_S
+from declared import announced
 from given import BLOCK, pulse
 from rocking_batch import CRASHING, HANGING, PAUSE_S, RAISING, SLOW, SPOILT
 
 from analytic import RigidBlock
-from engines import ENGINES, registry
+from engines import ENGINES
 from engines.run.drive import run as run_alone
 from studies.__main__ import run
 from studies.kit.executors import Local
@@ -23,7 +24,7 @@ from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.runner import run_jobs
 from studies.kit.together import batches
-from studies.sources import registry as sources
+from studies.sources.registry import scene_of
 
 HERE = Path(__file__).parent
 BATCHED = "one after another"
@@ -35,13 +36,9 @@ VALIDATE = ["validate", "--cases", "13", "--step", "0.02", "--sources", "looped:
 @pytest.fixture(autouse=True)
 def note(tmp_path, monkeypatch):
     """Announce the engine, and return the file in which its batches write themselves down."""
-    monkeypatch.setenv(registry.FURTHER, "looped=rocking_batch:ENGINE")
     monkeypatch.setenv(rocking_batch.NOTE, str(tmp_path / "note"))
-    registry._places.cache_clear()
-    monkeypatch.setitem(sources.SOURCES, "looped", sources._engine("looped", "landing"))
-    yield tmp_path / "note"
-    monkeypatch.undo()
-    registry._places.cache_clear()
+    with announced("looped", "rocking_batch:ENGINE"):
+        yield tmp_path / "note"
 
 
 def job(number=0, block=BLOCK, source="looped:fixed", **more):
@@ -193,7 +190,7 @@ def test_a_row_depends_on_what_makes_batches(monkeypatch):
 
 def test_one_world_by_itself_is_a_world():
     asked = job(2)
-    scene = sources.scene_of(BLOCK, asked.motion, "fixed", step=0.01)
+    scene = scene_of(BLOCK, asked.motion, "fixed", step=0.01)
     one, other = run_alone("looped", scene), run_alone("moreau", scene)
     assert one.outcome.value == "rocked"
     assert (one.peak_ratio, one.impacts, one.steps) == (
