@@ -11,14 +11,16 @@ import pandas as pd
 import pytest
 import rocking_batch
 from commanding import PATIENCE_S
+from dask_station import process, scheduler, wait_for_workers
 from declared import announced
 from given import BLOCK, pulse
 from rocking_batch import CRASHING, HANGING, PAUSE_S, RAISING, SLOW, SPOILT
 
 from analytic import RigidBlock
-from engines import ENGINES
+from engines import ENGINES, registry
 from engines.run.drive import run as run_alone
 from studies.__main__ import run
+from studies.kit.cluster import Cluster
 from studies.kit.executors import Local
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
@@ -198,3 +200,18 @@ def test_one_world_by_itself_is_a_world():
         other.impacts,
         other.steps,
     )
+
+
+def test_a_cluster_is_given_batches_too(tmp_path, note):
+    engine = {registry.FURTHER: os.environ[registry.FURTHER], rocking_batch.NOTE: str(note)}
+    options = ("--nthreads", 1, "--no-dashboard", "--no-nanny")
+    jobs = [job(n, options={"density": RAISING if n == 2 else 1e3}) for n in range(7)]
+    with scheduler(tmp_path) as (address, _), process("worker", address, *options, **engine):
+        wait_for_workers(address, 1)
+        found = dict(Cluster(address, PATIENCE_S)(jobs))
+    assert sizes(note) == [1, 1, 1, 1, 3, 4]
+    batch, alone = [1, 3, 5], [0, 2, 4, 6]
+    assert {found[n].driver for n in batch} == {BATCHED}
+    assert {found[n].driver for n in alone} == {"python"}
+    expected = [ask(each, each.asked) for each in jobs]
+    assert [found[n].peak_ratio for n in range(7)] == [each.peak_ratio for each in expected]
