@@ -89,7 +89,7 @@ class Cluster:
                     submit([number], work, fitness(), job, job.asked, self.ask)
 
             left = dict(enumerate(jobs))
-            if self.ask is ask:
+            if self.ask is ask and batches(left, 1):
                 threads = sum(self._answer(client, client.nthreads).values())
                 for numbers in batches(left, max(threads, 1)):
                     batch = [left.pop(number) for number in numbers]
