@@ -18,8 +18,8 @@ from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.fingerprint import everything
-from studies.kit.jobs import Job, ask
-from studies.kit.pool import Pool, TaskError
+from studies.kit.jobs import Job
+from studies.kit.pool import Pool
 from studies.kit.processes import ask_apart, compile_ahead, outcome_of
 from studies.kit.together import ask_together
 from studies.sources.registry import Source
@@ -92,12 +92,14 @@ def work(
 def work_together(
     expected: dict[str, str], jobs: Sequence[Job], time_limit_s: float
 ) -> list[Response]:
-    """Run the jobs of a batch on this worker, at once or, where that fails, one by one.
+    """Run the jobs of a batch on this worker, at once.
 
     Raises
     ------
     RefusedError
         If this worker is not fit.
+    studies.kit.pool.TaskError
+        If the batch has no answer.
     """
     from distributed import Reschedule, get_worker
 
@@ -108,8 +110,6 @@ def work_together(
         return list(task.result())
     except CancelledError:  # this worker is closing
         raise Reschedule from None
-    except TaskError:
-        return [_work_in_process(job, job.asked, ask, time_limit_s) for job in jobs]
 
 
 def _refuse_unless_fit(expected: dict[str, str]) -> None:
