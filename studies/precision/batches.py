@@ -68,14 +68,14 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
         {
             "engine": name,
             "preset": preset,
-            "way": way,
+            "taken": way,
             "driver": found[0].driver,
             "worlds": len(scenes),
             "batches": len(groups) if way is AT_ONCE else 0,
             "world_steps": steps,
             "runs": len(spent[way]),
             "cpu_s": min(spent[way]) / steps,
-            "memory_kib": grown / len(scenes) if way is AT_ONCE else math.nan,
+            "added_kib": grown / len(scenes) if way is AT_ONCE else math.nan,
             "other_outcomes": sum(
                 a.outcome is not b.outcome for a, b in zip(found, alone, strict=True)
             ),

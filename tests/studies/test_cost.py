@@ -125,7 +125,7 @@ def test_a_batch_is_held_against_its_scenes_one_by_one(monkeypatch):
     rollout = ("mujoco-rollout", "engines.mujoco.rollout:ENGINE")
     with announced(*rollout):
         table = batches.batch_table([rollout[0], "mujoco"], True, 0.0)
-        assert table["way"].tolist() == [batches.AT_ONCE, batches.ONE_BY_ONE] * 4
+        assert table["taken"].tolist() == [batches.AT_ONCE, batches.ONE_BY_ONE] * 4
         assert table["driver"].tolist() == ["rollout", "compiled"] * 4
         naive = table[table["preset"] == "naive"]
         assert naive["largest_change"].tolist() == [0.0, 0.0]  # to the bit
