@@ -30,6 +30,9 @@ It holds
   (`engines.parts.script.filled`), so that both are one;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
+- where it can take the equal steps of many scenes at once, ``batch``
+  (`engines.declaration.BatchEngine`): what each scene's own run gives, and where it has no other,
+  its ``build`` too;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own documentation shows it, each setting with its source) to the best there is, what the
   studies try of its contact, and what its users should know first (`rules`), each with the variant

@@ -3,16 +3,17 @@
 import enum
 import importlib.util
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+from analytic.motion import FloatArray
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
-from engines.world import CALMEST, ROUNDINGS, Resolution, World
+from engines.world import CALMEST, ROUNDINGS, Resolution, World, Worlds
 
 
 class Help(enum.Enum):
@@ -344,3 +345,28 @@ class Engine:
         if scene.settings.get("planar") is False and not self.spatial:
             return f"{self.title} knows the plane alone"
         return ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BatchEngine(Engine):
+    """An engine that can also take the equal steps of many scenes at once.
+
+    What a batch answers is what `build` would for each of its scenes, which are of one preset and
+    the same settings, frame and contacts; see `engines.run.batch`.
+
+    Attributes
+    ----------
+    batch : callable
+        ``(scenes, settings, dt_s) -> Worlds``: builds scenes, each in the ordinary steps dt_s [s]
+        of its own, an array (worlds,). Where an engine has nothing else, its `build` is
+        ``partial(engines.run.batch.alone, batch)``.
+    most_worlds : int
+        How many at most.
+    one_model : bool
+        Whether the bodies, and the step, of all must be the same; else where they begin and how
+        the base moves is a world's own, and so are their sizes and the step.
+    """
+
+    batch: Callable[[Sequence[Scene], Any, FloatArray], Worlds]
+    most_worlds: int = 1024
+    one_model: bool = False

@@ -9,7 +9,7 @@ scheduler's `allowed-failures`, after which it is a failed row.
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -20,7 +20,8 @@ from analytic.response import Response
 from studies.kit.arguments import BadInputError
 from studies.kit.jobs import Job, ask
 from studies.kit.refusing import one_line
-from studies.kit.worker import START, RefusedError, fitness, unfit, work
+from studies.kit.together import batches
+from studies.kit.worker import START, RefusedError, fitness, unfit, work, work_together
 from studies.sources.registry import Source
 
 if TYPE_CHECKING:
@@ -72,17 +73,37 @@ class Cluster:
         """Run the jobs."""
         if not jobs:
             return
-        ended: SimpleQueue[Future[Response]] = SimpleQueue()
+        ended: SimpleQueue[Future[Any]] = SimpleQueue()
         with self._client() as client:
-            executor, numbers = client.get_executor(pure=False), {}
-            for number, job in enumerate(jobs):
-                order = (fitness(), job, job.asked, self.ask, self.time_limit_s)
-                task = executor.submit(work, *order)
-                numbers[task] = number
+            executor = client.get_executor(pure=False)
+            parts: dict[Future[Any], Sequence[int]] = {}
+
+            def submit(numbers: Sequence[int], *order: Any) -> None:
+                task = executor.submit(*order, self.time_limit_s)
+                parts[task] = numbers
                 task.add_done_callback(ended.put)
-            for _ in jobs:
+
+            def submit_alone(numbers: Iterable[int]) -> None:
+                for number in numbers:
+                    job = jobs[number]
+                    submit([number], work, fitness(), job, job.asked, self.ask)
+
+            left = dict(enumerate(jobs))
+            if self.ask is ask and batches(left, 1):
+                threads = sum(self._answer(client, client.nthreads).values())
+                for numbers in batches(left, max(threads, 1)):
+                    batch = [left.pop(number) for number in numbers]
+                    submit(numbers, work_together, fitness(), batch)
+            submit_alone(left)
+            while parts:
                 task = self._next(client, ended)
-                yield numbers.pop(task), self._response(client, task)
+                part, answer = parts.pop(task), self._response(client, task)
+                if len(part) == 1:
+                    yield part[0], answer
+                elif isinstance(answer, Response):  # the failure of all is no row of one
+                    submit_alone(part)
+                else:
+                    yield from zip(part, answer, strict=True)
 
     @contextmanager
     def _client(self) -> Iterator["Client"]:
@@ -136,7 +157,7 @@ class Cluster:
             pass
         raise self._gone()
 
-    def _next(self, client: "Client", ended: "SimpleQueue[Future[Response]]") -> "Future[Response]":
+    def _next(self, client: "Client", ended: "SimpleQueue[Future[Any]]") -> "Future[Any]":
         """Wait for the next job that ends; raise ClusterError when nobody is left to end one."""
         alone_since = time.monotonic()
         while True:
@@ -147,8 +168,8 @@ class Cluster:
             elif time.monotonic() - alone_since > PATIENCE_S:
                 raise self._error("its workers have all gone; start another one")
 
-    def _response(self, client: "Client", task: "Future[Response]") -> Response:
-        """Return a job's response, or the failure as which it ended."""
+    def _response(self, client: "Client", task: "Future[Any]") -> Any:
+        """Return a job's response or a batch's, or the failure as which it ended."""
         from distributed import KilledWorker
 
         try:

@@ -16,6 +16,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from engines.declaration import BatchEngine
 from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
 from studies.kit.jobs import Job, plain
 from studies.kit.journal import JOURNAL, FolderError, Kept, Maker, Row, named
@@ -34,7 +35,9 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
 )
 """Where sources, engines and records are looked up: what a row asks is a part of it, by itself."""
 
-ASIDE = frozenset({"core", "factors", "install", "own_step", "rules", "script", "title"})
+ASIDE = frozenset(
+    {"core", "factors", "install", "most_worlds", "own_step", "rules", "script", "title"}
+)
 """What an engine declares for readers, and for what is no row of a journal."""
 
 OF_A_PRESET = ("settings", "stepping", "step", "step_s", "frame", "stacked")
@@ -84,6 +87,8 @@ class Makers:
             engine, preset = source.declared, source.used
             parts = (type(engine), type(preset), type(preset.settings), engine.build, engine.spring)
             names |= {name_of(part) for part in parts if part}
+            if isinstance(engine, BatchEngine):
+                names |= {name_of(engine.batch), ("engines.run.batch", "run_together")}
         return reached(names, self._root, cut=FOUND_BY_NAME)
 
     def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import asyncio
 import multiprocessing
 import platform
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from functools import cache
 from typing import TYPE_CHECKING
@@ -21,6 +21,7 @@ from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job
 from studies.kit.pool import Pool
 from studies.kit.processes import ask_apart, compile_ahead, outcome_of
+from studies.kit.together import ask_together
 from studies.sources.registry import Source
 
 if TYPE_CHECKING:
@@ -77,8 +78,7 @@ def work(
     RefusedError
         If this worker is not fit.
     """
-    if problem := unfit(expected):
-        raise RefusedError(f"a worker cannot be used: {problem}")
+    _refuse_unless_fit(expected)
     compile_all()
     if job.needs_process(source):
         return _work_in_process(job, source, ask, time_limit_s)
@@ -87,6 +87,34 @@ def work(
         _loaded.add(job.source)
         ask(job, source)
     return ask(job, source)
+
+
+def work_together(
+    expected: dict[str, str], jobs: Sequence[Job], time_limit_s: float
+) -> list[Response]:
+    """Run the jobs of a batch on this worker, at once.
+
+    Raises
+    ------
+    RefusedError
+        If this worker is not fit.
+    studies.kit.pool.TaskError
+        If the batch has no answer.
+    """
+    from distributed import Reschedule, get_worker
+
+    _refuse_unless_fit(expected)
+    pool = _processes_of(get_worker())
+    try:
+        task = pool.schedule(ask_together, (jobs,), time_limit_s * len(jobs))
+        return list(task.result())
+    except CancelledError:  # this worker is closing
+        raise Reschedule from None
+
+
+def _refuse_unless_fit(expected: dict[str, str]) -> None:
+    if problem := unfit(expected):
+        raise RefusedError(f"a worker cannot be used: {problem}")
 
 
 def _work_in_process(

@@ -50,7 +50,16 @@ COST = Study(
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
 history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv, and,
-with --starts, how long whole commands take, starts.csv.""",
+with --starts, how long whole commands take, starts.csv, and, with --batches, what it is worth to
+run many scenes at once, batches.csv.""",
     table="shares.csv",
-    products=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "cost.png", "cost.txt"),
+    products=(
+        "shares.csv",
+        "scenes.csv",
+        "reference.csv",
+        "starts.csv",
+        "batches.csv",
+        "cost.png",
+        "cost.txt",
+    ),
 )

@@ -30,6 +30,7 @@ from studies.kit.tables import read_table
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed
 from studies.precision import COST
+from studies.precision.batches import batch_table
 from studies.precision.repeats import interleaved
 from studies.precision.shares import pose_case, share_table
 from studies.precision.starts import start_table
@@ -72,6 +73,7 @@ def command(
     engines: Annotated[tuple[str, ...], several] = core_engines(),
     quick: bool = False,
     starts: bool = False,
+    batches: bool = False,
 ) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
@@ -88,11 +90,15 @@ def command(
         Shorter timing: a few seconds.
     starts
         How long whole commands take, too: minutes, or half a minute if quick.
+    batches
+        What it is worth to run many scenes at once, too, with the engines that can.
     """
     check_engines(engines)
 
     def tabulate(_: object) -> Tables:
         more = {"starts": start_table(quick)} if starts else {}
+        if batches:
+            more["batches"] = batch_table(engines, quick, QUICK_BUDGET_S if quick else BUDGET_S)
         return {**measured(engines, quick), **more}
 
     made = Plan(settings={"quick": quick}, tabulate=tabulate)
@@ -242,6 +248,10 @@ def report(folder: Path) -> str:
     if (folder / "starts.csv").is_file():
         tables["How long a user waits, and over R, the time of `import numba, pandas`"] = read(
             folder, "starts"
+        )
+    if (folder / "batches.csv").is_file():
+        tables["Many scenes at once and one by one, in CPU time of a step of a world"] = read(
+            folder, "batches"
         )
     return tell(folder, pictures(folder), headline(folder), tables, "cost.txt")
 

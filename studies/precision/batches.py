@@ -1,0 +1,108 @@
+"""What batches are worth: the same scenes at once and one by one, in CPU time, memory and rows."""
+
+from __future__ import annotations
+
+import math
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import pandas as pd
+
+from analytic.response import Response
+from engines import ENGINES, Scene
+from engines.declaration import BatchEngine
+from engines.run.batch import alike, run_together
+from engines.run.drive import run
+from studies.cases.paper import sweep_cases
+from studies.kit.pool import Pool
+from studies.kit.processes import COMPILING_S
+from studies.precision.repeats import enough
+
+WORLDS, QUICK_WORLDS = 48, 4
+"""Cases of the paper's figure 6 that are run, in equal distances."""
+
+AT_ONCE, ONE_BY_ONE = "at once", "one by one"
+
+
+def batch_table(engines: Sequence[str], quick: bool, budget_s: float) -> pd.DataFrame:
+    """Return two rows for each preset of which an engine can run many scenes at once.
+
+    Times are CPU times of all threads of a process, the best of several in turn; memory is what a
+    batch adds to the most that such a process has held before.
+    """
+    rows = []
+    with Pool(1) as pool:
+        for name in engines:
+            for preset in (use.name for use in ENGINES[name].presets):
+                asked = (name, preset, QUICK_WORLDS if quick else WORLDS, budget_s)
+                rows += pool.schedule(measured, asked, COMPILING_S).result()
+    return pd.DataFrame(rows)
+
+
+def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[str, Any]]:
+    """Return the rows of a preset; none where its scenes are run alone."""
+    cases = [*sweep_cases([6])]
+    chosen = cases[:: len(cases) // count][:count]
+    scenes = [Scene(system=case.block, motion=case.motion, preset=preset) for case in chosen]
+    if not isinstance(ENGINES[name], BatchEngine) or alike(ENGINES[name], scenes[0]) is None:
+        return []
+    groups: dict[Any, list[Scene]] = {}
+    for scene in scenes:
+        groups.setdefault(alike(ENGINES[name], scene), []).append(scene)
+    run(name, scenes[0])  # what has to be loaded or compiled is so now
+    run_together(name, scenes[:1])
+    before = _most_kib()
+    together = _together(name, groups.values())
+    grown = _most_kib() - before
+    alone = [run(name, scene) for group in groups.values() for scene in group]
+    spent: dict[str, list[float]] = {AT_ONCE: [], ONE_BY_ONE: []}
+    began = time.perf_counter()
+    while not spent[AT_ONCE] or not enough(spent[AT_ONCE], time.perf_counter() - began, budget_s):
+        spent[AT_ONCE].append(_cpu_s(lambda: _together(name, groups.values())))
+        spent[ONE_BY_ONE].append(_cpu_s(lambda: [run(name, scene) for scene in scenes]))
+    steps = sum(response.steps for response in alone)
+    return [
+        {
+            "engine": name,
+            "preset": preset,
+            "taken": way,
+            "driver": found[0].driver,
+            "worlds": len(scenes),
+            "batches": len(groups) if way is AT_ONCE else 0,
+            "world_steps": steps,
+            "runs": len(spent[way]),
+            "cpu_s": min(spent[way]) / steps,
+            "added_kib": grown / len(scenes) if way is AT_ONCE else math.nan,
+            "other_outcomes": sum(
+                a.outcome is not b.outcome for a, b in zip(found, alone, strict=True)
+            ),
+            "largest_change": max(_changes(found, alone), default=math.nan),
+        }
+        for way, found in ((AT_ONCE, together), (ONE_BY_ONE, alone))
+    ]
+
+
+def _together(name: str, groups: Iterable[Sequence[Scene]]) -> list[Response]:
+    return [response for group in groups for response in run_together(name, group)]
+
+
+def _cpu_s(action: Callable[[], object]) -> float:
+    began = time.process_time()
+    action()
+    return time.process_time() - began
+
+
+def _changes(found: Sequence[Response], others: Sequence[Response]) -> Iterator[float]:
+    """Yield by which part each peak differs where both are one."""
+    for a, b in zip(found, others, strict=True):
+        if math.isfinite(a.peak_ratio) and math.isfinite(b.peak_ratio) and b.peak_ratio:
+            yield abs(a.peak_ratio / b.peak_ratio - 1.0)
+
+
+def _most_kib() -> float:
+    """Return the most memory [KiB] that this process has held."""
+    unit = 1024.0 if sys.platform == "darwin" else 1.0
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
