@@ -16,7 +16,8 @@ from typing import Any, NamedTuple, Protocol, cast
 import numpy as np
 
 from analytic.cart import CartBlock
-from analytic.response import Reason, Response
+from analytic.motion import FloatArray, Motion
+from analytic.response import Outcome, Reason, Response
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import LAYOUTS, Ability, Layout, Start, one_block
 from engines.registry import find
@@ -25,6 +26,7 @@ from engines.run.drive import build as built
 from engines.scene import Scene
 from engines.watching.history import sample
 from engines.watching.swing import Row
+from engines.watching.watch import LYING, LYING_PART
 from engines.world import Moment, Pose, Step
 
 
@@ -54,6 +56,32 @@ def on_a_cart(system: Any, density: float, depth: float | None, start: Start) ->
 
 
 cast(dict[type, Callable[..., Layout]], LAYOUTS)[CartBlock] = on_a_cart
+
+
+OBSERVED = 8.0
+"""How long a cart on a spring, which moves on and on, is observed after the motion, in 1/p."""
+
+
+class Prolonged:
+    """A motion that ends later, with the base as it was left: until then nothing is decided.
+
+    Parameters
+    ----------
+    motion : Motion
+    duration : float
+        [s].
+    """
+
+    def __init__(self, motion: Motion, duration: float) -> None:
+        self._motion, self.duration = motion, duration
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._motion, name)
+
+    def segments(self) -> FloatArray:
+        """Return those of the motion, and one without acceleration."""
+        calm = [[self._motion.duration, self.duration, 0.0, 1.0, 0.0, 0.0, 0.0]]
+        return np.concatenate((self._motion.segments(), calm))
 
 
 class Seen(NamedTuple):
@@ -120,7 +148,7 @@ class CartWorld:
         self._stiffness = cast(CartBlock, scene.system).stiffness
         self._seen = cart.seen()
         self._given = self._mass * scene.bodies[0].at.velocity_x
-        self.momentum_error = self.momentum_size = 0.0
+        self.momentum_error = self.momentum_size = self._peak = 0.0
         self._rows = [Row(0.0, 0.0, self._seen.place, 0.0)]
 
     @property
@@ -140,6 +168,7 @@ class CartWorld:
         block, own = self._mass * seen.speed, self._own * seen.cart_speed
         self.momentum_error = max(self.momentum_error, abs(block + own - self._given))
         self.momentum_size = max(self.momentum_size, abs(block) + abs(own))
+        self._peak = max(self._peak, abs(seen.pose[2]))
         if self._scene.times is not None:
             at_s = step.end_s - (1.0 - part) * step.dt_s
             self._rows.append(Row(step.end_s, at_s, seen.place, seen.cart_speed))
@@ -158,10 +187,17 @@ class CartWorld:
         self._cart.close()
 
     def told(self, response: Response) -> Response:
-        """Return a response with what was seen of the cart beside the block."""
+        """Return a response with what was seen of the cart beside the block.
+
+        On a spring a block that has not come to lie when the observation ends has not overturned.
+        """
         size = self.momentum_size
         part = self.momentum_error / size if size else 0.0
         seen = {"momentum_error": part, "cart_m": self._seen.place}
+        up = abs(self._seen.pose[2]) < LYING_PART * LYING
+        if response.outcome is Outcome.OVERTURNED and self._stiffness and up:
+            peak = self._peak / self._scene.system.alpha
+            response = replace(response, outcome=Outcome.ROCKED, peak_ratio=peak)
         if response.history is None:
             return replace(response, observables=seen)
         base = sample(np.array(self._rows), response.history.time.tolist())
@@ -190,6 +226,19 @@ def carrying(engine: Engine) -> Engine:
     return CartEngine(**{**known, "build": import_module(place).build, "abilities": abilities})
 
 
+def observed(scene: Scene) -> Scene:
+    """Return a scene of a cart on a spring with its end, and shaken until then.
+
+    A block on one that leans by more than alpha may still come back, as one that is shaken may.
+    """
+    if cast(CartBlock, scene.system).stiffness == 0.0:
+        return scene
+    end = scene.duration or scene.motion.duration + OBSERVED / scene.system.p
+    if end <= scene.motion.duration:
+        return scene
+    return replace(scene, duration=end, motion=cast(Motion, Prolonged(scene.motion, end)))
+
+
 def ride(name: str, scene: Scene) -> Response:
     """Simulate a block on a cart with an engine.
 
@@ -198,7 +247,8 @@ def ride(name: str, scene: Scene) -> Response:
     Response
         As of `engines.run.drive.run`. Its observables are momentum_error, the largest difference of
         the horizontal momentum from what push and spring gave, over the largest sum of both
-        bodies', and cart_m, the cart's last place [m]; its history has the cart's.
+        bodies', and cart_m, the cart's last place [m]; its history has the cart's. One on a spring
+        is observed for 8/p after the motion where the scene says no duration.
 
     Raises
     ------
@@ -210,7 +260,7 @@ def ride(name: str, scene: Scene) -> Response:
     if scene.frame == "base":
         words = "not available: a cart moves in the frame 'world', and frame is 'base'"
         return Response.failure(words, reason=Reason.UNAVAILABLE)
-    scene = replace(scene, frame="world")
+    scene = observed(replace(scene, frame="world"))
     try:
         cart = cast(Cart, built(engine, scene))
     except NotAvailableError as error:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from analytic.cart import CartBlock
 from analytic.frame import RockingFrame
 from analytic.frame_forces import frame_demands
 from analytic.response import Outcome, Response
@@ -12,6 +13,7 @@ from engines.layouts import BEAM_DEPTH, SPACING, System
 from engines.run.drive import LAG
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
+from studies.measures.carts import place_error
 from studies.measures.differences import scientific
 
 Columns = dict[str, list[Any]]
@@ -19,6 +21,8 @@ Columns = dict[str, list[Any]]
 OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
 """Observable of a frame -> its column."""
 
+OF_A_CART = {"momentum_error": "momentum", "cart_m": "cart [m]"}
+"""The same of a cart."""
 
 SEEN_M = 1e-6
 """Of a floor's lag, what is shown [m]."""
@@ -35,6 +39,9 @@ def first_line(system: System, degrees: bool) -> str:
     numbers = f"α = θcr = {alpha}, p = {system.p:.5g} rad/s"
     if isinstance(system, RockingFrame):
         return f"frame   {system.columns} columns of {sizes}, load {system.load:g}: {numbers}"
+    if isinstance(system, CartBlock):
+        cart = f"m/(m+M) = {system.mass_ratio:g}, k/(m+M) = {system.stiffness:g} /s²"
+        return f"cart    {cart}, block {sizes}: {numbers}"
     return f"block   {sizes}: {numbers}"
 
 
@@ -55,7 +62,10 @@ def columns_of(
             "lift [m]": _observed(answers, "lift_m"),
         }
     seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
+    seen = OF_A_CART if isinstance(system, CartBlock) else seen
+    places = [place_error(answer, rows[0]["exact"]) for answer in answers]
     perhaps = {
+        "off [m]": list(map(scientific, places)),
         "slip/B": [scientific(answer.slip_m / system.width) for answer in answers],
         "lag [m]": _observed(answers, LAG, SEEN_M),
     }
@@ -79,17 +89,23 @@ def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
     """Return what the columns mean, and what the exact solution needs, a line each."""
     if isinstance(system, SlidingBlock):
         return ["vs      largest difference of a slip, over the largest slip"]
-    if isinstance(system, RockingFrame):
+    if isinstance(system, CartBlock):
+        whose, valid_if = "the exact", "while the pivot neither slides nor lifts"
+    elif isinstance(system, RockingFrame):
         whose, valid_if = "the exact", frame_validity(system, posed, exact)
     else:
         whose, valid_if = "Housner's", validity(exact)
     parting = "parting largest difference of two columns' rotations; beam: its largest rotation"
+    moved = (
+        "off     largest error of the cart's place; momentum: of block and cart, over both's sizes"
+    )
     return [
         "κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",
         "late    largest error of the first five impact times, times p",
         f"ratio   velocity after over before an impact, the median; {whose} "
         f"η = {system.restitution:.6g}",
         *[parting] * isinstance(system, RockingFrame),
+        *[moved] * isinstance(system, CartBlock),
         f"valid   {valid_if}",
     ]
 
