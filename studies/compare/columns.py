@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from analytic.cart import CartBlock
+from analytic.cart_forces import cart_demands
 from analytic.frame import RockingFrame
 from analytic.frame_forces import frame_demands
 from analytic.response import Outcome, Response
@@ -85,12 +86,12 @@ def columns_of(
     }
 
 
-def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
+def meanings(system: System, posed: Posed, exact: Response, window: float) -> list[str]:
     """Return what the columns mean, and what the exact solution needs, a line each."""
     if isinstance(system, SlidingBlock):
         return ["vs      largest difference of a slip, over the largest slip"]
     if isinstance(system, CartBlock):
-        whose, valid_if = "the exact", "while the pivot neither slides nor lifts"
+        whose, valid_if = "the exact", cart_validity(system, posed, window)
     elif isinstance(system, RockingFrame):
         whose, valid_if = "the exact", frame_validity(system, posed, exact)
     else:
@@ -108,6 +109,17 @@ def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
         *[moved] * isinstance(system, CartBlock),
         f"valid   {valid_if}",
     ]
+
+
+def cart_validity(cart: CartBlock, posed: Posed, window: float) -> str:
+    """Say what the exact solution of a cart needs of the block's contact, or what fails in it."""
+    needs = cart_demands(cart, posed.motion, posed.start, duration=window)
+    if math.isnan(needs.friction):
+        return UNKNOWN
+    if needs.normal <= 0.0:
+        return "not here: the pivot would lift off, and an engine is right to differ"
+    least = f"the normal force stays above {needs.normal:.3g} of the weight"
+    return f"with friction of {needs.friction:.3g} or more, up to a lean of 2 α; {least}"
 
 
 def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:

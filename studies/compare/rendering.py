@@ -95,7 +95,7 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            *meanings(block, posed, rows[0]["exact"]),
+            *meanings(block, posed, rows[0]["exact"], window),
             "time    of this one run; of many cases each takes less, as its functions are compiled",
             "",
             right_aligned(columns),
