@@ -30,6 +30,8 @@ It holds
   (`engines.parts.script.filled`), so that both are one;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
+- where it can hold a base that feels what stands on it, a module ``cart`` (`engines.cart`), which
+  no row of another scene depends on;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own documentation shows it, each setting with its source) to the best there is, what the
   studies try of its contact, and what its users should know first (`rules`), each with the variant
