@@ -7,6 +7,7 @@ are ground times, from the start of the base motion.
 
 from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
 from analytic.cart import CartBlock
+from analytic.cart_forces import cart_demands
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
 from analytic.cylinder import RollingCylinder
 from analytic.first_mode import FirstMode, first_mode, rocking_friction
@@ -42,6 +43,7 @@ __all__ = [
     "SinePulse",
     "SlidingBlock",
     "Still",
+    "cart_demands",
     "condition_numbers",
     "conditioning",
     "first_mode",

@@ -38,7 +38,7 @@ def respond(
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
-    block : RigidBlock, RockingFrame or SlidingBlock
+    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
         What stands on the base.
     motion : Motion
         For instance a `SinePulse`; `analytic.Still()` where the ground does not move.
@@ -69,7 +69,7 @@ def respond(
 
     if tuple(start) != (0.0, 0.0):
         options["start"] = start
-    asked = resolve(source)
+    asked = resolve(source).about(block)
     asked.check(block, motion, duration=duration, times=times, **options)
     return asked.call(block, motion, duration=duration, times=times, **options)
 

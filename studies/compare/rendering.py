@@ -18,6 +18,7 @@ from studies.cases.paper import PULSES
 from studies.compare.columns import columns_of, duration, first_line, meanings, valid
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
+from studies.measures.carts import place_error
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
@@ -55,6 +56,8 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
         response = row["response"]
         if response.slips:
             item["slips"] = list(response.slips)
+        if math.isfinite(off := place_error(response, exact)):
+            item["place_error_m"] = off
         objects.append({**item, "valid": valid(exact), **response.observables})
     return objects
 
@@ -92,7 +95,7 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            *meanings(block, posed, rows[0]["exact"]),
+            *meanings(block, posed, rows[0]["exact"], window),
             "time    of this one run; of many cases each takes less, as its functions are compiled",
             "",
             right_aligned(columns),

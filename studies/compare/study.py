@@ -12,7 +12,8 @@ import numpy as np
 import pandas as pd
 
 from analytic import simulate
-from analytic.motion import FloatArray, Motion, SinePulse
+from analytic.cart import CartBlock
+from analytic.motion import FloatArray, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
@@ -61,12 +62,15 @@ from studies.sources.registry import DEFAULT_EFFORT, Effort
 EDGE = 0.01
 """An answer hangs on its amplitude where so much of it makes the difference of a fall."""
 
+SMALL = 1e-6
+"""Change of the amplitude by which a derivative is found."""
+
 TIMED_IMPACTS = 5
 """First impacts whose times are compared."""
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
 OF_A_SLIDE = ("exact", *core_sources())
-"""By default asked of a block that slides, which has no linearization."""
+"""By default asked of a block that slides, or stands on a cart, which has no linearization."""
 
 
 def command(
@@ -110,6 +114,9 @@ def command(
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         given = {"tilt": excitation.tilt, "rate": excitation.rate, "plot": plot}
         refuse_given({**given, "estimate": estimate or None}, "only where something rocks")
+    if standing.scene == "cart":
+        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
+        refuse_given({"estimate": estimate or None}, "only on a base that moves as it is told")
     check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
@@ -124,7 +131,7 @@ def command(
         posed,
         sources,
         window,
-        times=np.linspace(0.0, window, 1501) if plot else None,
+        times=np.linspace(0.0, window, 1501) if plot or standing.scene == "cart" else None,
         effort=effort,
         yours=yours,
         estimate=estimate,
@@ -146,8 +153,22 @@ def conditioned(rows: Sequence[Row], block: Any, posed: Posed) -> list[Row]:
     """Add kappa and sensitivity of the exact peak to every row, where there is one."""
     if isinstance(block, SlidingBlock):
         return [{**row, "kappa": math.nan, "sensitivity": math.nan} for row in rows]
+    if isinstance(block, CartBlock):
+        kappa = kappa_of_cart(block, posed, rows[0]["exact"])
+        return [{**row, "kappa": kappa, "sensitivity": math.nan} for row in rows]
     known = conditioning_of_one(block, posed.motion, posed.start, rows[0]["exact"])
     return [{**row, **known} for row in rows]
+
+
+def kappa_of_cart(cart: CartBlock, posed: Posed, exact: Response) -> float:
+    """Return d ln(peak)/d ln(a_p) by a difference; nan unless the block rocks and survives."""
+    if exact.outcome is not Outcome.ROCKED or isinstance(posed.motion, Still):
+        return math.nan
+    low, high = (
+        simulate(cart, _scaled(posed.motion, 1.0 + part), start=posed.start).peak_ratio
+        for part in (-SMALL, SMALL)
+    )
+    return math.log(high / low) / (2.0 * SMALL) if math.isfinite(low * high) else math.nan
 
 
 def hanging(block: System, posed: Posed, window: float, exact: Response) -> str:

@@ -72,7 +72,7 @@ class Job:
     def __post_init__(self) -> None:
         # what was resolved travels with a job that is made of another, where no registry is
         if self.asked.name != self.source:
-            object.__setattr__(self, "asked", resolve(self.source))
+            object.__setattr__(self, "asked", resolve(self.source).about(self.block))
         times, duration = self.times, self.duration
         try:
             self.asked.check(

@@ -12,6 +12,7 @@ from typing import Annotated, Literal, NamedTuple
 from cyclopts import Parameter
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.cart import CartBlock
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
@@ -25,6 +26,7 @@ from studies.kit.arguments import (
     Count,
     Finite,
     HalfCycles,
+    NotNegative,
     Place,
     Positive,
     as_bad_input,
@@ -59,7 +61,7 @@ LEAST_COLUMNS = 2
 """Of a frame."""
 
 Pulse = Literal["half-sine", "full-sine"]
-SceneName = Literal["block", "frame", "slide"]
+SceneName = Literal["block", "frame", "slide", "cart"]
 
 
 class Posed(NamedTuple):
@@ -278,16 +280,23 @@ class Standing:
     ----------
     scene
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H.
+        each, with --load. slide: one block that slides, by a --friction below B/H. cart: one block
+        on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
     columns
         Of a frame, 2 or more.
     load
         Of a frame: the mass of its beam over that of all columns.
+    mass_ratio
+        Of a cart: the block's mass over that of block and cart, between 0 and 1.
+    stiffness
+        Of a cart: that of its spring over the mass of both [1/s²]; 0 by default, a free cart.
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
     columns: Count | None = None
     load: Positive | None = None
+    mass_ratio: Positive | None = None
+    stiffness: NotNegative | None = None
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system of these sizes [m].
@@ -299,6 +308,9 @@ class Standing:
         """
         if self.scene != "frame":
             refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        if self.scene != "cart":
+            given = {"mass-ratio": self.mass_ratio, "stiffness": self.stiffness}
+            refuse_given(given, "only with --scene cart")
         block = posed_block(width, height)
         with as_bad_input():
             if self.scene == "frame":
@@ -312,6 +324,12 @@ class Standing:
                     words = "a block that slides requires one below B/H"
                     raise BadInputError(f"--friction missing; {words}")
                 return SlidingBlock(width=width, height=height, friction=friction)
+            if self.scene == "cart":
+                if self.mass_ratio is None:
+                    words = "a cart requires the block's mass over that of both"
+                    raise BadInputError(f"--mass-ratio missing; {words}")
+                cart = {"mass_ratio": self.mass_ratio, "stiffness": self.stiffness or 0.0}
+                return CartBlock(width=width, height=height, **cart)
             return block
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Delayed, RigidBlock, RockingFrame, SlidingBlock, Still, simulate
+from analytic import CartBlock, Delayed, RigidBlock, RockingFrame, SlidingBlock, Still, simulate
 from analytic.block import GRAVITY
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
@@ -37,7 +37,7 @@ HELD_S = 2.0
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
-    """Return the job of every case and source: of frames first."""
+    """Return the job of every case and source, but of carts: of frames first."""
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
     return [*frames(sources, quick), *beyond]
 
@@ -59,7 +59,11 @@ def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
 
 
 def steps(
-    source: str, frame: RockingFrame, motion: Motion, phases: int
+    source: str,
+    frame: RockingFrame | CartBlock,
+    motion: Motion,
+    phases: int,
+    duration: float | None = None,
 ) -> Iterator[dict[str, Any]]:
     """Yield the options by which the first impact falls into different parts of equal steps."""
     asked = resolve(source)
@@ -68,7 +72,7 @@ def steps(
         return
     used = asked.used
     step = used.step if math.isfinite(used.step) else used.step_s * frame.p
-    impact = simulate(frame, motion).impacts[0].time * frame.p
+    impact = simulate(frame, motion, duration=duration).impacts[0].time * frame.p
     for phase in range(phases):
         yield {"step": step * (1.0 + phase / phases * step / impact)}
 

@@ -21,6 +21,12 @@ def frame_sentence(lines: pd.DataFrame) -> str:
     return f"The peak of a rocking frame is off by up to {listed(said)}." if said else ""
 
 
+def cart_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the peaks on carts are; empty without any."""
+    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
+    return f"That of a block on a cart which feels it is off by up to {listed(said)}." * bool(said)
+
+
 def slide_sentence(lines: pd.DataFrame) -> str:
     """Say for each preset how far off the slips are; empty without any."""
     largest = _largest(lines, "largest_slip_error_m")

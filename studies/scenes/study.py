@@ -1,4 +1,4 @@
-"""A rocking frame, a sliding block and a moving floor, against their exact solutions."""
+"""A rocking frame, a sliding block, moving floors and carts, against their exact solutions."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
 from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.scenes import STUDY
+from studies.scenes.carts import cart_row, cart_steps, cart_summary, carts
 from studies.scenes.cases import jobs
-from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
+from studies.scenes.findings import cart_sentence, floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.sources.groups import core_sources
 
@@ -39,25 +40,25 @@ def command(
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a rocking frame, a sliding block and a floor that moves against their exact solutions.
+    """Hold a frame, a sliding block, a floor that moves and a cart against their exact solutions.
 
     The frame's columns turn as a block of another size and restitution does; the block that slides
-    has a closed form; on the floor a block should ride. What an engine is not built for is a row
-    that says so.
+    has a closed form; on the floor a block should ride; the cart feels its block. What an engine is
+    not built for is a row that says so.
 
     Parameters
     ----------
     out
         Folder for the results; made if there is none.
     quick
-        One frame, one slide, and two places of the steps.
+        One frame, one slide, one cart, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
     """
     check_sources(sources)
     plan = Plan(
-        jobs=lambda: jobs(sources, quick),
+        jobs=lambda: [*jobs(sources, quick), *carts(sources, quick)],
         settings={"quick": quick},
         growing={"source": sources},
         reduce=reduce,
@@ -69,8 +70,10 @@ def command(
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the summary, and how far the response is from the exact one of its scene."""
-    exact = simulate(job.block, job.motion, start=job.options.get("start", (0.0, 0.0)))
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
+    if job.labels["scene"] == "cart":
+        return {**row, **cart_row(job, response)}
+    exact = simulate(job.block, job.motion, start=job.options.get("start", (0.0, 0.0)))
     seen = response.observables
     if job.labels["scene"] == "frame":
         row |= {"exact": exact.peak_ratio, "right": response.outcome is exact.outcome}
@@ -126,14 +129,18 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
     parts = {
         name: pd.DataFrame([row for row in rows if row["scene"] == name])
-        for name in ("frame", "slide", "floor", "block")
+        for name in ("frame", "slide", "floor", "block", "cart")
     }
+    parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
+    on_carts = _available(parts["cart"])
     return {
         **parts,
         "frame-summary": frame_summary(parts["frame"]),
         "slide-summary": slide_summary(parts["slide"]),
         "floor-summary": floor_summary(parts["floor"]),
         "block-summary": block_summary(parts["block"]),
+        "cart-summary": cart_summary(on_carts),
+        "cart-steps": cart_steps(on_carts),
     }
 
 
@@ -213,11 +220,13 @@ def block_summary(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    if rows.empty:
+        return []
     asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
+TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary", "cart-summary")
 
 
 def report(folder: Path) -> str:
@@ -228,14 +237,20 @@ def report(folder: Path) -> str:
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    *tables, floors, blocks = [read_table(folder / f"{name}.csv") for name in TABLES]
-    return [*(table[table["source"].map(is_engine)] for table in tables), floors, blocks]
+    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
+    frames, slides, floors, blocks, on_carts = tables.values()
+    return [*map(_of_engines, (frames, slides)), floors, blocks, _of_engines(on_carts)]
+
+
+def _of_engines(table: pd.DataFrame) -> pd.DataFrame:
+    return table[table["source"].map(is_engine)]
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames, the slides and the floors show."""
-    frames, slides, floors, _ = engines_in(folder)
-    said = (frame_sentence(frames), slide_sentence(slides), floor_sentence(floors))
+    """Say what the frames, the slides, the floors and the carts show."""
+    frames, slides, floors, _, on_carts = engines_in(folder)
+    ours = frame_sentence(frames), slide_sentence(slides), floor_sentence(floors)
+    said = (*ours, cart_sentence(on_carts))
     return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
 
 

@@ -7,10 +7,12 @@ from functools import partial
 from typing import Any, Literal
 
 from analytic import MODELS, integrate, simulate
+from analytic.cart import CartBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES
+from engines.cart import carrying, ride
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
 from engines.parts.compiled import interpreted_first
@@ -37,7 +39,7 @@ class Source:
     It can be sent to another process or machine. `engine` and `preset` are names, the preset by
     default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
     ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
-    that by which it was asked for.
+    that by which it was asked for. `on_cart` is whether it is asked about a block on a cart.
     """
 
     kind: Kind
@@ -47,6 +49,14 @@ class Source:
     stepping: bool = False
     model: str = "exact"
     name: str = ""
+    on_cart: bool = False
+
+    def about(self, block: Any) -> "Source":
+        """Return the source as it is asked about a body: an engine's cart is code of its own."""
+        if not self.engine or not isinstance(block, CartBlock) or self.on_cart:
+            return self
+        given: Any = self.call
+        return replace(self, call=partial(run_on_cart, **given.keywords), on_cart=True)
 
     def check(
         self,
@@ -66,8 +76,10 @@ class Source:
         """
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
+        if isinstance(block, CartBlock) and not self.engine and self.name != "exact":
+            raise ValueError(f"{self.name} solves a base that moves as it is told, and no cart")
         taken = inspect.signature(self.call).parameters
-        if getattr(self.call, "func", None) is run_engine:
+        if getattr(self.call, "func", None) in (run_engine, run_on_cart):
             asked = {**options, "duration": duration, "times": times}
             self.used.chosen(scene_of(block, motion, self.preset, **asked))
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
@@ -77,7 +89,8 @@ class Source:
     @property
     def declared(self) -> Engine:
         """What the engine says of itself; KeyError for other sources."""
-        return ENGINES[self.engine]
+        engine = ENGINES[self.engine]
+        return carrying(engine) if self.on_cart else engine
 
     @property
     def used(self) -> Preset:
@@ -110,6 +123,14 @@ def run_engine(
 
     scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
     return interpreted_first(partial(run, engine, scene))
+
+
+def run_on_cart(
+    block: CartBlock, motion: Motion, *, engine: str, preset: str | None, **options: Any
+) -> Response:
+    """Let an engine run a block on a cart; as `run_engine`."""
+    scene = scene_of(block, motion, preset, **options)
+    return interpreted_first(partial(ride, engine, scene))
 
 
 def scene_of(

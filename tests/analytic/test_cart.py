@@ -8,7 +8,7 @@ import pytest
 from given import BLOCK, FULL_SINE, G
 from scipy.integrate import solve_ivp
 
-from analytic import CartBlock, Outcome, Record, SinePulse, Still, simulate
+from analytic import CartBlock, Outcome, Record, SinePulse, Still, cart_demands, simulate
 from analytic.response import Reason
 
 
@@ -184,3 +184,38 @@ def test_a_spring_that_never_lets_it_rest_is_said_so():
         (Outcome.OVERTURNED, None),
     )
     assert simulate(cart, pulse, duration=1.0).outcome is Outcome.ROCKED
+
+
+@pytest.mark.parametrize(
+    ("mass_ratio", "stiffness", "pulse"), [(0.9, 0.0, (6.0, 20.0)), (0.3, 60.0, (9.81, 16.0))]
+)
+def test_what_the_contact_must_bear(mass_ratio, stiffness, pulse):
+    """By differences of the block's velocity, away from impacts: to the square of their distance.
+
+    A cart so heavy that it is a base asks what that does.
+    """
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=mass_ratio, stiffness=stiffness)
+    motion = SinePulse(amplitude=pulse[0], omega=pulse[1], half_cycles=2)
+    times = np.linspace(0.0, 1.5, 20001)
+    response = simulate(cart, motion, duration=1.5, times=times)
+    theta, rate, speed = response.history.theta, response.history.velocity, response.history.base[1]
+    z, side = cart.alpha - np.abs(theta), np.sign(theta)
+    velocities = (speed + cart.R * np.cos(z) * rate, cart.R * np.sin(z) * side * rate)
+    along, up = (np.gradient(velocity, times) for velocity in velocities)
+    apart = [np.abs(times - impact.time) for impact in response.impacts]
+    apart += [np.abs(times - time) for time in motion.breakpoints]
+    seen = (np.min(apart, axis=0) > 3e-4) & (side != 0.0) & (np.abs(theta) < 2.0 * cart.alpha)
+    found = cart_demands(cart, motion, duration=1.5, samples=20001)
+    assert found.friction == pytest.approx((np.abs(along) / (G + up))[seen].max(), rel=1e-2)
+    assert found.normal == pytest.approx((1.0 + up / G)[seen].min(), rel=1e-2)
+    heavy = CartBlock(width=0.5, height=1.5, mass_ratio=1e-9)
+    block = simulate(BLOCK, FULL_SINE)
+    needs = cart_demands(heavy, FULL_SINE, duration=FULL_SINE.duration + 4.0, samples=40001)
+    assert needs.normal == pytest.approx(block.min_normal, rel=1e-2)
+    assert needs.friction == pytest.approx(block.friction_needed, rel=1e-2)
+
+
+def test_a_block_at_rest_asks_nothing_of_a_pivot():
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=0.3)
+    needs = cart_demands(cart, SinePulse(amplitude=1.0, omega=6.0), duration=2.0)
+    assert np.isnan(needs.friction) and np.isnan(needs.normal)

@@ -21,7 +21,7 @@ from studies.kit.identity import FOUND_BY_NAME, Makers, changed
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.provenance import record_of
 from studies.kit.study import Study
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import Source
 from studies.stability import study as stability
 
 AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
@@ -254,10 +254,11 @@ class Seen(BaseException):
 
 
 def look(jobs, *, executor, reduce, journal, makers):
-    """Stand in for `run_jobs`: run a job of each source, and compare what runs with what counts."""
+    """Stand in for `run_jobs`: run a job of each source and kind of body, and compare what runs
+    with what counts."""
     missed, count = set(), 0
-    for job in {job.source: job for job in jobs}.values():
-        ours = places_in(lambda job=job: reduce(job, executor.ask(job, resolve(job.source))))
+    for job in {(job.source, type(job.block)): job for job in jobs}.values():
+        ours = places_in(lambda job=job: reduce(job, executor.ask(job, job.asked)))
         missed |= ours - makers.reached(job).names
         count = max(count, len(ours))
     raise Seen(missed, count)
