@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, Literal
 
 from analytic import MODELS, integrate, simulate
+from analytic.cylinder import RollingCylinder
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -15,6 +16,7 @@ from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
 from engines.parts.compiled import interpreted_first
 from engines.scene import Scene, one_of
+from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
@@ -50,7 +52,7 @@ class Source:
 
     def check(
         self,
-        block: System,
+        block: System | RollingCylinder,
         motion: Motion,
         *,
         duration: float | None,
@@ -64,6 +66,13 @@ class Source:
         TypeError, ValueError
             If an option is not one of its own, or a value is not allowed.
         """
+        if isinstance(block, RollingCylinder):
+            if not self.engine and self.name != "exact":
+                raise ValueError(f"{self.name} solves what rocks, and this cylinder rolls")
+            scene = space_scene(block, motion, duration=duration, **options)
+            if self.engine:
+                scene.choose(self.used.settings)
+            return
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         taken = inspect.signature(self.call).parameters
@@ -73,6 +82,13 @@ class Source:
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
             for name in options:
                 one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
+
+    def about(self, block: System | RollingCylinder) -> "Source":
+        """Return the source as it answers about a system: of a cylinder by a call of its own."""
+        if not isinstance(block, RollingCylinder):
+            return self
+        preset = self.preset if ":" in self.name else None
+        return replace(self, call=partial(rolled, engine=self.engine, preset=preset))
 
     @property
     def declared(self) -> Engine:
