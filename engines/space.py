@@ -27,7 +27,8 @@ from engines.scene import Scene
 Point = tuple[float, float, float]
 
 DEEPEST = 0.2
-"""A cylinder whose lowest point is below the plane by more than this part of its size has sunk."""
+"""A cylinder whose lowest point is below the plane by more than this part of its radius has sunk.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -264,7 +265,7 @@ def _wrong(world: SpaceWorld, row: FloatArray, it: Cylinder) -> Problem | None:
     if not np.isfinite(row).all():
         return Problem(Reason.DIVERGED, "the state is not finite")
     low = lowest(row[None], it)[0]
-    if low < -DEEPEST * min(it.radius, it.height):
+    if low < -DEEPEST * it.radius:
         return Problem(Reason.SANK, f"the rim sank {-low:.3g} m into the plane")
     return Problem(Reason.FAULT, words) if (words := world.fault()) else None
 

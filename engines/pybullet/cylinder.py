@@ -8,10 +8,6 @@ from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.settings import BulletSettings
 from engines.space import SpaceScene
 
-NO_MARGIN = 0.0
-"""Of a rigid body's shape: what it is rounded by."""
-
-
 def build(scene: SpaceScene, settings: BulletSettings, dt_s: float) -> "BulletCylinder":
     """Build a cylinder; see `engines.space`."""
     return BulletCylinder(scene, settings, dt_s)
@@ -20,11 +16,11 @@ def build(scene: SpaceScene, settings: BulletSettings, dt_s: float) -> "BulletCy
 class BulletCylinder:
     """A body with one shape, on a plane."""
 
-    def __init__(self, scene: SpaceScene, s: BulletSettings, dt_s: float) -> None:
-        self._p, it, alike = imported("pybullet"), scene.cylinder, _any(scene)
+    def __init__(self, scene: Any, s: BulletSettings, dt_s: float) -> None:
+        self._p, it = imported("pybullet"), scene.cylinder
         self._client = taken(self._p)
         with held_for_all:
-            self._make(engine_call(alike, s, dt_s))
+            self._make(engine_call(scene, s, dt_s))
             self._p.setTimeStep(dt_s, physicsClientId=self._client)
             self._p.setGravity(0.0, 0.0, -scene.gravity, physicsClientId=self._client)
             plane = self._shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
@@ -41,7 +37,7 @@ class BulletCylinder:
             }
             self._body = self._make(Call("createMultiBody", body))
             self._make(base_call(s, base))
-            self._make(body_call(alike, 0, s, self._body))
+            self._make(body_call(scene, 0, s, self._body))
             speeds = {"linearVelocity": it.velocity, "angularVelocity": it.spin}
             self._make(Call("resetBaseVelocity", {"objectUniqueId": self._body, **speeds}))
 
@@ -72,8 +68,3 @@ class BulletCylinder:
             for name, value in call.arguments.items()
         }
         return getattr(self._p, call.name)(**told, physicsClientId=self._client)
-
-
-def _any(scene: Any) -> Any:
-    """Return a scene as what reads its sizes takes it."""
-    return scene

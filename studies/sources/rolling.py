@@ -106,13 +106,17 @@ def space_scene(
     for name in options:
         one_of("option", name, sorted({*OPTIONS, "density"}))
     state = steady_states(cylinder, np.zeros(1))[0].tolist()
-    place, turn, velocity, spin = (
-        tuple(state[i:j]) for i, j in ((0, 3), (3, 7), (7, 10), (10, 13))
+    body = Cylinder(
+        radius=cylinder.radius,
+        height=cylinder.height,
+        density=density,
+        place=tuple(state[:3]),
+        turn=tuple(state[3:7]),
+        velocity=tuple(state[7:10]),
+        spin=tuple(state[10:]),
     )
-    moving: dict[str, Any] = {"place": place, "turn": turn, "velocity": velocity, "spin": spin}
-    size = {"radius": cylinder.radius, "height": cylinder.height, "density": density}
     return SpaceScene(
-        cylinder=Cylinder(**size, **moving),
+        cylinder=body,
         gravity=cylinder.gravity,
         p=cylinder.p,
         duration=TURNS * cylinder.turn if duration is None else duration,
