@@ -8,6 +8,7 @@ from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.settings import BulletSettings
 from engines.space import SpaceScene
 
+
 def build(scene: SpaceScene, settings: BulletSettings, dt_s: float) -> "BulletCylinder":
     """Build a cylinder; see `engines.space`."""
     return BulletCylinder(scene, settings, dt_s)
