@@ -26,6 +26,9 @@ from engines.scene import Scene
 
 Point = tuple[float, float, float]
 
+PLANAR = ("pymunk", "box2d")
+"""Engines that know the plane alone."""
+
 DEEPEST = 0.2
 """A cylinder whose lowest point is below the plane by more than this part of its radius has sunk.
 """
@@ -190,8 +193,9 @@ class Track(NamedTuple):
 
 def lacking(engine: Engine, scene: Any, preset: Preset) -> str:
     """Say what of a cylinder in space a preset of an engine cannot do; or an empty string."""
-    if find_spec(place_of(engine)) is None:
-        if engine.name in ("pymunk", "box2d"):
+    place = place_of(engine)
+    if not place or find_spec(place) is None:
+        if engine.name in PLANAR:
             return f"a cylinder needs space, and {engine.title} knows the plane alone"
         return f"{engine.title} is not built here for a cylinder in space"
     if preset.stepping is Stepping.OWN:
@@ -200,8 +204,9 @@ def lacking(engine: Engine, scene: Any, preset: Preset) -> str:
 
 
 def place_of(engine: Engine) -> str:
-    """Return the module in which an engine builds a cylinder, if there is one."""
-    return f"{engine.build.__module__.rpartition('.')[0]}.cylinder"
+    """Return the module in which an engine would build a cylinder; none outside a package."""
+    package = getattr(engine.build, "__module__", "").rpartition(".")[0]
+    return f"{package}.cylinder" if package else ""
 
 
 def roll(name: str, scene: SpaceScene) -> Track:

@@ -5,13 +5,14 @@ Slips of a unit: what was meant in another one is asked about, what is only unus
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
@@ -59,7 +60,7 @@ LEAST_COLUMNS = 2
 """Of a frame."""
 
 Pulse = Literal["half-sine", "full-sine"]
-SceneName = Literal["block", "frame", "slide"]
+SceneName = Literal["block", "frame", "slide", "cylinder"]
 
 
 class Posed(NamedTuple):
@@ -253,6 +254,16 @@ def refuse_endless(
             )
 
 
+def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
+    """Return --width and --height [m]; BadInputError if one is missing."""
+    if width is None or height is None:
+        missing = " and ".join(
+            f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
+        )
+        raise BadInputError(f"{missing} missing; a block requires its full width and height [m]")
+    return width, height
+
+
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height.
 
@@ -278,16 +289,42 @@ class Standing:
     ----------
     scene
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H.
+        each, with --load. slide: one block that slides, by a --friction below B/H. cylinder: one
+        that rolls on its rim, of --radius, --height and --tilt, the latter in rad.
     columns
         Of a frame, 2 or more.
     load
         Of a frame: the mass of its beam over that of all columns.
+    radius
+        Of a cylinder [m].
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
     columns: Count | None = None
     load: Positive | None = None
+    radius: Positive | None = None
+
+    def cylinder(self, height: float | None, excitation: Excitation) -> RollingCylinder:
+        """Return the cylinder of this height [m], at the tilt of an excitation without a motion.
+
+        Raises
+        ------
+        BadInputError
+            If an option is missing, or is one of another scene, or has a value that is not allowed.
+        """
+        refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        replace(excitation, tilt=None, degrees=False).refuse("only where no cylinder rolls")
+        given = {"radius": self.radius, "height": height, "tilt": excitation.tilt}
+        if missing := [f"--{name}" for name, value in given.items() if value is None]:
+            words = "a cylinder that rolls requires its radius, height and tilt"
+            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
+        tilt = float(excitation.tilt or 0.0)
+        with as_bad_input():
+            return RollingCylinder(
+                radius=float(self.radius or 0.0),
+                height=float(height or 0.0),
+                tilt=math.radians(tilt) if excitation.degrees else tilt,
+            )
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system of these sizes [m].
@@ -297,6 +334,7 @@ class Standing:
         BadInputError
             If an option is missing, contradicts the scene, or has a value that is not allowed.
         """
+        refuse_given({"radius": self.radius}, "only with --scene cylinder")
         if self.scene != "frame":
             refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
         block = posed_block(width, height)
