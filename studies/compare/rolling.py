@@ -8,27 +8,18 @@ from typing import Any
 
 from analytic.cylinder import RollingCylinder
 from analytic.motion import Still
-from analytic.response import Response
 from studies.compare.rendering import objects_as_lines, right_aligned
 from studies.kit.executors import Executor
-from studies.kit.jobs import Job, summary
+from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.options import Yours
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.differences import scientific
+from studies.measures.rolling import ERRORS, TURNS, reduced
 from studies.sources.registry import Effort
 
-TURNS = (5.0, 50.0)
-"""After so many turns of the foot about the centre a cylinder is looked at."""
-
-COLUMNS = {
-    "tilt [rad]": "tilt_error_rad",
-    "phase [rad]": "phase_error_rad",
-    "up [m]": "height_drift_m",
-    "aside [m]": "drift_m",
-    "energy": "energy_change",
-}
-"""Columns of the table -> observables."""
+COLUMNS = ("tilt [rad]", "phase [rad]", "up [m]", "aside [m]", "energy")
+"""Those of the errors."""
 
 
 def compare_rolling(
@@ -61,21 +52,16 @@ def compare_rolling(
     return exit_code(rows)
 
 
-def reduced(job: Job, response: Response) -> Row:
-    """Return the summary of a cylinder, what was seen of it, and what disturbances become."""
-    tilt, phase = job.block.growth(job.labels["turns"] * job.block.turn)
-    seen = {name: response.observables.get(name, math.nan) for name in COLUMNS.values()}
-    grown = {"tilt_growth": tilt, "phase_growth": phase}
-    return {**summary(job, response), **seen, **grown}
-
-
 def table_text(cylinder: RollingCylinder, turns: Sequence[float], rows: list[Row]) -> str:
     """Return the table with its head."""
     columns: dict[str, list[Any]] = {
         "source": [row["source"] for row in rows],
         "turns": [f"{row['turns']:g}" for row in rows],
         "outcome": [row["outcome"] for row in rows],
-        **{name: [scientific(row[key]) for row in rows] for name, key in COLUMNS.items()},
+        **{
+            name: [scientific(row[error]) for row in rows]
+            for name, error in zip(COLUMNS, ERRORS, strict=True)
+        },
         "steps": [row["steps"] for row in rows],
         "µs/step": [
             f"{1e6 * row['wall_s'] / row['steps']:.0f}" if row["steps"] else "-" for row in rows

@@ -1,27 +1,32 @@
-"""Scenes beyond one block: a frame of columns and a beam, a block that slides, a moving floor."""
+"""Scenes beyond one block: a frame, a block that slides, a moving floor, a rolling cylinder."""
 
 from studies.kit.study import Chapter, Study
+
+KINDS = ("frame", "slide", "floor", "block", "cylinder")
 
 STUDY = Study(
     name="scenes",
     module="studies.scenes.study",
-    help="""A rocking frame, a sliding block and a moving floor, against their exact solutions.
+    help="""A frame, a sliding block, a moving floor, a rolling cylinder; their exact solutions.
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
 pulse, a launch, and a hold below the onset; the floor is moved in each way that an engine has, and
 should carry a block along; a block that rocks on it is held against the exact answer on the floor
-as it should move, and as it moved. Writes frame.csv, slide.csv, floor.csv, block.csv, their
-summaries and pictures, and findings.txt; resumable.""",
+as it should move, and as it moved; a cylinder rolls on its rim in space, five turns and fifty.
+Writes frame.csv, slide.csv, floor.csv, block.csv, cylinder.csv, their summaries and pictures, and
+findings.txt; resumable.""",
     table="frame-summary.csv",
     products=(
         "frame.csv",
         "slide.csv",
         "floor.csv",
         "block.csv",
+        "cylinder.csv",
         "frame-summary.csv",
         "slide-summary.csv",
         "floor-summary.csv",
         "block-summary.csv",
+        "cylinder-summary.csv",
         "frame.png",
         "slide.png",
         "floor.png",
@@ -31,7 +36,7 @@ summaries and pictures, and findings.txt; resumable.""",
         Chapter(
             folder="scenes",
             question="Does it hold for several bodies, for friction alone, on a moving floor?",
-            tables=tuple(f"{kind}-summary.csv" for kind in ("frame", "slide", "floor", "block")),
+            tables=tuple(f"{kind}-summary.csv" for kind in KINDS),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, two places of the steps.",
         ),

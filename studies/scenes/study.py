@@ -1,4 +1,4 @@
-"""A rocking frame, a sliding block and a moving floor, against their exact solutions."""
+"""A frame, a sliding block, a moving floor and a rolling cylinder, and their exact solutions."""
 
 from __future__ import annotations
 
@@ -21,10 +21,12 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
 from studies.measures.presets import engine_of, is_engine, preset_of
+from studies.measures.rolling import reduced
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
 from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
+from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
@@ -39,7 +41,7 @@ def command(
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a rocking frame, a sliding block and a floor that moves against their exact solutions.
+    """Hold a frame, a sliding block, a moving floor and a rolling cylinder against what is exact.
 
     The frame's columns turn as a block of another size and restitution does; the block that slides
     has a closed form; on the floor a block should ride. What an engine is not built for is a row
@@ -50,7 +52,7 @@ def command(
     out
         Folder for the results; made if there is none.
     quick
-        One frame, one slide, and two places of the steps.
+        One frame, one slide, one cylinder, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
@@ -69,6 +71,9 @@ def command(
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the summary, and how far the response is from the exact one of its scene."""
+    if job.labels["scene"] == "cylinder":
+        reason = response.reason.name if response.reason else ""
+        return {**reduced(job, response), "reason": reason}
     exact = simulate(job.block, job.motion, start=job.options.get("start", (0.0, 0.0)))
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
     seen = response.observables
@@ -126,7 +131,7 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
     parts = {
         name: pd.DataFrame([row for row in rows if row["scene"] == name])
-        for name in ("frame", "slide", "floor", "block")
+        for name in ("frame", "slide", "floor", "block", "cylinder")
     }
     return {
         **parts,
@@ -134,6 +139,8 @@ def tabulate(rows: Sequence[Row]) -> Tables:
         "slide-summary": slide_summary(parts["slide"]),
         "floor-summary": floor_summary(parts["floor"]),
         "block-summary": block_summary(parts["block"]),
+        "cylinder": cylinder_table(parts["cylinder"]),
+        "cylinder-summary": cylinder_summary(parts["cylinder"]),
     }
 
 
@@ -217,25 +224,33 @@ def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
+TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary", "cylinder-summary")
 
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
-    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
-    return tell(folder, pictures(folder), headline(folder), tables)
+    return tell(folder, pictures(folder), headline(folder), tables_in(folder))
+
+
+def tables_in(folder: Path) -> dict[str, pd.DataFrame]:
+    """Return a folder's summaries; without a line where it is from before a scene was asked."""
+    places = {name: folder / f"{name}.csv" for name in TABLES}
+    empty = pd.DataFrame(columns=["source"])
+    return {name: read_table(at) if at.is_file() else empty for name, at in places.items()}
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    *tables, floors, blocks = [read_table(folder / f"{name}.csv") for name in TABLES]
-    return [*(table[table["source"].map(is_engine)] for table in tables), floors, blocks]
+    frames, slides, floors, blocks, rolling = tables_in(folder).values()
+    of_engines = [table[table["source"].map(is_engine)] for table in (frames, slides, rolling)]
+    return [*of_engines[:2], floors, blocks, of_engines[2]]
 
 
 def headline(folder: Path) -> str:
     """Say what the frames, the slides and the floors show."""
-    frames, slides, floors, _ = engines_in(folder)
-    said = (frame_sentence(frames), slide_sentence(slides), floor_sentence(floors))
+    frames, slides, floors, _, rolling = engines_in(folder)
+    of_bodies = (frame_sentence(frames), slide_sentence(slides))
+    said = (*of_bodies, floor_sentence(floors), cylinder_sentence(rolling))
     return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
 
 

@@ -145,7 +145,7 @@ def seen(
     -------
     ndarray (n,), mapping
         tilt_error_rad, phase_error_rad: of the axis, positive where it leans too far or is ahead;
-        height_drift_m, drift_m: of its centre, which should stay, upwards and along the base;
+        height_drift_m, aside_m: of its centre, which should stay, upwards and along the base;
         energy_change: relative to what it should be; sink_m: how deep its lowest point was at most.
     """
     axis, states = axes(track.states), track.states
@@ -157,7 +157,7 @@ def seen(
         "tilt_error_rad": tilts[-1] - cylinder.tilt,
         "phase_error_rad": late[-1],
         "height_drift_m": states[-1, 2] - cylinder.centre_height,
-        "drift_m": math.hypot(*states[-1, :2]),
+        "aside_m": math.hypot(*states[-1, :2]),
         "energy_change": energy / cylinder.energy - 1.0,
         "sink_m": max(-lowest(states, scene.cylinder).min(), 0.0),
     }
