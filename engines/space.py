@@ -29,6 +29,9 @@ Point = tuple[float, float, float]
 PLANAR = ("pymunk", "box2d")
 """Engines that know the plane alone."""
 
+TAKEN = 1e-5
+"""To which part the start must read back as it was set, in single precision, too."""
+
 DEEPEST = 0.2
 """A cylinder whose lowest point is below the plane by more than this part of its radius has sunk.
 """
@@ -233,16 +236,26 @@ def roll(name: str, scene: SpaceScene) -> Track:
         raise NotAvailableError(words) from error
     built = perf_counter()
     try:
-        track = _run(world, scene, dt_s)
+        track = _run(world, scene, dt_s, _untaken(world, scene.cylinder))
     finally:
         world.close()
     return track._replace(setup_s=built - began, preset=preset.name)
 
 
-def _run(world: SpaceWorld, scene: SpaceScene, dt_s: float) -> Track:
+def _untaken(world: SpaceWorld, it: Cylinder) -> Problem | None:
+    """Return what of the start reads back as something else."""
+    wanted = {"place": it.place, "turn": it.turn, "velocity": it.velocity, "spin": it.spin}
+    for (name, value), found in zip(wanted.items(), world.state(), strict=True):
+        if not np.allclose(value, found, rtol=TAKEN, atol=TAKEN * (1.0 + np.abs(value).max())):
+            words = f"{name} was set to {value} but reads {np.asarray(found).tolist()}"
+            return Problem(Reason.FAULT, words)
+    return None
+
+
+def _run(world: SpaceWorld, scene: SpaceScene, dt_s: float, problem: Problem | None) -> Track:
     steps = max(round(scene.duration / dt_s), 1)
     every = max(round(scene.every / dt_s), 1)
-    times, states, taken, problem = [0.0], [_row(world)], 0, None
+    times, states, taken = [0.0], [_row(world)], 0
     limit, began = scene.time_limit_s or math.inf, perf_counter()
     while taken < steps and not problem:
         if taken >= scene.max_steps or perf_counter() - began > limit:

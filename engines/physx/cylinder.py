@@ -1,4 +1,4 @@
-"""PhysX: a cylinder in space, SAPIEN's own shape, whose axis is x."""
+"""PhysX: a cylinder in space, SAPIEN's own shape, whose axis is x: a prism of 32 sides."""
 
 import math
 from types import SimpleNamespace
@@ -24,7 +24,11 @@ def build(scene: SpaceScene, settings: PhysxSettings, dt_s: float) -> "PhysxCyli
 
 
 class PhysxCylinder:
-    """A body with one shape, on a kinematic box."""
+    """A body with one shape, on a kinematic box.
+
+    SAPIEN has no true cylinder, but a convex mesh (CreateCylinder in its src/physx/mesh.cpp): it
+    rolls from corner to corner, and each takes energy.
+    """
 
     def __init__(self, scene: Any, settings: PhysxSettings, dt_s: float) -> None:
         sapien, it, s = imported("sapien"), scene.cylinder, values(scene, settings, dt_s)
