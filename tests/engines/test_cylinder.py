@@ -125,7 +125,8 @@ def test_the_cylinder_of_physx_has_32_sides():
         place, turn, *_ = world.state()
         for contact in world._system.get_contacts():
             for point in contact.points:
-                at = (point.position + (0.0, 0.0, world._sunk)) / world._unit - place
+                x, y, z = point.position
+                at = np.array((x, y, z + world._sunk)) / world._unit - place
                 x, y, _ = rotated(turn, at, back=True)
                 angles.append(math.atan2(y, x))
     world.close()
