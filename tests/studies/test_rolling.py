@@ -138,6 +138,8 @@ def test_rows_are_summarized():
     naive = [abs(row["tilt_error_rad"]) for row in rows if row["source"] == "mujoco:naive"]
     found = lines.loc["mujoco:naive"]
     assert [found["tilt_error_rad"], found["half_step_tilt_error_rad"]] == naive
+    taken = [row["steps"] for row in rows if row["source"] == "mujoco:naive"]
+    assert taken[1] == pytest.approx(2 * taken[0], abs=2)
     # its contact is soft by itself: half the step is no better
     assert naive[1] > 0.9 * naive[0] > 0.1
     assert lines.loc["exact", "tilt_error_rad"] < 1e-14
