@@ -8,8 +8,8 @@ import numpy as np
 
 from engines.parts.quiet import imported
 from engines.parts.units import counted
+from engines.rapier.build import ALOFT, values
 from engines.rapier.build import build as build_base
-from engines.rapier.build import values
 from engines.rapier.settings import RapierSettings
 from engines.space import SpaceScene, turn_vector
 
@@ -68,8 +68,11 @@ class RapierCylinder:
         return place, (turn.w, turn.i, turn.j, turn.k), velocity, (spin.x, spin.y, spin.z)
 
     def fault(self) -> str:
-        """Say that the cylinder sleeps while it should roll."""
-        return "the library put the cylinder to sleep" if self._body.is_sleeping else ""
+        """Say that the cylinder sleeps while it stands on its rim."""
+        turn = self._body.rotation
+        if self._body.is_sleeping and 2.0 * math.hypot(turn.i, turn.j) > ALOFT:
+            return "the library put the cylinder to sleep aloft"
+        return ""
 
     def close(self) -> None:
         """Release the engine's memory."""

@@ -144,3 +144,9 @@ def test_a_start_that_is_not_taken_is_a_fault():
 
     problem = _untaken(Slow(), body)
     assert problem.reason is Reason.FAULT and problem.message.startswith("spin was set to (-3.1")
+
+
+@pytest.mark.skipif("rapier" not in HERE, reason="Rapier is not installed")
+def test_what_sleeps_flat_lies_down_and_is_no_fault():
+    found = respond("rapier:naive", FLAT, duration=50.0 * FLAT.turn)
+    assert found.outcome is RollingOutcome.LAY_DOWN and found.reason is None
