@@ -131,12 +131,44 @@ class RollingCylinder:
         Positive: the steady motion is stable, but for a lasting change to one beside it. Negative:
         a disturbance grows by exp(sqrt(-wobble) t) while it is small.
         """
+        tilt, lean, nod, turn = self._linearized
+        # with beta' = -q, p' = P q and r' = R q: q'' = (-Q_beta + Q_p P + Q_r R) q
+        return float(tilt[2] - lean[2] * nod[1] - turn[2] * nod[3])
+
+    def growth(self, time: float) -> tuple[float, float]:
+        """Return what small disturbances of the rolling motion become in a time [s].
+
+        Of disturbances whose tilt [rad] and rates over `precession` have squares that sum to one:
+        the largest change of the tilt, and of the phase, both [rad]. The latter grows with time
+        where the motion is stable, too: the tilt of a steady motion near by goes with its rate.
+        """
+        from scipy.linalg import expm  # takes longer to import than to use
+
+        rate, c, s = self.precession, math.cos(self.tilt), math.sin(self.tilt)
+        flow = np.zeros((5, 5))
+        flow[:4, :4] = self._linearized.T
+        # the phase's own rate is p / sin(beta)
+        flow[4, :2] = -rate * c / s, 1.0 / s
+        scale = np.array([1.0, rate, rate, rate])
+        become = expm(flow * time)[:, :4] * scale
+        return float(np.linalg.norm(become[0])), float(np.linalg.norm(become[4]))
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s] as it rocks on its rim, sqrt(m g R/I) as of a block.
+
+        R is the distance from the centre to the rim, I the moment of inertia about its tangent.
+        """
+        square = self.radius**2 + 0.25 * self.height**2
+        return math.sqrt(self.gravity * math.sqrt(square) / (self._moments[0] + square))
+
+    @property
+    def _linearized(self) -> FloatArray:
+        """Derivatives of `rolling_rates` by each of (beta, p, q, r), a row each, as it rolls."""
         rate = self.precession * math.sin(self.tilt)
         steady = np.array([self.tilt, rate, 0.0, 0.5 * self.height / self.radius * rate])
         by = [rolling_rates(self, steady + 1j * COMPLEX_STEP * row).imag for row in np.eye(4)]
-        tilt, lean, nod, turn = np.array(by) / COMPLEX_STEP
-        # with beta' = -q, p' = P q and r' = R q: q'' = (-Q_beta + Q_p P + Q_r R) q
-        return float(tilt[2] - lean[2] * nod[1] - turn[2] * nod[3])
+        return np.array(by) / COMPLEX_STEP
 
     @property
     def _moments(self) -> tuple[float, float]:

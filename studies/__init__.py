@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from analytic.cylinder import RollingCylinder
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
     from engines.layouts import System
@@ -23,8 +24,8 @@ __all__ = ["plot", "respond", "side_by_side", "table"]
 
 def respond(
     source: str,
-    block: System,
-    motion: Motion,
+    block: System | RollingCylinder,
+    motion: Motion | None = None,
     *,
     start: tuple[float, float] = (0.0, 0.0),
     duration: float | None = None,
@@ -38,15 +39,15 @@ def respond(
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
-    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
-        What stands on the base.
-    motion : Motion
-        For instance a `SinePulse`; `analytic.Still()` where the ground does not move.
+    block : RigidBlock, RockingFrame, SlidingBlock, CartBlock or RollingCylinder
+        What stands on the base, or rolls on it; the latter sets out as it rolls steadily.
+    motion : Motion, optional
+        For instance a `SinePulse`; by default the ground does not move.
     start : (float, float), optional
         Rotation theta [rad] and angular velocity [rad/s] at time zero; at rest by default.
     duration : float, optional
         Observe until this time [s], not before the motion ends. By default the response is
-        followed until its peak is decided, and no longer.
+        followed until its peak is decided, and no longer; a cylinder for five turns.
     times : array, optional
         Ground times [s] at which `Response.history` is sampled.
     **options
@@ -65,8 +66,10 @@ def respond(
     >>> respond("exact", block, pulse).outcome.value
     'rocked'
     """
+    from analytic.motion import Still
     from studies.sources.registry import resolve
 
+    motion = Still() if motion is None else motion
     if tuple(start) != (0.0, 0.0):
         options["start"] = start
     asked = resolve(source).about(block)

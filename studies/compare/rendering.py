@@ -32,10 +32,15 @@ is null there."""
 
 
 def json_lines(rows: list[Row], note: str = "") -> str:
+    """Return one JSON object a line, of what `records` tells."""
+    return objects_as_lines(records(rows, note))
+
+
+def objects_as_lines(objects: Sequence[Mapping[str, Any]]) -> str:
     """Return one JSON object a line; a number that is not finite is null."""
     return "\n".join(
         json.dumps({k: _finite_or_null(v) for k, v in item.items()}, allow_nan=False)
-        for item in records(rows, note)
+        for item in objects
     )
 
 

@@ -22,6 +22,7 @@ from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.columns import slip_error
 from studies.compare.rendering import draw, json_lines, records, table_text
+from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
     BadInputError,
     Place,
@@ -50,6 +51,7 @@ from studies.kit.posing import (
     Excitation,
     Posed,
     Standing,
+    both_sizes,
     note_unusual,
     refuse_endless,
 )
@@ -70,13 +72,16 @@ TIMED_IMPACTS = 5
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
 OF_A_SLIDE = ("exact", *core_sources())
-"""By default asked of a block that slides, or stands on a cart, which has no linearization."""
+"""By default asked of a block that slides or stands on a cart, and of a cylinder, which have no
+linearization."""
+
+NOT_ROLLING = "only where no cylinder rolls"
 
 
 def command(
     *,
-    width: Positive,
-    height: Positive,
+    width: Positive | None = None,
+    height: Positive | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
@@ -88,19 +93,19 @@ def command(
     json: bool = False,
     computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
-    """Compare the sources on one block, frame or slide, and one pulse, record or release.
+    """Compare the sources on one block, frame, slide or cylinder, and one pulse, record or release.
 
     Parameters
     ----------
     width
         Full width B of the block or of each column [m].
     height
-        Its full height H [m].
+        Its full height H [m], or that of the cylinder.
     sources
         Who is asked.
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
-        8/p of free rocking.
+        8/p of free rocking. A cylinder by default five turns, and fifty.
     estimate
         Run every engine at half the step, too: the relative difference of the two peaks, and that
         times the factor which bounds 95 % of the errors on random cases, or that there is no such
@@ -110,6 +115,21 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
+    if standing.scene == "cylinder":
+        refuse_given({"width": width, "plot": plot, "estimate": estimate or None}, NOT_ROLLING)
+        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
+        check_sources(sources)
+        refuse_two_steps(effort.step, yours)
+        return compare_rolling(
+            standing.cylinder(height, excitation),
+            sources,
+            duration=duration,
+            effort=effort,
+            yours=yours,
+            executor=computing.executor(at_once=True),
+            json=json,
+        )
+    width, height = both_sizes(width, height)
     if standing.scene == "slide":
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         given = {"tilt": excitation.tilt, "rate": excitation.rate, "plot": plot}

@@ -16,7 +16,9 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from analytic.cylinder import RollingCylinder
 from engines.declaration import BatchEngine
+from engines.space import place_of
 from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
 from studies.kit.jobs import Job, plain
 from studies.kit.journal import JOURNAL, FolderError, Kept, Maker, Row, named
@@ -89,6 +91,8 @@ class Makers:
             names |= {name_of(part) for part in parts if part}
             if isinstance(engine, BatchEngine):
                 names |= {name_of(engine.batch), ("engines.run.batch", "run_together")}
+            if isinstance(job.block, RollingCylinder):  # whose builder is found by its name
+                names.add((place_of(engine), "build"))
         return reached(names, self._root, cut=FOUND_BY_NAME)
 
     def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from analytic.cylinder import RollingCylinder
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines.declaration import Stepping
@@ -170,7 +171,9 @@ class Yours:
     friction: NotNegative | None = None
     dt: Positive | None = None
 
-    def options(self, sources: Sequence[str], block: System) -> dict[str, dict[str, float]]:
+    def options(
+        self, sources: Sequence[str], block: System | RollingCylinder
+    ) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source.
 
         Raises

@@ -5,7 +5,7 @@ Slips of a unit: what was meant in another one is asked about, what is only unus
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.cart import CartBlock
+from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
@@ -61,7 +62,7 @@ LEAST_COLUMNS = 2
 """Of a frame."""
 
 Pulse = Literal["half-sine", "full-sine"]
-SceneName = Literal["block", "frame", "slide", "cart"]
+SceneName = Literal["block", "frame", "slide", "cart", "cylinder"]
 
 
 class Posed(NamedTuple):
@@ -255,6 +256,16 @@ def refuse_endless(
             )
 
 
+def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
+    """Return --width and --height [m]; BadInputError if one is missing."""
+    if width is None or height is None:
+        missing = " and ".join(
+            f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
+        )
+        raise BadInputError(f"{missing} missing; a block requires its full width and height [m]")
+    return width, height
+
+
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height.
 
@@ -282,6 +293,7 @@ class Standing:
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
         each, with --load. slide: one block that slides, by a --friction below B/H. cart: one block
         on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
+        cylinder: one that rolls on its rim, of --radius, --height and --tilt, the latter in rad.
     columns
         Of a frame, 2 or more.
     load
@@ -290,6 +302,8 @@ class Standing:
         Of a cart: the block's mass over that of block and cart, between 0 and 1.
     stiffness
         Of a cart: that of its spring over the mass of both [1/s²]; 0 by default, a free cart.
+    radius
+        Of a cylinder [m].
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
@@ -297,6 +311,29 @@ class Standing:
     load: Positive | None = None
     mass_ratio: Positive | None = None
     stiffness: NotNegative | None = None
+    radius: Positive | None = None
+
+    def cylinder(self, height: float | None, excitation: Excitation) -> RollingCylinder:
+        """Return the cylinder of this height [m], at the tilt of an excitation without a motion.
+
+        Raises
+        ------
+        BadInputError
+            If an option is missing, or is one of another scene, or has a value that is not allowed.
+        """
+        refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        replace(excitation, tilt=None, degrees=False).refuse("only where no cylinder rolls")
+        given = {"radius": self.radius, "height": height, "tilt": excitation.tilt}
+        if missing := [f"--{name}" for name, value in given.items() if value is None]:
+            words = "a cylinder that rolls requires its radius, height and tilt"
+            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
+        tilt = float(excitation.tilt or 0.0)
+        with as_bad_input():
+            return RollingCylinder(
+                radius=float(self.radius or 0.0),
+                height=float(height or 0.0),
+                tilt=math.radians(tilt) if excitation.degrees else tilt,
+            )
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system of these sizes [m].
@@ -306,6 +343,7 @@ class Standing:
         BadInputError
             If an option is missing, contradicts the scene, or has a value that is not allowed.
         """
+        refuse_given({"radius": self.radius}, "only with --scene cylinder")
         if self.scene != "frame":
             refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
         if self.scene != "cart":

@@ -120,7 +120,7 @@ def _verdict(
     return (Verdict.COARSE if abs(error) <= WIDE_BAND else Verdict.OFF), peak_error
 
 
-def is_at_an_edge(case: Extreme, outcome: Outcome) -> bool:
+def is_at_an_edge(case: Extreme, outcome: enum.Enum) -> bool:
     """Say whether the exact outcome is another one at an amplitude that hardly differs."""
     near = (replace(case, onsets=case.onsets * (1.0 + s * EDGE_BAND)) for s in (1.0, -1.0))
     return any(simulate(other.block, other.motion).outcome is not outcome for other in near)

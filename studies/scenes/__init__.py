@@ -1,18 +1,21 @@
-"""Scenes beyond one block: frames, a block that slides, a moving floor, a cart."""
+"""Scenes beyond one block: a frame, a slide, a moving floor, a cart, a rolling cylinder."""
 
 from studies.kit.study import Chapter, Study
+
+KINDS = ("frame", "slide", "floor", "block", "cart", "cylinder")
 
 STUDY = Study(
     name="scenes",
     module="studies.scenes.study",
-    help="""A frame, a sliding block, a moving floor and a cart, against their exact solutions.
+    help="""A frame, a slide, a moving floor, a cart, a rolling cylinder; their exact solutions.
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
 pulse, a launch, and a hold below the onset; the floor is moved in each way that an engine has, and
 should carry a block along; a block that rocks on it is held against the exact answer on the floor
-as it should move, and as it moved; the cart, free or on a spring, is pushed and feels its block.
-Writes frame.csv, slide.csv, floor.csv, block.csv, cart.csv, their summaries and pictures,
-cart-steps.csv and findings.txt; resumable.""",
+as it should move, and as it moved; the cart, free or on a spring, is pushed and feels its block; a
+cylinder rolls on its rim in space, five turns and fifty.
+Writes frame.csv, slide.csv, floor.csv, block.csv, cart.csv, cylinder.csv, their summaries and
+pictures, cart-steps.csv and findings.txt; resumable.""",
     table="frame-summary.csv",
     products=(
         "frame.csv",
@@ -20,12 +23,14 @@ cart-steps.csv and findings.txt; resumable.""",
         "floor.csv",
         "block.csv",
         "cart.csv",
+        "cylinder.csv",
         "frame-summary.csv",
         "slide-summary.csv",
         "floor-summary.csv",
         "block-summary.csv",
         "cart-summary.csv",
         "cart-steps.csv",
+        "cylinder-summary.csv",
         "frame.png",
         "slide.png",
         "floor.png",
@@ -35,10 +40,7 @@ cart-steps.csv and findings.txt; resumable.""",
         Chapter(
             folder="scenes",
             question="Does it hold for several bodies, for friction alone, on a moving floor?",
-            tables=(
-                *(f"{kind}-summary.csv" for kind in ("frame", "slide", "floor", "block", "cart")),
-                "cart-steps.csv",
-            ),
+            tables=(*(f"{kind}-summary.csv" for kind in KINDS), "cart-steps.csv"),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, one cart, two places of the steps.",
         ),

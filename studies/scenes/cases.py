@@ -1,4 +1,4 @@
-"""The frames, the slides and the floors that every engine is asked about."""
+"""The frames, the slides, the floors and the cylinders that every engine is asked about."""
 
 import itertools
 import math
@@ -16,6 +16,7 @@ from engines.declaration import Stepping
 from engines.layouts import System
 from engines.parts.factors import DEFAULT
 from studies.kit.jobs import Job
+from studies.scenes.rolling import cylinders
 from studies.sources.registry import resolve
 
 LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)
@@ -39,7 +40,7 @@ HELD_S = 2.0
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the job of every case and source, but of carts: of frames first."""
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
-    return [*frames(sources, quick), *beyond]
+    return [*frames(sources, quick), *beyond, *cylinders(sources, quick)]
 
 
 def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:

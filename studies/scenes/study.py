@@ -1,4 +1,4 @@
-"""A rocking frame, a sliding block, moving floors and carts, against their exact solutions."""
+"""A frame, a slide, a moving floor, a cart and a rolling cylinder, and their exact solutions."""
 
 from __future__ import annotations
 
@@ -21,11 +21,13 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
 from studies.measures.presets import engine_of, is_engine, preset_of
-from studies.scenes import STUDY
+from studies.measures.rolling import reduced
+from studies.scenes import KINDS, STUDY
 from studies.scenes.carts import cart_row, cart_steps, cart_summary, carts
 from studies.scenes.cases import jobs
 from studies.scenes.findings import cart_sentence, floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
+from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
@@ -40,7 +42,7 @@ def command(
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a frame, a sliding block, a floor that moves and a cart against their exact solutions.
+    """Hold a frame, a slide, a moving floor, a cart and a cylinder against their exact solutions.
 
     The frame's columns turn as a block of another size and restitution does; the block that slides
     has a closed form; on the floor a block should ride; the cart feels its block. What an engine is
@@ -51,7 +53,7 @@ def command(
     out
         Folder for the results; made if there is none.
     quick
-        One frame, one slide, one cart, and two places of the steps.
+        One frame, one slide, one cart, one cylinder, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
@@ -70,6 +72,9 @@ def command(
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the summary, and how far the response is from the exact one of its scene."""
+    if job.labels["scene"] == "cylinder":
+        reason = response.reason.name if response.reason else ""
+        return {**reduced(job, response), "reason": reason}
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
     if job.labels["scene"] == "cart":
         return {**row, **cart_row(job, response)}
@@ -127,10 +132,7 @@ def needed(rows: Sequence[Row]) -> Sequence[Row]:
 
 def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
-    parts = {
-        name: pd.DataFrame([row for row in rows if row["scene"] == name])
-        for name in ("frame", "slide", "floor", "block", "cart")
-    }
+    parts = {name: pd.DataFrame([row for row in rows if row["scene"] == name]) for name in KINDS}
     parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
     on_carts = _available(parts["cart"])
     return {
@@ -141,6 +143,8 @@ def tabulate(rows: Sequence[Row]) -> Tables:
         "block-summary": block_summary(parts["block"]),
         "cart-summary": cart_summary(on_carts),
         "cart-steps": cart_steps(on_carts),
+        "cylinder": cylinder_table(parts["cylinder"]),
+        "cylinder-summary": cylinder_summary(parts["cylinder"]),
     }
 
 
@@ -226,20 +230,29 @@ def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
-TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary", "cart-summary")
+TABLES = tuple(f"{kind}-summary" for kind in KINDS)
 
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
-    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
-    return tell(folder, pictures(folder), headline(folder), tables)
+    return tell(folder, pictures(folder), headline(folder), tables_in(folder))
+
+
+def tables_in(folder: Path) -> dict[str, pd.DataFrame]:
+    """Return a folder's summaries; without a line where it is from before a scene was asked."""
+    places = {name: folder / f"{name}.csv" for name in TABLES}
+    empty = pd.DataFrame(columns=["source"])
+    return {name: read_table(at) if at.is_file() else empty for name, at in places.items()}
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
-    frames, slides, floors, blocks, on_carts = tables.values()
-    return [*map(_of_engines, (frames, slides)), floors, blocks, _of_engines(on_carts)]
+    frames, slides, floors, blocks, on_carts, rolling = tables_in(folder).values()
+    return [
+        *map(_of_engines, (frames, slides)),
+        *(floors, blocks),
+        *map(_of_engines, (on_carts, rolling)),
+    ]
 
 
 def _of_engines(table: pd.DataFrame) -> pd.DataFrame:
@@ -247,10 +260,10 @@ def _of_engines(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def headline(folder: Path) -> str:
-    """Say what the frames, the slides, the floors and the carts show."""
-    frames, slides, floors, _, on_carts = engines_in(folder)
-    ours = frame_sentence(frames), slide_sentence(slides), floor_sentence(floors)
-    said = (*ours, cart_sentence(on_carts))
+    """Say what the frames, the slides, the floors, the carts and the cylinders show."""
+    frames, slides, floors, _, on_carts, rolling = engines_in(folder)
+    of_bodies = frame_sentence(frames), slide_sentence(slides), floor_sentence(floors)
+    said = (*of_bodies, cart_sentence(on_carts), cylinder_sentence(rolling))
     return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from analytic import MODELS, integrate, simulate
 from analytic.cart import CartBlock
+from analytic.cylinder import RollingCylinder
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -17,6 +18,7 @@ from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
 from engines.parts.compiled import interpreted_first
 from engines.scene import Scene, one_of
+from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
@@ -51,8 +53,14 @@ class Source:
     name: str = ""
     on_cart: bool = False
 
-    def about(self, block: Any) -> "Source":
-        """Return the source as it is asked about a body: an engine's cart is code of its own."""
+    def about(self, block: System | CartBlock | RollingCylinder) -> "Source":
+        """Return the source as it answers about a system: cart and cylinder are code of their own.
+
+        Of a cart an engine's is, of a cylinder everyone's.
+        """
+        if isinstance(block, RollingCylinder):
+            preset = self.preset if ":" in self.name else None
+            return replace(self, call=partial(rolled, engine=self.engine, preset=preset))
         if not self.engine or not isinstance(block, CartBlock) or self.on_cart:
             return self
         given: Any = self.call
@@ -60,7 +68,7 @@ class Source:
 
     def check(
         self,
-        block: System,
+        block: System | RollingCylinder,
         motion: Motion,
         *,
         duration: float | None,
@@ -74,6 +82,13 @@ class Source:
         TypeError, ValueError
             If an option is not one of its own, or a value is not allowed.
         """
+        if isinstance(block, RollingCylinder):
+            if not self.engine and self.name != "exact":
+                raise ValueError(f"{self.name} solves what rocks, and this cylinder rolls")
+            scene = space_scene(block, motion, duration=duration, **options)
+            if self.engine:
+                scene.choose(self.used.settings)
+            return
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         if isinstance(block, CartBlock) and not self.engine and self.name != "exact":

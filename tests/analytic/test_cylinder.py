@@ -139,3 +139,44 @@ def test_small_disturbances_swing_or_grow_as_the_linearized_motion(cylinder):
     shape = np.sin if cylinder.wobble > 0.0 else np.sinh
     expected = size / pace * shape(pace * times)
     assert tilted == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("cylinder", [FAT, RollingCylinder(radius=0.5, height=2.0, tilt=1.2)])
+def test_growth_is_what_disturbances_become(cylinder):
+    """Each of four is put into the rates or the tilt, 1e-6 of it, for a turn and a half."""
+    time, rate = 1.5 * cylinder.turn, cylinder.precession
+    axis, nod = start(cylinder)[3:6], np.array([0.0, 1.0, 0.0])
+    up_face = (UP - axis[2] * axis) / math.sin(cylinder.tilt)
+    ends = []
+    for lean, change in ((1.0, 0.0 * nod), (0.0, up_face), (0.0, nod), (0.0, axis)):
+        state = start(cylinder)
+        c, s = math.cos(1e-6 * lean), math.sin(1e-6 * lean)
+        turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+        # the axis leans to +x: a tilt is a turn about y, with which the rates go
+        state[3:6], state[9:12] = turn @ state[3:6], turn @ state[9:12] + 1e-6 * rate * change
+        state[6:9] = -np.cross(state[9:12], foot_of(cylinder, state[3:6], state[9:12])[0])
+        found = solve_ivp(
+            lambda _, now: flow(cylinder, now), (0.0, time), state, "DOP853",
+            rtol=1e-13, atol=1e-15,
+        ).y[:, -1]  # fmt: skip
+        tilt = math.atan2(math.hypot(found[3], found[4]), found[5]) - cylinder.tilt
+        phase = math.remainder(math.atan2(found[4], found[3]) - rate * time, 2.0 * math.pi)
+        ends.append((1e6 * tilt, 1e6 * phase))
+    assert np.linalg.norm(ends, axis=0) == pytest.approx(cylinder.growth(time), rel=1e-3)
+
+
+def test_a_disturbance_grows_only_near_the_edge_of_the_gap():
+    """At the edge where the weight has little moment, by exp(sqrt(-wobble) t)."""
+    edge = math.atan(0.5) - 1e-3
+    slow = RollingCylinder(radius=0.5, height=2.0, tilt=edge)
+    assert slow.wobble < 0.0
+    pace, time = math.sqrt(-slow.wobble), 10.0 / math.sqrt(-slow.wobble)
+    first, later = slow.growth(time)[0], slow.growth(time + 1.0 / pace)[0]
+    assert later / first == pytest.approx(math.e, rel=1e-3)
+    assert FAT.growth(0.0) == (1.0, 0.0)
+    assert max(FAT.growth(turns * FAT.turn)[0] for turns in (5, 50, 500)) < 3.0
+
+
+def test_p_is_that_of_a_block_on_its_rim():
+    """Square of m g R over the moment about a tangent: 9.81 * 0.5590 / 0.3958 = 13.854."""
+    assert FAT.p**2 == pytest.approx(9.81 * math.hypot(0.5, 0.25) / (0.0625 + 0.0625 / 3 + 0.3125))
