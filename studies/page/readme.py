@@ -40,8 +40,7 @@ def command(*, root: Path = Path()) -> int:
     if not (root / PUBLISHED).is_dir():
         raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
     for study, chapter in CHAPTERS:
-        tables = [name for name in study.products if name.endswith(".csv")]
-        check(root / PUBLISHED / chapter.folder, tables, "a published folder")
+        check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
     folder.mkdir(exist_ok=True)
     hero.measure(folder / "hero.csv")
     made_with = {**provenance.subject("readme"), **provenance.versions()}

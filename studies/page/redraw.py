@@ -30,7 +30,7 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
         tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
     for study in found:
-        check(folder, [name for name in study.products if name.endswith(".csv")], "FOLDER")
+        check(folder, study.tables, "FOLDER")
     for study in found:
         print(*draw(study, folder, f".{suffix}"), sep="\n")
     return 0

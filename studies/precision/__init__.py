@@ -4,23 +4,13 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="precision",
-    module="studies.precision.study",
     help="""Error against run time: every method along its own setting, on the same cases.
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
 resumable. The full study takes some eight minutes on one core, --quick one and a half.""",
     table="precision.csv",
-    products=(
-        "precision.csv",
-        "work-precision.csv",
-        "precision.png",
-        "findings.txt",
-        "shares.csv",
-        "scenes.csv",
-        "reference.csv",
-        "cost.png",
-        "cost.txt",
-    ),
+    tables=("precision.csv", "work-precision.csv", "shares.csv", "scenes.csv", "reference.csv"),
+    others=("findings.txt", "cost.txt"),
     chapters=(
         Chapter(
             folder="precision",
@@ -52,5 +42,6 @@ Where the time of a step goes, and the price of a free body, a full box, a movin
 history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv, and,
 with --starts, how long whole commands take, starts.csv.""",
     table="shares.csv",
-    products=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "cost.png", "cost.txt"),
+    tables=("shares.csv", "scenes.csv", "reference.csv", "starts.csv"),
+    others=("cost.png", "cost.txt"),
 )

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="scenes",
-    module="studies.scenes.study",
     help="""A rocking frame, a sliding block and a moving floor, against their exact solutions.
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
@@ -13,19 +12,9 @@ should carry a block along; a block that rocks on it is held against the exact a
 as it should move, and as it moved. Writes frame.csv, slide.csv, floor.csv, block.csv, their
 summaries and pictures, and findings.txt; resumable.""",
     table="frame-summary.csv",
-    products=(
-        "frame.csv",
-        "slide.csv",
-        "floor.csv",
-        "block.csv",
-        "frame-summary.csv",
-        "slide-summary.csv",
-        "floor-summary.csv",
-        "block-summary.csv",
-        "frame.png",
-        "slide.png",
-        "floor.png",
-        "findings.txt",
+    tables=(
+        *("frame.csv", "slide.csv", "floor.csv", "block.csv", "frame-summary.csv"),
+        *("slide-summary.csv", "floor-summary.csv", "block-summary.csv"),
     ),
     chapters=(
         Chapter(

@@ -1,4 +1,4 @@
-"""Cases per second of a map: every model, and general-purpose integrators on the same cases."""
+"""Cases per second of a map: every model, and SciPy on the same cases."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import resource
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -32,16 +32,15 @@ PEER_CASES, QUICK_PEER_CASES = 900, 100
 MOST_THREADS = 1024
 PEAKS = "exact, peaks too"
 RUNS = 3
-"""The shortest of so many is reported of the models; peers take too long for more than one."""
+"""The shortest of so many is reported of the models; SciPy takes too long for more than one."""
 
 
 def command(*, out: Place, quick: bool = False, threads: Count | None = None) -> int:
     """Report how many cases of an overturning map are solved in a second.
 
-    The models on all threads and on one, SciPy's DOP853 and, where it is installed, heyoka.py on
-    a sample of the same cases, on one, alone and in its batch mode. All but one find the outcome
-    only: no peaks, nothing after the pulse but its energy; SciPy follows the free rocking to its
-    turning point.
+    The models on all threads and on one, SciPy's DOP853 on a sample of the same cases, on one. The
+    models find the outcome only: no peaks, but in one row, and nothing after the pulse but its
+    energy; SciPy follows the free rocking to its turning point.
 
     Parameters
     ----------
@@ -75,7 +74,7 @@ def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def timings(window: Window, count: int, peers: int, threads: int) -> list[dict[str, object]]:
-    """Return a row for each model, on all threads and on one, and for each peer."""
+    """Return a row for each model, on all threads and on one, and for SciPy."""
     x, onsets = points(window, count)
     rows, alone = [], 0.0
     for used in dict.fromkeys((threads, 1)):
@@ -90,8 +89,11 @@ def timings(window: Window, count: int, peers: int, threads: int) -> list[dict[s
             rows.append({**row, "steps": float(found.steps.mean()), "wrong": failed})
             if model == "exact" and used == 1:
                 alone = spent.wall_s / len(x)
-    for name, ask in peer_solvers().items():
-        rows += _peer_rows(window, name, ask, peers)
+    x, onsets = points(window, peers)
+    falls, spent = timed(partial(by_scipy, window, x, onsets), runs=1)
+    wrong = int((np.array(falls) != (window.modes(x, onsets).mode >= 0)).sum())
+    row = _row(window, "dop853 (SciPy)", 1, len(x), spent)
+    rows.append({**row, "steps": math.nan, "wrong": wrong})
     return [
         {**row, "times_exact": float(str(row["us_a_case_and_core"])) / alone / 1e6} for row in rows
     ]
@@ -131,21 +133,6 @@ def _row(window: Window, name: str, threads: int, cases: int, spent: Spent) -> d
     }
 
 
-Overturns = Callable[[Window, FloatArray, FloatArray], Sequence[bool]]
-"""Says of each point of a map whether the block overturns."""
-
-
-def peer_solvers() -> dict[str, Overturns]:
-    """Return the general-purpose integrators that are installed."""
-    solvers: dict[str, Overturns] = {"dop853 (SciPy)": by_scipy}
-    try:
-        from studies.throughput.heyoka_peer import HeyokaBatch, HeyokaSolver
-    except ImportError:
-        return solvers
-    batch = HeyokaBatch()
-    return {**solvers, "heyoka.py": HeyokaSolver(), f"heyoka.py, {batch.lanes} at once": batch}
-
-
 def by_scipy(window: Window, x: FloatArray, onsets: FloatArray) -> list[bool]:
     """Ask SciPy's DOP853 with its events, at a relative tolerance of 1e-9."""
     from studies.sources.registry import resolve
@@ -153,27 +140,6 @@ def by_scipy(window: Window, x: FloatArray, onsets: FloatArray) -> list[bool]:
     source, points = resolve("dop853"), zip(x.tolist(), onsets.tolist(), strict=True)
     responses = [source.call(*window.case(*point)) for point in points]
     return [response.outcome is Outcome.OVERTURNED for response in responses]
-
-
-def _peer_rows(
-    window: Window, name: str, ask: Overturns, count: int
-) -> Iterator[dict[str, object]]:
-    """Yield a peer's row, and another of its integrator alone where that is known."""
-    x, onsets = points(window, count)
-    before = _integrating_s(ask)
-    found, spent = timed(partial(ask, window, x, onsets), runs=1)
-    after, right = _integrating_s(ask), window.modes(x, onsets).mode >= 0
-    rest = {"steps": math.nan, "wrong": int((np.array(found) != right).sum())}
-    yield {**_row(window, name, 1, len(x), spent), **rest}
-    if not math.isnan(after):
-        alone = (after - before) / 2
-        spent = Spent(alone, alone)
-        yield {**_row(window, f"{name}, its integrator alone", 1, len(x), spent), **rest}
-
-
-def _integrating_s(ask: Overturns) -> float:
-    """Return the time [s] that a peer has spent in its integrator so far; nan if unknown."""
-    return float(getattr(ask, "integrating_s", math.nan))
 
 
 def report(folder: Path) -> str:

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="validity",
-    module="studies.validity.study",
     help="""Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
@@ -12,14 +11,7 @@ on squat blocks and with low friction. Writes validity.csv, map.csv, compared.cs
 pictures and findings.txt; resumable. The full study takes about a minute on one core, --quick a
 quarter of one.""",
     table="validity.csv",
-    products=(
-        "validity.csv",
-        "map.csv",
-        "compared.csv",
-        "validity.png",
-        "friction.png",
-        "findings.txt",
-    ),
+    tables=("validity.csv", "map.csv", "compared.csv"),
     chapters=(
         Chapter(
             folder="validity",

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="versions",
-    module="studies.versions.study",
     help="""What each engine answers in its other releases, and what changed between them.
 
 The 240 cases of the paper's figure 8 and the first 50 random ones, by every preset, in each release
@@ -14,7 +13,7 @@ of them. Each release gets an environment of its own, with the engine alone in i
 half of one with --quick); what is there is not made again. Writes releases.csv, changes.csv and
 versions.png.""",
     table="releases.csv",
-    products=("answers.csv", "releases.csv", "changes.csv", "versions.png", "findings.txt"),
+    tables=("answers.csv", "releases.csv", "changes.csv"),
     captions={
         "versions": (
             "Median (line) and largest error (points) of each preset by release, a panel for each "

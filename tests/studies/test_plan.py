@@ -33,7 +33,7 @@ from studies.stability.study import PatientRunning
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=2.0 * math.pi)
-STUDY = Study(name="made-up", module="studies.sweep.study", help="", products=("made-up.csv",))
+STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 
 
 def job(label, **more):
