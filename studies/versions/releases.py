@@ -1,11 +1,10 @@
-"""Which releases of an engine there are, which of them are asked, and what room they take."""
+"""Which releases of an engine there are, and which of them are asked."""
 
-import importlib.util
 import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -149,17 +148,3 @@ def chosen(engine: str, asked: Sequence[str]) -> tuple[list[Release], str]:
         except MissingError as error:
             problem = str(error)
     return sorted(found, key=lambda release: release.order), problem
-
-
-def places_of(library: str) -> list[Path]:
-    """Return the folders or the file of a library as it is installed here, others' apart."""
-    spec = importlib.util.find_spec(library)
-    if spec is None:
-        return []
-    return [Path(place) for place in spec.submodule_search_locations or [spec.origin or os.devnull]]
-
-
-def room_mib(places: Iterable[Path]) -> float:
-    """Return the room of some files and of those in some folders [MiB]."""
-    files = [path for place in places for path in (place, *place.rglob("*"))]
-    return sum(path.lstat().st_size for path in files if path.is_file()) / 2.0**20

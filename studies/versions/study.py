@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
 from tqdm import tqdm
 
-from engines import ENGINES, installed_engines
+from engines import installed_engines
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -26,23 +25,17 @@ from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.versions import STUDY
-from studies.versions.asked import Asked, ask, is_made
+from studies.versions.asked import Asked, ask
 from studies.versions.cases import jobs_of
 from studies.versions.releases import (
     INSTALLED,
-    MINOR,
     Release,
     check_releases,
     chosen,
     installed,
-    places_of,
-    room_mib,
 )
 from studies.versions.report import headline, pictures, report
 from studies.versions.tables import releases_table
-
-MOST_MIB = 2048.0
-"""An engine whose releases take more room than this [MiB] is asked only if it is named."""
 
 __all__ = ["command", "headline", "pictures", "report"]
 
@@ -51,7 +44,7 @@ def command(
     *,
     out: Place,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
-    releases: Annotated[tuple[str, ...], several] = (MINOR,),
+    releases: Annotated[tuple[str, ...], several] = (INSTALLED,),
     quick: bool = False,
     environments: Place | None = None,
     jobs: Count | None = None,
@@ -59,19 +52,18 @@ def command(
 ) -> int:
     """Ask the releases of each engine the same cases, each in an environment of its own.
 
-    The release that is installed is always among them. What is to be fetched is said before it
-    is. Without a network those of which there is an environment can still be named.
+    The release that is installed is always among them. The others are fetched. Without a network
+    those of which there is an environment can still be named.
 
     Parameters
     ----------
     out
         Folder for the results, with one inside for each release; made if there is none.
     engines
-        Names of engines, without a preset; by default all that are installed and take no more
-        than 2 GiB to fetch.
+        Names of engines, without a preset; by default all that are installed.
     releases
-        "minor": the last one of each minor number; "all"; "installed"; or some by name, as in
-        mujoco==3.2.7.
+        "installed", by default; "minor": the last one of each minor number; "all"; or some by name,
+        as in mujoco==3.2.7.
     quick
         A tenth of the cases.
     environments
@@ -81,7 +73,7 @@ def command(
     time_limit
         Wall-clock time [s] after which a case is given up.
     """
-    named, engines = engines is not None, installed_engines() if engines is None else engines
+    engines = installed_engines() if engines is None else engines
     check_engines(engines)
     if missing := [name for name in engines if name not in installed_engines()]:
         raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
@@ -94,18 +86,13 @@ def command(
     options = (*limits, *(("--quick",) if quick else ()))
     environments = environments or out / "environments"
     found = {engine: chosen(engine, releases) for engine in engines}
-    wanted, notes = _affordable(
-        {engine: some for engine, (some, _) in found.items()}, environments, named
-    )
-    if not wanted:
-        raise BadInputError(f"--engines is not given, and nothing is asked; {'; '.join(notes)}")
+    wanted = [release for some, _ in found.values() for release in some]
 
     def tabulate(_: object) -> Tables:
-        print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)
-        each = tqdm([one for some in wanted.values() for one in some], disable=None, unit="release")
+        each = tqdm(wanted, disable=None, unit="release")
         return {"releases": releases_table([ask(one, out, environments, options) for one in each])}
 
-    growing = {"engine": list(wanted), "release": releases}
+    growing = {"engine": engines, "release": releases}
     plan = Plan(settings={"quick": quick}, growing=growing, tabulate=tabulate)
     code = carry_out(STUDY, plan, out, running, report)
     unlisted = [problem for _, problem in found.values() if problem]
@@ -131,20 +118,3 @@ def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
     answers = pd.DataFrame(rows)
     asked = [Asked(release, answers[answers["engine"] == release.engine]) for release in here]
     return {"answers": answers, "releases": releases_table(asked)}
-
-
-def _affordable(
-    wanted: Mapping[str, Sequence[Release]], environments: Path, named: bool
-) -> tuple[dict[str, Sequence[Release]], list[str]]:
-    """Leave out engines that take too much, unless they are named; say what is to be fetched."""
-    kept, notes = {}, []
-    for engine, releases in wanted.items():
-        new = [one for one in releases if not (one.here or is_made(environments / one.folder))]
-        room = len(new) * room_mib(places_of(ENGINES[engine].library))
-        fetched = f"{len(new)} releases of {engine}, about {room:.0f} MiB"
-        if named or room <= MOST_MIB:
-            kept[engine] = releases
-            notes += [f"to fetch: {fetched}"] if new else []
-        else:
-            notes.append(f"left out: {fetched}; --engines {engine} asks them")
-    return kept, notes

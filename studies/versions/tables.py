@@ -20,7 +20,7 @@ CASE = ["engine", "source", "set", "case"]
 RELEASES = (
     *("engine", "release", "source", "set", "cases", "failed", "right"),
     *("median_error", "p90_error", "max_error", "moved", "moved_cases", "turned"),
-    *("disk_mib", "setup_s", "message"),
+    "message",
 )
 
 
@@ -49,9 +49,8 @@ def answering(one: Asked) -> bool:
 def _lines(one: Asked, before: Asked | None) -> list[Row]:
     release = one.release
     head = {"engine": release.engine, "release": release.version}
-    tail = {"disk_mib": math.nan, "setup_s": math.nan, **one.made}
     if one.answers is None:
-        return [{**head, **tail, "source": "", "set": "", "message": one.problem}]
+        return [{**head, "source": "", "set": "", "message": one.problem}]
     compared = with_reference(one.answers)
     moves = None if before is None or before.answers is None else moved(before.answers, one.answers)
     return [
@@ -61,7 +60,6 @@ def _lines(one: Asked, before: Asked | None) -> list[Row]:
             "set": name,
             **_errors(rows),
             **_moves(None if moves is None else _of(moves, str(source), str(name))),
-            **tail,
             "message": _commonest(rows),
         }
         for (source, name), rows in compared.groupby(["source", "set"], sort=False)
