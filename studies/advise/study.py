@@ -32,7 +32,7 @@ from studies.kit.arguments import (
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
-from studies.kit.tables import read_table
+from studies.kit.tables import table_in
 from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
@@ -149,18 +149,13 @@ def _versions(published: Path) -> str:
     return listed([f"{name} {version}" for name, version in versions.items()])
 
 
-def read(folder: Path) -> pd.DataFrame:
-    """Read advice back, with empty words as such."""
-    return read_table(folder / "advice.csv")
-
-
 def headline(folder: Path) -> str:
     """Say what keeps each error cheapest."""
-    return claim(read(folder))
+    return claim(table_in(folder, "advice"))
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 
-    return {"advice": draw_advice(read(folder))}
+    return {"advice": draw_advice(table_in(folder, "advice"))}

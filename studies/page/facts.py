@@ -12,11 +12,11 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import RECOMMENDED
-from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
+from studies.kit.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED, scientific
@@ -206,7 +206,7 @@ def models(published: Path) -> dict[str, str]:
 
 def advised(published: Path) -> str:
     """Return the cheapest advice for each error with each loop as a table of Markdown."""
-    lines = read_advice(published / "advice")
+    lines = table_in(published / "advice", "advice")
     heads = ("largest error", *(head for loop in LOOPS.values() for head in (loop, "a case")))
     rows = []
     for target, group in lines.groupby("target", sort=False):

@@ -9,7 +9,7 @@ import pandas as pd
 from analytic.response import Reason
 from studies.cases.extreme import extremes
 from studies.drawing.kept import Pictures, tell
-from studies.kit.tables import read_table, write_table
+from studies.kit.tables import table_in, write_table
 from studies.measures.again import WORST_AGAIN, commands, with_commands, worst_again
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import resolve
@@ -29,7 +29,9 @@ UNBOUNDED = (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the text, which findings.txt holds too."""
-    matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
+    matrix, steps, moved = (
+        table_in(folder, name) for name in ("stability", "steps", "sensitivity")
+    )
     moved = with_growth(moved)
     write_table(folder / "sensitivity.csv", moved)
     rests, rough = matrix["case"] == "60 s at rest", matrix["case"] == "friction 1e9"
@@ -64,7 +66,7 @@ def report(folder: Path) -> str:
 
 def again(folder: Path) -> pd.DataFrame:
     """Return the failures, those that nothing mends first, with the commands that ask them."""
-    wrong = failures(_table(folder, "stability"))
+    wrong = failures(table_in(folder, "stability"))
     wrong = wrong.sort_values("remedy", key=lambda said: said != NOTHING, kind="stable")
     cases, asked = {case.name: case for case in extremes(False)}, []
     for name, source, outcome in wrong[["case", "source", "outcome"]].itertuples(index=False):
@@ -76,20 +78,14 @@ def again(folder: Path) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Return how many of the extreme cases the engines get right."""
-    return first_claim(_table(folder, "stability"))
+    return first_claim(table_in(folder, "stability"))
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw the matrix of a folder from its stability.csv alone."""
     from studies.stability.figure import draw_matrix
 
-    return {"stability": draw_matrix(_table(folder, "stability"))}
-
-
-def _table(folder: Path, name: str) -> pd.DataFrame:
-    """Return a table with empty words as such; empty if none of the sources has a row in it."""
-    path = folder / f"{name}.csv"
-    return read_table(path) if path.is_file() else pd.DataFrame()
+    return {"stability": draw_matrix(table_in(folder, "stability"))}
 
 
 def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:

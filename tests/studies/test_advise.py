@@ -22,6 +22,7 @@ from studies.advise.words import literal
 from studies.cases.drawn import draw
 from studies.kit.digests import seal
 from studies.kit.journal import PROVENANCE
+from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
@@ -36,7 +37,7 @@ def known():
 
 
 def test_the_published_advice_follows_from_the_published_tables():
-    kept = study.read(PUBLISHED / "advice")
+    kept = table_in(PUBLISHED / "advice", "advice")
     engines = tuple(kept["engine"].unique())
     today = advice(PUBLISHED, engines, TARGETS, BLOCK)
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-12)
