@@ -70,10 +70,9 @@ class Record:
         Parameters
         ----------
         path : str or Path
-            A PEER AT2 file, known by a header that says NPTS and DT; an ASC file of ESM or ITACA;
-            or a table of two columns, time [s] and acceleration, separated by commas, semicolons or
-            blanks, with or without a line of names, comments beginning with # or %. The first time
-            becomes zero.
+            A PEER AT2 file, known by a header that says NPTS and DT; or a table of two columns,
+            time [s] and acceleration, separated by commas, semicolons or blanks, with or without a
+            line of names, comments beginning with # or %. The first time becomes zero.
         units : {"g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"}, optional
             Needed where the file does not state its own.
 

@@ -1,4 +1,4 @@
-"""Recorded accelerograms: PEER's AT2 files, ESM's ASC files, tables of time and acceleration.
+"""Recorded accelerograms: PEER's AT2 files, and tables of time and acceleration.
 
 A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
 """
@@ -6,7 +6,6 @@ A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
 import re
 from pathlib import Path
 
-from analytic.accelerograms.asc import read as read_asc
 from analytic.accelerograms.at2 import read as read_at2
 from analytic.accelerograms.table import read as read_table
 from analytic.accelerograms.text import lines_of
@@ -17,6 +16,7 @@ FOREIGN = {
     "SMC": r"[12] (UN)?CORRECTED ACCELEROGRAM|\*\s*$",
     "CSMIP": r"(UN)?CORRECTED ACCELEROGRAM|RESPONSE AND FOURIER",
     "K-NET": r"Origin Time\s+\d",
+    "ESM or ITACA": r"EVENT_NAME:",
 }
 """Format that is not read -> how its first line begins."""
 
@@ -34,14 +34,13 @@ def read(path: Path, units: str | None) -> Sampled:
     if path.suffix.lower() in (".vt2", ".dt2"):
         raise ValueError("it must be a file of acceleration, as AT2 files are")
     lines = lines_of(path)
-    if sampled := read_asc(lines, units) or read_at2(lines, units):
+    if sampled := read_at2(lines, units):
         return sampled
     first = next((line.strip() for line in lines if line.strip()), "")
     for name, begins in FOREIGN.items():
         if re.match(begins, first, re.IGNORECASE):
             raise ValueError(
-                f"it is a {name} file, which is not read; it must be a PEER AT2 or an ESM ASC file,"
-                " or a table of two columns, time [s] and acceleration, made from it, for instance"
-                " with gmprocess"
+                f"it is a file of {name}, which is not read; it must be a PEER AT2 file or a table "
+                "of two columns, time [s] and acceleration, made from it, for instance by gmprocess"
             )
     return read_table(lines, units)

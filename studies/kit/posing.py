@@ -88,8 +88,8 @@ class Excitation:
     phase
         Phase [rad] of the pulse at its begin; 1.5708 makes it a cosine.
     record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
-        a table of time [s] and acceleration. It is straight between its samples.
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, or a table of time [s] and
+        acceleration. It is straight between its samples.
     units
         Of the record's acceleration, where the file does not state them; g is 9.81 m/s².
     scale

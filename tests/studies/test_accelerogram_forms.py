@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, SAMPLES, TITLE
+from records import AT2, COLUMNS, SAMPLES, TITLE
 from scipy.constants import g as standard_gravity
 
 import studies
@@ -59,14 +59,21 @@ def test_units_are_read_as_the_header_states_them(stated, unit, written):
     assert record.samples == pytest.approx(UNITS[unit] * SAMPLES, rel=1e-15)
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_an_asc_file_of_esm_or_itaca(end, written):
-    text = (ASC_HEADER + ASC_COLUMN).replace("\n", end)
-    record = read_record(written(text, "XX.ABC..HNE.D.19990102.030405.C.ACC.ASC"))
-    assert record.dt == 0.005
-    assert record.samples == pytest.approx(0.01 * SAMPLES, rel=1e-15)
-    raw = ASC_HEADER.replace("ACCELERATION\n", "UNPROCESSED ACCELERATION\n")
-    assert read_record(written(raw + ASC_COLUMN), "gal") == record
+@pytest.mark.parametrize(
+    ("names", "unit"),
+    [
+        ("Time (s), Acceleration (m/s2)", "m/s2"),
+        ("Time [sec], Acceleration [m/s²]", "m/s2"),
+        ("t_s,acc_g", "g"),
+        ("# units: cm/s^2", "cm/s2"),
+        ("% UNITS OF CM/SEC/SEC", "cm/s2"),
+        ("time (s) acceleration (Gal)", "gal"),
+    ],
+)
+def test_units_of_a_table_are_read_as_its_names_state_them(names, unit, written):
+    record = read_record(path := written(f"{names}\n0 0.5\n0.1 1.5\n"))
+    assert record.samples == pytest.approx(UNITS[unit] * np.array([0.5, 1.5]))
+    assert record == read_record(path, unit)
 
 
 @pytest.mark.parametrize(
@@ -114,7 +121,7 @@ def test_tables_that_leave_no_doubt(text, written):
     unit=st.sampled_from(list(UNITS)),
     columns=st.integers(1, 9),
     end=st.sampled_from(["\n", "\r\n", "  \n"]),
-    form=st.sampled_from(["at2", "asc", "comma", "semicolon", "blank"]),
+    form=st.sampled_from(["at2", "comma", "semicolon", "blank"]),
 )
 def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_factory):
     """Any samples in any form, unit and layout, to the last digit that is printed."""
@@ -123,9 +130,6 @@ def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_fac
     if form == "at2":
         rows = [" ".join(words[at : at + columns]) for at in range(0, count, columns)]
         said = [f"ACCELERATION IN UNITS OF {unit.upper()}", f"NPTS= {count}, DT= .0050 SEC"]
-    elif form == "asc":
-        kind, step = "DATA_TYPE: ACCELERATION", "SAMPLING_INTERVAL_S: 0.005"
-        said, rows = [kind, f"NDATA: {count}", f"UNITS: {unit}", step], words
     else:
         mark = {"comma": ",", "semicolon": ";", "blank": " "}[form]
         said = [f"t (s){mark}a ({unit})"]

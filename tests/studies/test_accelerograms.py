@@ -9,16 +9,11 @@ from scipy.signal import detrend
 
 from analytic import Record, RigidBlock, simulate
 from studies.__main__ import run
-from studies.cases.accelerograms import UNITS, read_record
-from studies.cases.refusal import BadInputError
+from studies.cases.accelerograms import read_record
 
 NEW_HEADER = (
     "PEER NGA STRONG MOTION DATABASE RECORD\nStation G, 1999\n"
     "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=     7, DT=   .0050 SEC,\n"
-)
-OLD_HEADER = (
-    "PEER STRONG MOTION DATABASE RECORD\nSomewhere\n"
-    "ACCELERATION TIME HISTORY IN UNITS OF G\n    7    .0050    NPTS, DT\n"
 )
 BODY = "  0.0000000E+00  1.0000000E-01 -2.5000000E-01\n  4.00E-01 .05 -1e-1\n 0\n"
 
@@ -27,13 +22,6 @@ def written(tmp_path, text):
     path = tmp_path / "motion.txt"
     path.write_text(text)
     return path
-
-
-@pytest.mark.parametrize("header", [NEW_HEADER, OLD_HEADER])
-def test_peers_headers(header, tmp_path):
-    record = read_record(written(tmp_path, header + BODY))
-    assert record.dt == 0.005
-    assert record.samples == pytest.approx(9.81 * SAMPLES)
 
 
 @pytest.mark.parametrize("header", ["", "t,a\n", "# a comment\n", "time_s;acc_g\n"])
@@ -46,67 +34,10 @@ def test_tables(header, separator, tmp_path):
     assert record.samples == pytest.approx(9.81 * SAMPLES)
 
 
-@pytest.mark.parametrize(
-    ("names", "unit"),
-    [
-        ("Time (s), Acceleration (m/s2)", "m/s2"),
-        ("Time [sec], Acceleration [m/s²]", "m/s2"),
-        ("t_s,acc_g", "g"),
-        ("# units: cm/s^2", "cm/s2"),
-        ("% UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("time (s) acceleration (Gal)", "gal"),
-    ],
-)
-def test_units_that_a_header_states(names, unit, tmp_path):
-    path = written(tmp_path, f"{names}\n0 0.5\n0.1 1.5\n")
-    record = read_record(path)
-    assert record.samples == pytest.approx(UNITS[unit] * np.array([0.5, 1.5]))
-    assert record == read_record(path, unit)
-
-
 def test_times_printed_in_few_decimals_are_equal_steps(tmp_path):
     rows = "".join(f"{i / 256:.4f} {i % 3}\n" for i in range(600))
     record = read_record(written(tmp_path, rows), "m/s2")
     assert record.dt == pytest.approx(1 / 256, rel=1e-4)
-
-
-def table(*times, header="# units: g\n"):
-    return header + "".join(f"{time} 0.1\n" for time in times)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (NEW_HEADER + BODY + "0.1\n", "holds 8 samples; it must hold the 7 of its header"),
-        (NEW_HEADER + "0.1 0.2\n", "holds 2 samples"),
-        (NEW_HEADER + BODY.replace(".05", "NaN"), "line 6: NaN must be a finite number"),
-        (NEW_HEADER + BODY.replace(".05", "x"), "line 6: 'x' must be a number"),
-        (NEW_HEADER.replace("UNITS OF G", "V") + BODY, "does not state its units; --units must"),
-        (NEW_HEADER.replace(".0050", "0") + BODY, "dt is 0.0; it must be positive"),
-        (table(0, 0.1, 0.2, 0.4, 0.5), "line 5: a gap from 0.2 to 0.4 s; steps must all be 0.1 s"),
-        (table(0, 0.1, 0.2, 0.31, 0.4, 0.5), "line 5: the time 0.31 s is not a whole number"),
-        (table(0, 0.1, 0.1, 0.2, 0.3), "line 4: the time 0.1 s must be later than 0.1 s"),
-        (table(0, 0.1, 0.2, 0.1), "line 5: the time 0.1 s must be later"),
-        (table(0, 0.1, "nan", 0.3), "line 4: nan must be a finite"),
-        (table(0), "1 rows of numbers; it must have two"),
-        ("", "0 rows"),
-        (table(0, 0.1, header=""), "does not state its units"),
-        (table(0, 0.1, header="station G\n"), "does not state its units"),
-        (table(0, 0.1, header="a (g) and b (gal)\n"), "several units, g, gal"),
-        ("0 1 2\n1 2 3\n", "line 1 has 3 columns; it must have two"),
-        ("0 0.1\nend of data\n", "line 2 has 3 columns"),
-    ],
-)
-def test_a_doubt_is_refused(text, words, tmp_path):
-    with pytest.raises(BadInputError, match="--record is ") as refusal:
-        read_record(written(tmp_path, text))
-    assert words in str(refusal.value)
-    assert "\n" not in str(refusal.value)
-
-
-def test_given_units_must_not_contradict_the_file(tmp_path):
-    with pytest.raises(BadInputError, match="it states g; --units must not be m/s2"):
-        read_record(written(tmp_path, NEW_HEADER + BODY), "m/s2")
 
 
 BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
