@@ -107,7 +107,6 @@ def _alone(known: pd.DataFrame, target: float) -> pd.Series[bool]:
 
 
 def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
-    """Say that nothing keeps the error, and why."""
     if known.empty:
         return f"{NOTHING}: not in the published tables"
     alone = _alone(known, target)

@@ -83,7 +83,6 @@ def reverse_text(
 
 
 def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: float | None) -> str:
-    """Return the settings of a preset as formulas of the step, and at the step."""
     engine = ENGINES[str(line["engine"])]
     preset = engine.preset(str(line["preset"]))
 

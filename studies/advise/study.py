@@ -116,7 +116,6 @@ def _reverse(
 
 
 def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float | None) -> str:
-    """Return advice as tables; of one engine also the settings in the library's words."""
     engines = lines["engine"].unique()
     written = settings_text(lines, block, friction) or "No setting to write out."
     made = f"From {listed(read_from(published))}, made with {_versions(published)}."
@@ -131,7 +130,6 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: flo
 
 
 def _beyond(block: RigidBlock, published: Path) -> str:
-    """Say where a block is of another shape than any of the published cases."""
     low, high = aspects(published)
     aspect = block.height / block.width
     if low <= aspect <= high:
@@ -140,7 +138,6 @@ def _beyond(block: RigidBlock, published: Path) -> str:
 
 
 def _versions(published: Path) -> str:
-    """Return the versions of the engines that the tables were made with."""
     folder = published / Path(TABLES[0]).parent
     try:
         versions = provenance.engines_of(provenance.record_of(folder))

@@ -116,7 +116,6 @@ def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
 
 
 def _price(line: pd.Series[Any]) -> str:
-    """Return what a line of advice costs, and with whom."""
     cost = cost_text(line["wall_s"], line["runs"], " a case")
     return f"{cost} ({line['engine']} {line['preset']})"
 

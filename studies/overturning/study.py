@@ -226,7 +226,6 @@ def _strip(
 
 
 def _named(table: pd.DataFrame, model: str, x: FloatArray, window: Window) -> pd.DataFrame:
-    """Return a table with the model, the abscissa and what it stands for instead of a number."""
     at = x[table["column"].to_numpy()]
     columns = {"model": model, "x": at, "alpha": window.alpha(at), "omega_over_p": window.ratio(at)}
     return pd.concat([pd.DataFrame(columns), table.drop(columns="column")], axis=1)

@@ -56,5 +56,4 @@ def engine_cases(folder: Path) -> dict[str, Any]:
 
 
 def _short(value: float) -> float | None:
-    """Return a number in few digits; None for none."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

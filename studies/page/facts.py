@@ -168,7 +168,6 @@ def presets_short(lines: pd.DataFrame) -> str:
 
 
 def _short(row: pd.Series[Any]) -> str:
-    """Return a line of the presets in a cell: outcomes, errors of the peak, time."""
     wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
     parts = (
         f"**{wrong}**" if any(row[list(KINDS)]) else wrong,
@@ -276,7 +275,6 @@ def hero_lines(published: Path) -> dict[str, str]:
 
 
 def _off(error: float) -> str:
-    """Return the error of a peak, with its sign where it can be seen."""
     if abs(error) < 1e-3:
         return scientific(abs(error))
     return f"{error:+.0%}".replace("%", " %").replace("-", "−")

@@ -139,7 +139,6 @@ def _rows(lines: pd.DataFrame) -> list[Line]:
 
 
 def _errors(median: float, largest: float, wrong: int) -> str:
-    """Return errors in few words; of no result without any."""
     if math.isnan(median):
         return "no result"
     return f"{part(median)}, max {part(largest)}" + (f", {wrong} wrong" if wrong else "")

@@ -83,7 +83,6 @@ def first_sight(folder: Path) -> dict[str, Any]:
 
 
 def _tile(row: pd.Series[Any]) -> dict[str, str]:
-    """Return a line of presets in words, and whether it is good, bad or neither."""
     lost = any(row[list(KINDS)])
     good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD
     return {
@@ -95,7 +94,6 @@ def _tile(row: pd.Series[Any]) -> dict[str, str]:
 
 
 def _unbroken(words: str) -> str:
-    """Return words that a line does not break between."""
     return words.replace(" ", "\N{NO-BREAK SPACE}")
 
 
@@ -186,7 +184,6 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
 
 
 def _provenance(folder: Path) -> list[tuple[str, str]]:
-    """Return what the page says of versions and machine."""
     record = provenance.record_of(folder)
     versions = {
         **provenance.engines_of(record),

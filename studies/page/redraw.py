@@ -37,7 +37,6 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
 
 
 def _recorded(folder: Path) -> str:
-    """Return the name of the study that left a folder, which may hold its smaller tables only."""
     try:
         return str(provenance.record_of(folder)["study"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):

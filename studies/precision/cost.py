@@ -264,7 +264,6 @@ def headline(folder: Path) -> str:
 
 
 def _step(line: pd.Series[Any]) -> str:
-    """Return how long a step takes, who takes it, and what of it is the engine's own."""
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"
     return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"

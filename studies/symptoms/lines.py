@@ -149,7 +149,6 @@ def _preset(mine: pd.DataFrame, name: str, column: str) -> float:
 
 
 def _tuned(mine: pd.DataFrame, column: str = "max_error") -> Row:
-    """Return what is left where all is tuned: with equal steps, and with those that land."""
     return {"tuned": _preset(mine, BEST, column), "landing": _preset(mine, "landing", column)}
 
 
@@ -189,7 +188,6 @@ def _hull(mine: pd.DataFrame, engine: str) -> Row:
 
 
 def _value(line: pd.Series[Any], column: str = "max_error") -> float:
-    """Return a measure of a variant, inf where cases fail."""
     return math.inf if line["failed"] else float(line[column])
 
 

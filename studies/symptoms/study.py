@@ -83,7 +83,6 @@ def command(
 
 
 def _read(folder: Path) -> pd.DataFrame:
-    """Read a table back, with empty words as such."""
     texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
     return read_table(folder / "symptoms.csv", *texts)
 

@@ -56,7 +56,6 @@ def _title(symptom: object, line: pd.Series[Any]) -> str:
 
 
 def _changes(lines: pd.DataFrame) -> Iterator[str]:
-    """Yield what each setting changes, as a formula of the step and at a step; each once."""
     for _, row in lines[lines["formula"] != ""].drop_duplicates("formula").iterrows():
         alike = ", ".join(lines.loc[lines["formula"] == row["formula"], "symptom"])
         parts = [f"{row['setting']} ({alike}):", indent(row["formula"], "  ")]

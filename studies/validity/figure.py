@@ -78,7 +78,6 @@ def _panels(
 
 
 def _whose(sources: list[str]) -> str:
-    """Say whose symbols stand where."""
     if len(sources) == 1:
         return f"symbols: {name_of(sources[0])}"
     names = ", ".join(map(name_of, sources))

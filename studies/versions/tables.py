@@ -110,7 +110,6 @@ def moved(before: pd.DataFrame, after: pd.DataFrame) -> pd.DataFrame:
 
 
 def _moves(moves: pd.DataFrame | None) -> Row:
-    """Return the largest move, how many are changes, and how many outcomes turned."""
     if moves is None:
         return {"moved": math.nan, "moved_cases": math.nan, "turned": math.nan}
     return {
