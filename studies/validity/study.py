@@ -168,14 +168,11 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw a folder's figures from its tables alone."""
-    from studies.validity.figure import draw_friction, draw_validity
+    """Draw the map of a folder from its tables alone."""
+    from studies.validity.figure import draw_validity
 
     table, beside = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
-    drawn = {"validity": draw_validity(table, beside)}
-    if beside["friction_factor"].notna().any():
-        drawn["friction"] = draw_friction(beside)
-    return drawn
+    return {"validity": draw_validity(table, beside)}
 
 
 def headline(folder: Path) -> str:

@@ -10,8 +10,7 @@ from matplotlib.lines import Line2D
 from studies.drawing.facets import key, panels
 from studies.drawing.styles import preset_style, title_of
 from studies.measures.presets import in_words, told
-from studies.versions.changes import answered
-from studies.versions.tables import CHANGED
+from studies.versions.tables import CHANGED, answered
 
 COLUMNS = 2
 """Panels side by side."""

@@ -9,8 +9,7 @@ import pandas as pd
 from studies.drawing.kept import Pictures, tell
 from studies.kit.tables import read_table, write_table
 from studies.measures.words import listed, out_of
-from studies.versions.changes import answered, changes_table, is_changed
-from studies.versions.tables import CHANGED
+from studies.versions.tables import CHANGED, answered, changes_table, is_changed
 
 SHOWN = [
     *("engine", "release", "source", "set", "cases", "failed", "right"),

@@ -25,11 +25,12 @@ from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.versions import STUDY
-from studies.versions.asked import Asked, ask
 from studies.versions.cases import jobs_of
 from studies.versions.releases import (
     INSTALLED,
+    Asked,
     Release,
+    ask,
     check_releases,
     chosen,
     installed,

@@ -19,12 +19,10 @@ from studies.measures.differences import with_reference
 from studies.measures.published import PUBLISHED
 from studies.page.facts import MOVING
 from studies.versions import releases
-from studies.versions.asked import Asked
 from studies.versions.cases import EVERY, FIGURE, RANDOM, posed
-from studies.versions.changes import NOTES, changes_table, notes_between
-from studies.versions.releases import Release, check_releases, chosen, listed
+from studies.versions.releases import Asked, Release, check_releases, chosen, listed
 from studies.versions.report import first_claim, read
-from studies.versions.tables import CHANGED, releases_table
+from studies.versions.tables import CHANGED, NOTES, changes_table, notes_between, releases_table
 
 ENGINE = """
 from dataclasses import replace
