@@ -14,8 +14,7 @@ from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
-from studies.advise.reverse import kept_errors, reverse_text
-from studies.advise.words import ASK, claim, settings_text, tables
+from studies.advise.words import ASK, claim, kept_errors, reverse_text, settings_text, tables
 from studies.drawing.kept import WIDTH, Pictures, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (

@@ -13,7 +13,7 @@ from engines import ENGINES
 from engines.declaration import Help, Preset, Stepping
 from engines.registry import OWN
 from engines.troubles import TROUBLES
-from studies.contact.claims import frames, prices, rules
+from studies.contact.report import frames, prices, rules
 from studies.contact.report import read as read_variants
 from studies.measures.presets import preset_of
 from studies.measures.words import capital, listed, right_of

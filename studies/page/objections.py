@@ -13,7 +13,7 @@ from engines import ENGINES
 from engines.declaration import AT_REST, RECOMMENDED
 from engines.parts.factors import AS_BEST, BEST, DEFAULT
 from engines.registry import OWN
-from studies.contact.claims import changed, name_of
+from studies.contact.report import changed, name_of
 from studies.contact.report import read as read_variants
 from studies.measures.presets import told
 from studies.measures.slippery import needed

@@ -10,7 +10,7 @@ import pytest
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
-from studies.contact import claims as contact
+from studies.contact import report as contact
 from studies.contact.report import recommendation
 from studies.ensemble import report as ensemble
 from studies.histories.study import CLAIMS

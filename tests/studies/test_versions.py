@@ -21,7 +21,7 @@ from studies.page.facts import MOVING
 from studies.versions import releases
 from studies.versions.cases import EVERY, FIGURE, RANDOM, posed
 from studies.versions.releases import Asked, Release, check_releases, chosen, listed
-from studies.versions.report import first_claim, read
+from studies.versions.study import first_claim, read
 from studies.versions.tables import CHANGED, NOTES, changes_table, notes_between, releases_table
 
 ENGINE = """
