@@ -13,8 +13,15 @@ import pandas as pd
 from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.declaration import Preset
-from studies.advise.evidence import declared_value, extremes, in_words, settings
-from studies.advise.tried import COUNTS, counted, random_runs
+from studies.advise.evidence import (
+    COUNTS,
+    counted,
+    declared_value,
+    extremes,
+    in_words,
+    random_runs,
+    settings,
+)
 from studies.kit.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import cheapest_kept

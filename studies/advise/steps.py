@@ -13,8 +13,7 @@ import pandas as pd
 from engines import ENGINES, core_engines, installed_engines
 from studies.advise import STEPS
 from studies.advise.choice import TARGETS
-from studies.advise.evidence import options_at, settings
-from studies.advise.tried import SETTING, counted, judged
+from studies.advise.evidence import SETTING, counted, judged, options_at, settings
 from studies.cases.drawn import RandomCase, draw
 from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several

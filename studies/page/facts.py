@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,9 +33,8 @@ from studies.measures.words import (
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
-from studies.page.markdown import table
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
-from studies.sweep.claims import linearized, preset_table, whole
+from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
 PRESETS_FROM = ("presets", "sweep")
@@ -354,3 +353,9 @@ def ninth(root: Path) -> str:
 def minutes(full: bool) -> int:
     """Return about how many minutes a report takes on two cores."""
     return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table of cells that are text; a bar in a cell would end it."""
+    lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
+    return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)

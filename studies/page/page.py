@@ -29,7 +29,7 @@ from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import MANY, asked, presets, shared, told_of
-from studies.sweep.claims import verdict
+from studies.sweep.study import verdict
 
 GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""

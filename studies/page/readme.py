@@ -16,8 +16,8 @@ from studies.kit.journal import PROVENANCE
 from studies.measures.columns import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
-from studies.page.objections import objections, slippery
-from studies.sweep.claims import verdict
+from studies.page.engine_facts import objections, slippery
+from studies.sweep.study import verdict
 
 PUBLISHED = Path("studies", "published")
 

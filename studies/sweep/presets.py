@@ -32,7 +32,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : DataFrame
-        From `studies.sweep.claims.preset_table`.
+        From `studies.sweep.study.preset_table`.
     """
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])

@@ -41,8 +41,6 @@ from studies.versions.releases import (
 )
 from studies.versions.tables import CHANGED, answered, changes_table, is_changed, releases_table
 
-__all__ = ["command", "headline", "pictures", "report"]
-
 
 def command(
     *,

@@ -15,9 +15,18 @@ from engines.declaration import AT_REST
 from studies.__main__ import run
 from studies.advise import study
 from studies.advise.choice import TARGETS, advice, cheapest
-from studies.advise.evidence import TABLES, aspects, declared_step, published_engines, settings
+from studies.advise.evidence import (
+    RANDOM,
+    TABLES,
+    aspects,
+    counted,
+    declared_step,
+    judged,
+    published_engines,
+    random_runs,
+    settings,
+)
 from studies.advise.steps import off, worth_trying
-from studies.advise.tried import RANDOM, counted, judged, random_runs
 from studies.advise.words import literal
 from studies.cases.drawn import draw
 from studies.kit.digests import seal

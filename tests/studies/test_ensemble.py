@@ -27,8 +27,7 @@ from studies.ensemble.fragility import (
     fragilities,
     share_bounds,
 )
-from studies.ensemble.report import curves, first_claim, stripes
-from studies.ensemble.study import drawn, ensemble_jobs, recorded
+from studies.ensemble.study import curves, drawn, ensemble_jobs, first_claim, recorded, stripes
 from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])

@@ -152,7 +152,7 @@ EDITS = {
         {"box2d"},
     ),
     "another study": ("studies/restitution/strike.py", "return ", "return 1 + ", set()),
-    "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
+    "words": ("studies/measures/words.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
     "the command line": ("studies/kit/arguments.py", "return ", "return 1 + ", set()),

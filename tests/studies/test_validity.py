@@ -11,7 +11,7 @@ from analytic.response import Reason, Response
 from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
-from studies.validity import report as validity
+from studies.validity import study as validity
 from studies.validity.cases import ValidityCase, grid, reference_map
 from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
 
