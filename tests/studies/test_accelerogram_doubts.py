@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commanding import refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import AT2, COLUMNS, TITLE
 
 from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
-from studies.__main__ import run
 from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
 
@@ -160,15 +160,6 @@ def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, 
 BLOCK = ["compare", "--width", "0.5", "--height", "1.5", "--units", "g", "--record"]
 
 
-def refused(path, capsys):
-    assert run([*BLOCK, str(path)]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1
-    assert output.err.startswith("rocking: --record is ")
-    return output.err
-
-
 def test_a_named_pipe_is_not_waited_for(tmp_path):
     """In a process of its own, for one that waits would wait for ever."""
     path = tmp_path / "pipe"
@@ -189,14 +180,14 @@ def test_a_named_pipe_is_not_waited_for(tmp_path):
     ],
 )
 def test_what_is_no_file_is_not_opened(path, words, capsys):
-    assert f"it must be a file that can be read ({words})" in refused(path, capsys)
+    assert f"it must be a file that can be read ({words})" in refused(capsys, [*BLOCK, path])
 
 
 def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
     """By what its header says, before its samples are looked at."""
     path = tmp_path / "long.AT2"
     path.write_text(GOOD.replace("7,", "10000000,"))
-    message = refused(path, capsys)
+    message = refused(capsys, [*BLOCK, path])
     assert "it holds 10000000 samples, for which one exact solution would take" in message
     assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
 
@@ -205,13 +196,13 @@ def test_a_large_file_is_refused_by_its_size(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     path.touch()
     os.truncate(path, MOST_BYTES + 1)
-    assert "it holds some 4000000 samples" in refused(path, capsys)
+    assert "it holds some 4000000 samples" in refused(capsys, [*BLOCK, path])
 
 
 def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
     path = tmp_path / "long.txt"
     path.write_text("0 0\n" * (MOST_SAMPLES + 5001))
-    assert "it holds at least 100" in refused(path, capsys)
+    assert "it holds at least 100" in refused(capsys, [*BLOCK, path])
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])
@@ -220,4 +211,4 @@ def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsy
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])
-    assert "it holds 7 samples" in refused(path, capsys)
+    assert "it holds 7 samples" in refused(capsys, [*BLOCK, path])

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from commanding import refused
 from records import SAMPLES
 from scipy.signal import detrend
 
@@ -66,11 +67,7 @@ BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
 )
 def test_contradictions_are_one_clear_line(options, words, tmp_path, capsys):
     path = written(tmp_path, NEW_HEADER + BODY)
-    assert run([*BLOCK, *[str(path) if item == "FILE" else item for item in options]]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1
-    assert words in output.err
+    refused(capsys, [*BLOCK, *[path if item == "FILE" else item for item in options]], words)
 
 
 def test_compare_takes_a_record(tmp_path, capsys):
@@ -135,5 +132,5 @@ def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
 
 def test_nothing_but_a_trend_is_refused(tmp_path, capsys):
     path = written(tmp_path, "# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n")
-    assert run([*BLOCK, "--record", str(path), "--baseline", "constant", "--pga", "1"]) == 2
-    assert "--record: the record is its own constant trend" in capsys.readouterr().err
+    options = ["--record", path, "--baseline", "constant", "--pga", "1"]
+    refused(capsys, [*BLOCK, *options], "--record: the record is its own constant trend")

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from scipy.stats import CensoredData, binomtest, lognorm, norm
 
 from analytic import Outcome, Record, RigidBlock, simulate
@@ -344,10 +345,7 @@ def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
     path = tmp_path / "still.csv"
     path.write_text("# units: g\n0 0\n0.1 0\n0.2 0\n")
     given = [str(path) if option == "FILE" else option for option in options]
-    assert run(["ensemble", "--out", str(tmp_path / "out"), *given]) == 2
-    errors = capsys.readouterr().err
-    assert len(errors.splitlines()) == 1
-    assert words in errors
+    refused(capsys, ["ensemble", "--out", tmp_path / "out", *given], words)
     assert not (tmp_path / "out").exists()
 
 
