@@ -29,7 +29,7 @@ def test_imports_are_light(module):
     assert not loaded_by(f"import {module}") & set(HEAVY)
 
 
-SCIENCE = "numba llvmlite scipy matplotlib pandas.core asyncio heyoka distributed"
+SCIENCE = "numba llvmlite scipy matplotlib pandas.core asyncio distributed"
 LIBRARIES = "pybullet mujoco pymunk Box2D dartpy rapier3d pydrake warp sapien"
 EACH = (*SCIENCE.split(), *LIBRARIES.split())
 """What no answer at once may load."""

@@ -4,13 +4,12 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="advise",
-    module="studies.advise.study",
     help="""Which setting of which engine keeps an error, and how it is made in the library's words.
 
 For each engine and preset the cheapest step that keeps the error with every finer one published, or
 that nothing does. It runs nothing: it reads the published tables, and names them.""",
     table="advice.csv",
-    products=("advice.csv", "advice.png", "findings.txt"),
+    tables=("advice.csv",),
     captions={
         "advice": (
             "Time of a case with each preset that keeps an error with every finer step, a panel "
@@ -37,7 +36,7 @@ STEPS = Study(
 At every published step from the coarsest that keeps an error of 10 % on the published cases, with
 every finer one. `rocking advise` reads what comes of it. Writes random.csv; resumable.""",
     table="random.csv",
-    products=("random.csv", "findings.txt"),
+    tables=("random.csv",),
     chapters=(
         Chapter(
             folder="steps",

@@ -13,8 +13,15 @@ import pandas as pd
 from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.declaration import Preset
-from studies.advise.evidence import declared_value, extremes, in_words, settings
-from studies.advise.tried import COUNTS, counted, random_runs
+from studies.advise.evidence import (
+    COUNTS,
+    counted,
+    declared_value,
+    extremes,
+    in_words,
+    random_runs,
+    settings,
+)
 from studies.kit.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import cheapest_kept
@@ -107,7 +114,6 @@ def _alone(known: pd.DataFrame, target: float) -> pd.Series[bool]:
 
 
 def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
-    """Say that nothing keeps the error, and why."""
     if known.empty:
         return f"{NOTHING}: not in the published tables"
     alone = _alone(known, target)

@@ -63,7 +63,6 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
 
 
 def _title(lines: pd.DataFrame, targets: list[float]) -> str:
-    """Say which presets keep the smallest error, and which keep none at all."""
     kept, asked = lines[lines["message"] == ""], list(lines["preset"].unique())
     best = list(kept.loc[kept["target"] == min(targets), "preset"].unique())
     none = [name for name in asked if name not in set(kept["preset"])]

@@ -13,14 +13,14 @@ import pandas as pd
 from engines import ENGINES, core_engines, installed_engines
 from studies.advise import STEPS
 from studies.advise.choice import TARGETS
-from studies.advise.evidence import options_at, settings
-from studies.advise.tried import SETTING, counted, judged
+from studies.advise.evidence import SETTING, counted, judged, options_at, settings
 from studies.cases.drawn import RandomCase, draw
 from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
 from studies.kit.jobs import Job
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
+from studies.kit.tables import table_in
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import with_every_finer
 from studies.measures.published import PUBLISHED
@@ -95,7 +95,7 @@ def job(engine: str, preset: str, value: float, case: RandomCase) -> Job:
 
 def report(folder: Path) -> str:
     """Write and return how many random cases are off at the settings of each preset."""
-    table, small = _read(folder), f"κ < {WELL_CONDITIONED:g}"
+    table, small = table_in(folder, "random"), f"κ < {WELL_CONDITIONED:g}"
     known = counts(table, max(TARGETS))
     tables = {
         "Random cases that are off by more than an error, at all settings of a preset": (
@@ -107,10 +107,6 @@ def report(folder: Path) -> str:
         ),
     }
     return tell(folder, {}, first_claim(table), tables)
-
-
-def _read(folder: Path) -> pd.DataFrame:
-    return pd.read_csv(folder / "random.csv")
 
 
 def counts(table: pd.DataFrame, target: float) -> pd.DataFrame:
@@ -129,7 +125,7 @@ def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say how many of the settings keep the largest of the errors on random cases."""
-    return first_claim(_read(folder))
+    return first_claim(table_in(folder, "random"))
 
 
 def first_claim(table: pd.DataFrame) -> str:

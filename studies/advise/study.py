@@ -14,8 +14,7 @@ from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
-from studies.advise.reverse import kept_errors, reverse_text
-from studies.advise.words import ASK, claim, settings_text, tables
+from studies.advise.words import ASK, claim, kept_errors, reverse_text, settings_text, tables
 from studies.drawing.kept import WIDTH, Pictures, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -32,7 +31,7 @@ from studies.kit.arguments import (
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import posed_block
-from studies.kit.tables import read_table
+from studies.kit.tables import table_in
 from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
 from studies.measures.words import listed
@@ -116,7 +115,6 @@ def _reverse(
 
 
 def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float | None) -> str:
-    """Return advice as tables; of one engine also the settings in the library's words."""
     engines = lines["engine"].unique()
     written = settings_text(lines, block, friction) or "No setting to write out."
     made = f"From {listed(read_from(published))}, made with {_versions(published)}."
@@ -131,7 +129,6 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: flo
 
 
 def _beyond(block: RigidBlock, published: Path) -> str:
-    """Say where a block is of another shape than any of the published cases."""
     low, high = aspects(published)
     aspect = block.height / block.width
     if low <= aspect <= high:
@@ -140,7 +137,6 @@ def _beyond(block: RigidBlock, published: Path) -> str:
 
 
 def _versions(published: Path) -> str:
-    """Return the versions of the engines that the tables were made with."""
     folder = published / Path(TABLES[0]).parent
     try:
         versions = provenance.engines_of(provenance.record_of(folder))
@@ -149,18 +145,13 @@ def _versions(published: Path) -> str:
     return listed([f"{name} {version}" for name, version in versions.items()])
 
 
-def read(folder: Path) -> pd.DataFrame:
-    """Read advice back, with empty words as such."""
-    return read_table(folder / "advice.csv")
-
-
 def headline(folder: Path) -> str:
     """Say what keeps each error cheapest."""
-    return claim(read(folder))
+    return claim(table_in(folder, "advice"))
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw the price of each error from a folder's advice.csv alone."""
     from studies.advise.figure import draw_advice
 
-    return {"advice": draw_advice(read(folder))}
+    return {"advice": draw_advice(table_in(folder, "advice"))}

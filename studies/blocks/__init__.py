@@ -4,7 +4,6 @@ from studies.kit.study import Study
 
 STUDY = Study(
     name="blocks",
-    module="studies.blocks.study",
     help="""A list of blocks under recorded ground motions: which overturn, with what margin.
 
 For each block, record, scale and source: the outcome, the largest rotation over the critical one, κ
@@ -12,7 +11,8 @@ and the sensitivity, the friction that the exact solution needs, and the margin:
 record at which the block first overturns. Writes blocks.csv, a picture that ranks the blocks, a
 page to hand on and findings.txt; resumable. Forty blocks under one record take seconds.""",
     table="blocks.csv",
-    products=("blocks.csv", "blocks.png", "blocks.html", "findings.txt"),
+    tables=("blocks.csv",),
+    others=("blocks.html", "findings.txt"),
     captions={
         "blocks": (
             "Blocks ranked by the factor on a record that overturns them first; a line from the "

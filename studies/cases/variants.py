@@ -83,7 +83,6 @@ def _exchanged(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
 
 
 def _left_out(engine: str, preset: str) -> Iterator[Variant]:
-    """Yield a preset without each of what it is helped by, where that can be left out."""
     for help_, settings in ENGINES[engine].preset(preset).helped_by.items():
         if settings is not None:
             level = help_.name.lower()

@@ -4,7 +4,6 @@ from studies.kit.study import Study
 
 STUDY = Study(
     name="compare",
-    module="studies.compare.study",
     help="""One block and one pulse or record through every source, side by side.
 
 For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), its

@@ -119,7 +119,6 @@ def right_aligned(columns: Mapping[str, Sequence[Any]]) -> str:
 
 
 def _estimates(rows: list[Row]) -> dict[str, list[str]]:
-    """Return the columns of estimates, where they were asked for."""
     if "estimate" not in rows[0]:
         return {}
     blind = [math.isnan(row["bound"]) and not math.isnan(row["estimate"]) for row in rows]

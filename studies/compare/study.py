@@ -209,7 +209,6 @@ def hanging(block: System, posed: Posed, window: float, exact: Response) -> str:
 
 
 def _scaled(motion: Motion, factor: float) -> Motion:
-    """Return a motion of the base with its acceleration multiplied."""
     if isinstance(motion, Record):
         return motion.scaled(factor)
     if isinstance(motion, SinePulse):

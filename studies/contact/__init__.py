@@ -4,14 +4,13 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="contact",
-    module="studies.contact.study",
     help="""Contact models: what each setting of an engine's contact costs and buys.
 
 One factor at a time, from the best fixed-step setting and from the library's defaults. Writes
 contact.csv, variants.csv, own-steps.csv, contact.png and findings.txt; resumable. The full study
 takes some four minutes on one core, --quick half a minute.""",
     table="contact.csv",
-    products=("contact.csv", "variants.csv", "own-steps.csv", "contact.png", "findings.txt"),
+    tables=("contact.csv", "variants.csv", "own-steps.csv"),
     chapters=(
         Chapter(
             folder="contact",

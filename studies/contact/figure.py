@@ -58,7 +58,6 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
 
 
 def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
-    """Draw a row for each preset as it is, in bold, and for each change of it under that."""
     rows(axes, [_label(line) for line in ordered.to_dict("records")])
     strip_beyond(axes, EDGE, "", along="x")
     for place, (text, line) in enumerate(
@@ -99,7 +98,6 @@ def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
 
 
 def _summed(others: pd.DataFrame) -> str:
-    """Return one line on the variants that are not drawn."""
     if others.empty:
         return "no other changes"
     kept, lost = others[~others["broken"]], int(others["broken"].sum())
@@ -111,7 +109,6 @@ def _summed(others: pd.DataFrame) -> str:
 
 
 def _label(line: dict[Any, Any]) -> str:
-    """Return a preset or a change of it in words."""
     first, comma, rest = str(line["level"]).partition(", ")
     level = LEVELS.get(first, first) + comma + rest
     if not line["factor"]:

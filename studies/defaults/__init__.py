@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="defaults",
-    module="studies.defaults.study",
     help="""Engines as documented, over the plane of pulses: where they are right, and where not.
 
 Half and full sines over frequency and amplitude, H/B of 2, 3 and 4, and two widths, which by
@@ -12,7 +11,7 @@ similarity are one; every other pulse begins after a second of rest, in which an
 asleep. Writes defaults.csv, parts.csv, rests.csv, small.png, large.png and findings.txt;
 resumable. The full study takes some three minutes on two cores, --quick seconds.""",
     table="defaults.csv",
-    products=("defaults.csv", "parts.csv", "rests.csv", "small.png", "large.png", "findings.txt"),
+    tables=("defaults.csv", "parts.csv", "rests.csv"),
     chapters=(
         Chapter(
             folder="defaults",

@@ -4,7 +4,6 @@ from studies.kit.study import Study
 
 STUDY = Study(
     name="doctor",
-    module="studies.doctor.study",
     help="""Whether this installation works, in some ten lines to paste into a report.
 
 Versions, where compiled functions are kept, cores, threads and disk; and one block in each engine

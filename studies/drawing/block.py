@@ -43,7 +43,6 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
 
 
 def _dimensions(axes: Axes, corners: FloatArray) -> None:
-    """Name B along the block's foot and H along the side away from its pivot."""
     pivot, foot, far, _ = corners
     centre = 0.5 * (pivot + far)
     for start, end, name in ((pivot, foot, "B"), (foot, far, "H")):
@@ -56,7 +55,6 @@ def _dimensions(axes: Axes, corners: FloatArray) -> None:
 
 
 def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta: float) -> None:
-    """Name R and α from the pivot to the centre of mass, and θ at the foot."""
     pivot, _, far, top = corners
     centre = 0.5 * (pivot + far)
     axes.plot(*np.array([pivot, centre]).T, color=INK, linewidth=1.4)
@@ -79,7 +77,6 @@ def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: s
 
 
 def _shaking(axes: Axes) -> None:
-    """Name the acceleration of the ground, which drives the block the other way."""
     axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
     axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
 

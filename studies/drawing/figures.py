@@ -83,7 +83,6 @@ def _ground(axes: Axes, motion: pd.DataFrame) -> None:
 
 
 def _name_the_bounds(axes: Axes) -> None:
-    """Draw the rotations beyond which a block at rest falls, and name them."""
     end = axes.get_xlim()[1]
     for side, name in ((1.0, "θcr"), (-1.0, "−θcr")):
         axes.axhline(side, color="#999999", linewidth=0.8, linestyle=(0, (5, 4)))
@@ -92,7 +91,6 @@ def _name_the_bounds(axes: Axes) -> None:
 
 
 def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
-    """Draw how far each source is from the exact one at each time, over θcr."""
     found = panel.pivot_table(index="time_s", columns="source", values="theta_ratio")
     for source in [name for name in panel["source"].unique() if name != "exact"]:
         style = style_of(source)

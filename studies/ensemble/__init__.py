@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="ensemble",
-    module="studies.ensemble.study",
     help="""Many motions, blocks and intensities: single responses and their statistics.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
@@ -12,10 +11,7 @@ the exact solution case by case and in distribution. Writes ensemble.csv, stripe
 agreement.csv, confusion.csv, two pictures and findings.txt; resumable. The full study takes some
 five minutes on one core, --quick a quarter of one.""",
     table="ensemble.csv",
-    products=(
-        *("ensemble.csv", "stripes.csv", "curves.csv", "agreement.csv", "confusion.csv"),
-        *("ensemble.png", "singles.png", "findings.txt"),
-    ),
+    tables=("ensemble.csv", "stripes.csv", "curves.csv", "agreement.csv", "confusion.csv"),
     chapters=(
         Chapter(
             folder="ensemble",

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="estimate",
-    module="studies.estimate.study",
     help="""How far off an answer is, told by the engine itself at half the step.
 
 The difference of the two runs, held against the true error on random cases that survive: by how
@@ -12,7 +11,7 @@ much it is to be multiplied to bound it, told by the upper end of that factor's 
 tried on other cases, and with which presets there is no bound. Writes estimate.csv, estimates.csv,
 factors.csv, estimate.png and findings.txt; resumable.""",
     table="estimate.csv",
-    products=("estimate.csv", "estimates.csv", "factors.csv", "estimate.png", "findings.txt"),
+    tables=("estimate.csv", "estimates.csv", "factors.csv"),
     captions={
         "estimate": (
             "Part of the cases whose true error is within so many times the engine's own estimate "

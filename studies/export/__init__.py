@@ -4,7 +4,6 @@ from studies.kit.study import Study
 
 STUDY = Study(
     name="export",
-    module="studies.export.study",
     help="""A script that needs an engine's library alone: block, shaking, settings, expected peak.
 
 For presets with equal steps. It is Python, with the model beside it where the library has a format

@@ -4,13 +4,12 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="free",
-    module="studies.free.study",
     help="""Free rocking: quarter periods and decay of each source against the closed forms.
 
 Over the rotation from which the block falls and over H/B. Writes free.csv, free.png and
 findings.txt; resumable. Less than a minute.""",
     table="free.csv",
-    products=("free.csv", "free.png", "findings.txt"),
+    tables=("free.csv",),
     chapters=(
         Chapter(
             folder="free",

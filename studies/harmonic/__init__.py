@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="harmonic",
-    module="studies.harmonic.study",
     help="""Steady states under sustained harmonic shaking, over its frequency or amplitude.
 
 The exact solution from a grid of starts, rotations by rates, at every point, and each orbit that it
@@ -13,7 +12,7 @@ its period and impacts, and the share of the starts that end on it or overturn. 
 exact orbit at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt. About
 a minute.""",
     table="harmonic.csv",
-    products=("harmonic.csv", "engines.csv", "harmonic.png", "findings.txt"),
+    tables=("harmonic.csv", "engines.csv"),
     chapters=(
         Chapter(
             folder="harmonic",

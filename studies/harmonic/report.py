@@ -10,6 +10,7 @@ import pandas as pd
 from analytic.response import Outcome
 from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
+from studies.kit.tables import table_in
 from studies.measures.words import out_of
 
 NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
@@ -19,7 +20,7 @@ KIND, SPANNED = ["outcome", "period", "impacts"], ["x", "larger_ratio", "start_s
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return the text."""
-    table, asked = read(folder, "harmonic"), settings_of(folder)
+    table, asked = table_in(folder, "harmonic"), settings_of(folder)
     side = asked["starts"]
     tables = {
         f"Abscissae: all, those with several steady states, with one longer than a forcing period, "
@@ -29,16 +30,10 @@ def report(folder: Path) -> str:
         "do not repeat, period 0; without a start: found by following the orbit from the next "
         "point)": branches(table),
         "Engines after some time on the exact orbit, difference of its larger rotation": (
-            engine_errors(read(folder, "engines"))
+            engine_errors(table_in(folder, "engines"))
         ),
     }
     return tell(folder, pictures(folder), headline(folder), tables)
-
-
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table of a folder; an empty one if it has no such rows."""
-    path = folder / f"{name}.csv"
-    return pd.read_csv(path, dtype={"message": str}) if path.is_file() else pd.DataFrame()
 
 
 def settings_of(folder: Path) -> dict[str, Any]:
@@ -86,7 +81,7 @@ def engine_errors(engines: pd.DataFrame) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say at how many abscissae several steady states live, and where the start decides a fall."""
-    found = counts(read(folder, "harmonic"))
+    found = counts(table_in(folder, "harmonic"))
     several, both = (out_of(found[name], found["all"]) for name in ("several", "both"))
     return (
         f"{NOUNS[settings_of(folder)['over']].format(several)} a block has more than one steady "
@@ -98,5 +93,5 @@ def pictures(folder: Path) -> Pictures:
     """Draw the diagram of a folder from its tables alone."""
     from studies.harmonic.figure import draw_harmonic
 
-    swept, over = read(folder, "harmonic"), settings_of(folder)["over"]
-    return {"harmonic": draw_harmonic(swept, read(folder, "engines"), over)}
+    swept, over = table_in(folder, "harmonic"), settings_of(folder)["over"]
+    return {"harmonic": draw_harmonic(swept, table_in(folder, "engines"), over)}

@@ -4,15 +4,12 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="histories",
-    module="studies.histories.study",
     help="""The paper's time histories, figures 2, 4 and 5.
 
 Writes for each figure its samples (CSV), its drawing (PNG) and what was found (text).""",
     table="figure-[245].csv",
-    products=(
-        *(f"figure-{number}.{kind}" for number in (2, 4, 5) for kind in ("csv", "png", "txt")),
-        "findings.csv",
-    ),
+    tables=("figure-2.csv", "figure-4.csv", "figure-5.csv", "findings.csv"),
+    others=("figure-2.txt", "figure-4.txt", "figure-5.txt"),
     chapters=(
         Chapter(
             folder="histories",

@@ -188,7 +188,6 @@ def _refuse_strangers(path: Path, header: bytes, products: Sequence[str]) -> boo
 
 
 def _unpack(path: Path) -> None:
-    """Unpack a journal that was published."""
     packed = path.with_name(path.name + PACKED)
     if path.exists() or not packed.exists():
         return

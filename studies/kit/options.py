@@ -135,6 +135,25 @@ DEFAULT_RUNNING = Running()
 
 @Parameter(name="*")
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PatientRunning(Running):
+    """As `Running`, with time for a job that asks an engine many times.
+
+    Attributes
+    ----------
+    time_limit
+        Wall-clock time [s] after which an engine's case, with its search for a threshold, a step or
+        a remedy, is given up.
+    """
+
+    time_limit: Positive = 180.0
+
+
+PATIENT_RUNNING = PatientRunning()
+"""The same, from the beginning."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, slots=True, kw_only=True)
 class EffortOptions(Effort):
     """How finely the sources step that do.
 

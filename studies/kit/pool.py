@@ -151,14 +151,12 @@ class _Worker:
 
 
 def _cause_of_death(exitcode: int) -> str:
-    """Say how a process ended, from its exit code."""
     if exitcode < 0:
         return f"the process was ended by signal {signal.Signals(-exitcode).name}"
     return f"the process ended by itself with exit code {exitcode}"
 
 
 def _work(channel: Connection) -> None:
-    """Do in a process of its own what comes along a channel."""
     work_in_a_child()
     _be_silent()
     _bound_memory()

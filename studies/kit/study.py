@@ -70,27 +70,40 @@ class Study:
     ----------
     name : str
         Its command.
-    module : str
-        Where its `command` is, and of a study with tables all of `StudyModule`.
     help : str
         What its command's help says first.
     table : str
         Pattern of the table by which its results folder is known; empty if it leaves none.
-    products : tuple of str
-        Files that it writes into its folder.
+    tables : tuple of str
+        Tables that it writes into its folder.
     chapters : tuple of Chapter
         Its places in a report.
     captions : mapping
         Name of a picture -> what is seen in it, for those who read and those who are read to.
+    others : tuple of str
+        Files that it writes besides.
+    module : str
+        Where its `command` is, and of a study with tables all of `StudyModule`.
     """
 
     name: str
-    module: str
     help: str
     table: str = ""
-    products: tuple[str, ...] = ()
+    tables: tuple[str, ...] = ()
     chapters: tuple[Chapter, ...] = ()
     captions: Mapping[str, str] = field(default_factory=dict)
+    others: tuple[str, ...] = ("findings.txt",)
+    module: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.module:
+            object.__setattr__(self, "module", f"studies.{self.name}.study")
+
+    @property
+    def products(self) -> tuple[str, ...]:
+        """All files that it writes into its folder; none without a table."""
+        pictures = (f"{name}.png" for name in self.captions)
+        return (*self.tables, *pictures, *self.others) if self.tables else ()
 
     def load(self) -> StudyModule:
         """Import the module of a study that leaves tables."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from studies.kit.journal import PACKED
 from studies.kit.provenance import write_text
 
 SMALL = 1e-2
@@ -32,6 +33,12 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
     """
     texts = dict.fromkeys(("message", *words), str)
     return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+
+
+def table_in(folder: Path, name: str, *words: str) -> pd.DataFrame:
+    """Read a table of a folder, packed or not, as `read_table` does; return none as empty."""
+    paths = (folder / f"{name}.csv", folder / f"{name}.csv{PACKED}")
+    return next((read_table(path, *words) for path in paths if path.is_file()), pd.DataFrame())
 
 
 def figure(value: object) -> str:

@@ -4,20 +4,13 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="linearizations",
-    module="studies.linearizations.study",
     help="""What in a linearization matters: onset, frequency and saddle, each alone.
 
 All eight combinations against the exact solution, on the paper's cases and on a wider grid, and
 the paper's conclusions (a), (b), (c). Writes linearizations.csv, quantiles.csv, a PNG and
 findings.txt. A few seconds.""",
     table="linearizations.csv",
-    products=(
-        "linearizations.csv",
-        "quantiles.csv",
-        "findings.csv",
-        "linearizations.png",
-        "findings.txt",
-    ),
+    tables=("linearizations.csv", "quantiles.csv", "findings.csv"),
     chapters=(
         Chapter(
             folder="linearizations",

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="literature",
-    module="studies.literature.study",
     help="""Printed numbers on rocking blocks against the models and the engines.
 
 Steady states under harmonic shaking and their limits of stability, least accelerations that
@@ -13,7 +12,7 @@ its source, the printed value and its digits, and why where it does not come out
 engines by their authors, and their exact numbers. Writes literature.csv, agreement.csv, peers.csv,
 literature.png and findings.txt; resumable. Less than a minute.""",
     table="literature.csv",
-    products=("literature.csv", "agreement.csv", "peers.csv", "literature.png", "findings.txt"),
+    tables=("literature.csv", "agreement.csv", "peers.csv"),
     chapters=(
         Chapter(
             folder="literature",

@@ -130,7 +130,6 @@ def pictures(folder: Path) -> Pictures:
 
 
 def _read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table back with empty words as such."""
     return read_table(folder / f"{name}.csv", "measured", "agrees", "printed", "why")
 
 

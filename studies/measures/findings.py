@@ -181,7 +181,6 @@ def _by_case(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _where(wrong: pd.DataFrame) -> str:
-    """Return where the cases lie: ranges of ω/p for each figure and aspect ratio."""
     places = [
         f"figure {figure} H/B {aspect:g}: ω/p {_ranges(group['omega_over_p'].unique())}"
         for (figure, aspect), group in wrong.groupby(["figure", "aspect"])

@@ -56,7 +56,6 @@ def step_of(job: Job) -> float:
 
 
 def _declared(step_s: float, block: RigidBlock) -> float:
-    """Return p dt of a step in seconds, 0 where there is none."""
     return 0.0 if math.isnan(step_s) else step_s * block.p
 
 

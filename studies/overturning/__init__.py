@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="overturning",
-    module="studies.overturning.study",
     help="""Overturning maps: which pulses overturn a block, after how many impacts.
 
 Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
@@ -12,19 +11,9 @@ beside the edges; where each differs from the exact solution. Writes map.csv, bo
 differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
 resumable. The full study takes about two minutes on one core, --quick a quarter of one.""",
     table="boundaries.csv",
-    products=(
-        "map.csv",
-        "boundaries.csv",
-        "conditioning.csv",
-        "engines.csv",
-        "edges.csv",
-        "thresholds.csv",
-        "differences.csv",
-        "checks.csv",
-        "map.png",
-        "conditioning.png",
-        "differences.png",
-        "findings.txt",
+    tables=(
+        *("map.csv", "boundaries.csv", "conditioning.csv", "engines.csv", "edges.csv"),
+        *("thresholds.csv", "differences.csv", "checks.csv"),
     ),
     chapters=(
         Chapter(

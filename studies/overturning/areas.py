@@ -22,12 +22,6 @@ def window_of(folder: Path) -> Window:
     return Window(**provenance.record_of(folder)["settings"]["window"])
 
 
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table of a folder, also one that was packed; empty if it has no such rows."""
-    paths = (folder / f"{name}.csv", folder / f"{name}.csv.gz")
-    return next((pd.read_csv(path) for path in paths if path.is_file()), pd.DataFrame())
-
-
 def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArray:
     """Return the modes at every pair of a column's abscissa and an amplitude, (len(x), n)."""
     groups = {float(str(at)): group for at, group in areas.groupby("x")}

@@ -75,7 +75,6 @@ def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
 
 
 def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[str]:
-    """Write what happens in the middle of each area that has room for it; return these modes."""
     named = set()
     x, y = window.centres(codes.shape[0]), window.amplitudes(codes.shape[1])
     for code, mode in enumerate(MODES):
@@ -160,7 +159,6 @@ def _cell_codes(cells: pd.DataFrame) -> FloatArray:
 
 
 def _paint(axes: Axes, codes: FloatArray, colours: dict[str, str], window: Window) -> set[str]:
-    """Fill the panel with coded cells; return the names of the colours that it shows."""
     norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
     _fill(axes, codes, window, ListedColormap(list(colours.values())), norm)
     names = list(colours)
@@ -170,14 +168,12 @@ def _paint(axes: Axes, codes: FloatArray, colours: dict[str, str], window: Windo
 def _fill(
     axes: Axes, values: FloatArray, window: Window, colours: Colormap | str, norm: Normalize
 ) -> AxesImage:
-    """Fill the panel with the values of its cells, a row of them for each abscissa."""
     extent = (window.low, window.high, LEAST_ONSETS, window.onsets)
     return axes.imshow(values.T, origin="lower", aspect="auto", interpolation="nearest",
                        extent=extent, cmap=colours, norm=norm)  # fmt: skip
 
 
 def _patches(colours: dict[str, str], shown: set[str]) -> list[Patch]:
-    """Return what stands in a key for those of the colours that are shown."""
     return [
         Patch(facecolor=colour, edgecolor="#888888", label=name)
         for name, colour in colours.items()

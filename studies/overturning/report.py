@@ -12,11 +12,11 @@ import pandas as pd
 
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.kept import Pictures, tell
-from studies.kit.tables import write_table
+from studies.kit.tables import table_in, write_table
 from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import between, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST
-from studies.overturning.areas import read, window_of, with_verdicts
+from studies.overturning.areas import window_of, with_verdicts
 from studies.overturning.checks import checks
 
 NAMES = dict(
@@ -33,8 +33,8 @@ DIFFERENCES = (
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; write and return what they show."""
-    window, areas = window_of(folder), read(folder, "map")
-    compared, checked = differences(areas, read(folder, "engines"), window), checks(window)
+    window, areas = window_of(folder), table_in(folder, "map")
+    compared, checked = differences(areas, table_in(folder, "engines"), window), checks(window)
     write_table(folder / "checks.csv", checked)
     if len(compared):
         write_table(folder / "differences.csv", compared)
@@ -50,13 +50,13 @@ def report(folder: Path) -> str:
             shown[~of_models].dropna(axis=1, how="all")
         ),
         "Edges of each model, and by what they were found": (
-            edges(read(folder, "boundaries"), list(areas["model"].unique()))
+            edges(table_in(folder, "boundaries"), list(areas["model"].unique()))
         ),
         "Parts of an engine's outcomes that are right, by the relative distance from an edge": (
-            beside_edges(read(folder, "edges"))
+            beside_edges(table_in(folder, "edges"))
         ),
         "Thresholds of an engine over the exact ones, less 1, where they are within 3 %": (
-            shifts(read(folder, "thresholds"))
+            shifts(table_in(folder, "thresholds"))
         ),
         "Thresholds over those of closed forms and the literature, less 1": apart(checked),
     }
@@ -67,11 +67,11 @@ def pictures(folder: Path) -> Pictures:
     """Draw the figures of a folder from its CSVs alone."""
     from studies.overturning.figure import draw_conditioning, draw_differences, draw_map
 
-    areas, engines = read(folder, "map"), read(folder, "engines")
+    areas, engines = table_in(folder, "map"), table_in(folder, "engines")
     window = window_of(folder)
     drawn = {
         "map": draw_map(areas, window),
-        "conditioning": draw_conditioning(read(folder, "conditioning"), window),
+        "conditioning": draw_conditioning(table_in(folder, "conditioning"), window),
     }
     if areas["model"].nunique() > 1 or len(engines):
         drawn["differences"] = draw_differences(areas, engines, window)
@@ -80,7 +80,7 @@ def pictures(folder: Path) -> Pictures:
 
 def headline(folder: Path) -> str:
     """Say how much of the map the linearizations get wrong, and how many cells engines do."""
-    lines = read(folder, "differences")
+    lines = table_in(folder, "differences")
     if lines.empty:
         return "The exact map stands alone: no other source was asked."
     models, engines = lines[lines["cells"].isna()], lines[lines["cells"].notna()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cache
 from typing import Annotated, Literal
 
@@ -26,7 +26,7 @@ from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
-from studies.kit.options import Running
+from studies.kit.options import PATIENT_RUNNING, PatientRunning
 from studies.kit.plan import Plan, Tables, by_label, carry_out
 from studies.kit.provenance import usable_cores
 from studies.overturning import STUDY
@@ -68,23 +68,6 @@ POSITIONS, QUICK_POSITIONS = (0.12, 0.3, 0.5, 0.7, 0.9), (0.5,)
 """Parts of the abscissa at which engines are asked about edges."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PatientRunning(Running):
-    """As `Running`, with time for what one job of this study holds.
-
-    Attributes
-    ----------
-    time_limit
-        Wall-clock time [s] after which an engine's case, or its search for a threshold, is given
-        up.
-    """
-
-    time_limit: Positive = 120.0
-
-
-DEFAULT_RUNNING = PatientRunning()
-
-
 def command(
     *,
     out: Out,
@@ -100,7 +83,7 @@ def command(
     rows: Count | None = None,
     sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
     quick: bool = False,
-    running: PatientRunning = DEFAULT_RUNNING,
+    running: PatientRunning = PATIENT_RUNNING,
     yes: bool = False,
 ) -> int:
     """Map which pulses overturn a block.
@@ -243,7 +226,6 @@ def _strip(
 
 
 def _named(table: pd.DataFrame, model: str, x: FloatArray, window: Window) -> pd.DataFrame:
-    """Return a table with the model, the abscissa and what it stands for instead of a number."""
     at = x[table["column"].to_numpy()]
     columns = {"model": model, "x": at, "alpha": window.alpha(at), "omega_over_p": window.ratio(at)}
     return pd.concat([pd.DataFrame(columns), table.drop(columns="column")], axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,11 +12,11 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import RECOMMENDED
-from studies.advise.study import read as read_advice
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
+from studies.kit.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
@@ -34,9 +34,8 @@ from studies.measures.words import (
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
-from studies.page.markdown import table
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
-from studies.sweep.claims import linearized, preset_table, whole
+from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
 PRESETS_FROM = ("presets", "sweep")
@@ -169,7 +168,6 @@ def presets_short(lines: pd.DataFrame) -> str:
 
 
 def _short(row: pd.Series[Any]) -> str:
-    """Return a line of the presets in a cell: outcomes, errors of the peak, time."""
     wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
     parts = (
         f"**{wrong}**" if any(row[list(KINDS)]) else wrong,
@@ -207,7 +205,7 @@ def models(published: Path) -> dict[str, str]:
 
 def advised(published: Path) -> str:
     """Return the cheapest advice for each error with each loop as a table of Markdown."""
-    lines = read_advice(published / "advice")
+    lines = table_in(published / "advice", "advice")
     heads = ("largest error", *(head for loop in LOOPS.values() for head in (loop, "a case")))
     rows = []
     for target, group in lines.groupby("target", sort=False):
@@ -277,7 +275,6 @@ def hero_lines(published: Path) -> dict[str, str]:
 
 
 def _off(error: float) -> str:
-    """Return the error of a peak, with its sign where it can be seen."""
     if abs(error) < 1e-3:
         return power(abs(error))
     return f"{error:+.0%}".replace("%", " %").replace("-", "−")
@@ -357,3 +354,9 @@ def ninth(root: Path) -> str:
 def minutes(full: bool) -> int:
     """Return about how many minutes a report takes on two cores."""
     return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table of cells that are text; a bar in a cell would end it."""
+    lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
+    return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)

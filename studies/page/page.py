@@ -16,18 +16,20 @@ from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 from engines import ENGINES
+from studies.cases.paper import PULSES
 from studies.catalogue import CHAPTERS
+from studies.defaults.claims import INVALID
+from studies.defaults.study import read
 from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import read_table
-from studies.measures.again import WORST_AGAIN
+from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
 from studies.measures.wrongness import KINDS
-from studies.page.engine_cases import engine_cases
 from studies.page.facts import MANY, asked, presets, shared, told_of
-from studies.sweep.claims import verdict
+from studies.sweep.study import verdict
 
 GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""
@@ -83,7 +85,6 @@ def first_sight(folder: Path) -> dict[str, Any]:
 
 
 def _tile(row: pd.Series[Any]) -> dict[str, str]:
-    """Return a line of presets in words, and whether it is good, bad or neither."""
     lost = any(row[list(KINDS)])
     good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD
     return {
@@ -95,7 +96,6 @@ def _tile(row: pd.Series[Any]) -> dict[str, str]:
 
 
 def _unbroken(words: str) -> str:
-    """Return words that a line does not break between."""
     return words.replace(" ", "\N{NO-BREAK SPACE}")
 
 
@@ -186,7 +186,6 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
 
 
 def _provenance(folder: Path) -> list[tuple[str, str]]:
-    """Return what the page says of versions and machine."""
     record = provenance.record_of(folder)
     versions = {
         **provenance.engines_of(record),
@@ -200,3 +199,49 @@ def _provenance(folder: Path) -> list[tuple[str, str]]:
         ("machine", ", ".join(f"{name} {value}" for name, value in record["machine"].items())),
         ("made", record["runs"][-1]["start"]),
     ]
+
+
+DIGITS = 5
+OVERTURNED = -1.0
+"""What stands in place of a peak; a case that failed has None."""
+AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
+"""Columns of the grid, the last running fastest."""
+
+
+def engine_cases(folder: Path) -> dict[str, Any]:
+    """Return what the exact solution and the engines answer on the grid of `rocking defaults`.
+
+    Returns
+    -------
+    dict
+        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order, without
+        the study's table of no source; judged: of each case 1, or 0 where the block would slide or
+        lift off; rests: for how long all is at rest before the pulse of each [s]; written: the
+        sources that `rocking export` writes out.
+    """
+    path = folder / "defaults" / "defaults.csv"
+    if not path.is_file():
+        return {"peaks": {}}
+    rows = read(path.parent)
+    rows = rows.assign(
+        half_cycles=rows["pulse"].map(PULSES),
+        peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
+    )
+    axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
+    order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
+    wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
+    found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
+    slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
+    judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
+    rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
+    return {
+        **axes,
+        "peaks": found,
+        "judged": judged.tolist(),
+        "rests": rests.tolist(),
+        "written": list(filter(written_out, found)),
+    }
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

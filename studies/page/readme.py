@@ -16,8 +16,8 @@ from studies.kit.journal import PROVENANCE
 from studies.measures.columns import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
-from studies.page.objections import objections, slippery
-from studies.sweep.claims import verdict
+from studies.page.engine_facts import objections, slippery
+from studies.sweep.study import verdict
 
 PUBLISHED = Path("studies", "published")
 
@@ -40,8 +40,7 @@ def command(*, root: Path = Path()) -> int:
     if not (root / PUBLISHED).is_dir():
         raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
     for study, chapter in CHAPTERS:
-        tables = [name for name in study.products if name.endswith(".csv")]
-        check(root / PUBLISHED / chapter.folder, tables, "a published folder")
+        check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
     folder.mkdir(exist_ok=True)
     hero.measure(folder / "hero.csv")
     made_with = {**provenance.subject("readme"), **provenance.versions()}

@@ -30,14 +30,13 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
         tables = ", ".join(study.table for study in kept)
         raise BadInputError(f"FOLDER is {str(folder)!r}; it must hold one of {tables}")
     for study in found:
-        check(folder, [name for name in study.products if name.endswith(".csv")], "FOLDER")
+        check(folder, study.tables, "FOLDER")
     for study in found:
         print(*draw(study, folder, f".{suffix}"), sep="\n")
     return 0
 
 
 def _recorded(folder: Path) -> str:
-    """Return the name of the study that left a folder, which may hold its smaller tables only."""
     try:
         return str(provenance.record_of(folder)["study"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):

@@ -51,7 +51,6 @@ def command(*, out: Place, full: bool = False) -> int:
 
 
 def _prepare(out: Path, full: bool) -> None:
-    """Make the folder, and refuse one of somebody else, or with a report of the other kind."""
     path, kind = out / "kind.txt", "full" if full else "quick"
     try:
         out.mkdir(parents=True, exist_ok=True)

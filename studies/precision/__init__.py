@@ -4,23 +4,13 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="precision",
-    module="studies.precision.study",
     help="""Error against run time: every method along its own setting, on the same cases.
 
 Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
 resumable. The full study takes some eight minutes on one core, --quick one and a half.""",
     table="precision.csv",
-    products=(
-        "precision.csv",
-        "work-precision.csv",
-        "precision.png",
-        "findings.txt",
-        "shares.csv",
-        "scenes.csv",
-        "reference.csv",
-        "cost.png",
-        "cost.txt",
-    ),
+    tables=("precision.csv", "work-precision.csv", "shares.csv", "scenes.csv", "reference.csv"),
+    others=("findings.txt", "cost.txt"),
     chapters=(
         Chapter(
             folder="precision",
@@ -53,13 +43,6 @@ history, ... measured by putting them back. Writes shares.csv, scenes.csv and re
 with --starts, how long whole commands take, starts.csv, and, with --batches, what it is worth to
 run many scenes at once, batches.csv.""",
     table="shares.csv",
-    products=(
-        "shares.csv",
-        "scenes.csv",
-        "reference.csv",
-        "starts.csv",
-        "batches.csv",
-        "cost.png",
-        "cost.txt",
-    ),
+    tables=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "batches.csv"),
+    others=("cost.png", "cost.txt"),
 )

@@ -26,7 +26,7 @@ from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.pool import Pool
 from studies.kit.processes import COMPILING_S
-from studies.kit.tables import read_table
+from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed
 from studies.precision import COST
@@ -231,7 +231,9 @@ def shortest(action: Callable[[], Any], runs: int = 30) -> float:
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    shares, scenes, reference = (read(folder, name) for name in ("shares", "scenes", "reference"))
+    shares, scenes, reference = (
+        table_in(folder, name) for name in ("shares", "scenes", "reference")
+    )
     as_it_is = scenes.groupby("engine")["wall_s"].transform("first")
     tables = {
         "Where the time of a step goes, and the step over the engine's own part": (
@@ -245,32 +247,24 @@ def report(folder: Path) -> str:
         ),
         "What the exact solution leaves out": reference,
     }
-    if (folder / "starts.csv").is_file():
-        tables["How long a user waits, and over R, the time of `import numba, pandas`"] = read(
-            folder, "starts"
-        )
-    if (folder / "batches.csv").is_file():
-        tables["Many scenes at once and one by one, in CPU time of a step of a world"] = read(
-            folder, "batches"
-        )
+    asked_for = {
+        "starts": "How long a user waits, and over R, the time of `import numba, pandas`",
+        "batches": "Many scenes at once and one by one, in CPU time of a step of a world",
+    }
+    tables |= {title: table_in(folder, name) for name, title in asked_for.items()}
     return tell(folder, pictures(folder), headline(folder), tables, "cost.txt")
-
-
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table back with empty words as such."""
-    return read_table(folder / f"{name}.csv")
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw a folder's scenes.csv: time and error of each thing put back."""
     from studies.precision.figure import draw_scenes
 
-    return {"cost": draw_scenes(read(folder, "scenes"))}
+    return {"cost": draw_scenes(table_in(folder, "scenes"))}
 
 
 def headline(folder: Path) -> str:
     """Say how long a step takes with each loop, and how much of that is the engine's own."""
-    shares = read(folder, "shares").dropna(subset=["step_s"])
+    shares = table_in(folder, "shares").dropna(subset=["step_s"])
     words = [
         f"{listed([_step(line) for _, line in lines.iterrows()])} with {engine}"
         for engine, lines in shares.groupby("engine", sort=False)
@@ -279,7 +273,6 @@ def headline(folder: Path) -> str:
 
 
 def _step(line: pd.Series[Any]) -> str:
-    """Return how long a step takes, who takes it, and what of it is the engine's own."""
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"
     return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"

@@ -142,7 +142,6 @@ def message(table: pd.DataFrame) -> str:
 
 
 def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> None:
-    """Draw some methods, and all others pale behind them."""
     behind = [line[["wall_s", "error"]].to_numpy() for _, line in others.groupby("method")]
     axes.add_collection(LineCollection(behind, colors=PALE, linewidths=0.8, zorder=0))
     for name, line in mine.groupby("method", sort=False):
@@ -157,7 +156,6 @@ def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> None:
 
 
 def _names(lines: pd.DataFrame) -> Sequence[Name]:
-    """Return the name of each method at its smallest error."""
     names = []
     for method, line in lines.groupby("method", sort=False):
         preset, _, dial = engine_in(str(method))[1].partition(", ")

@@ -60,7 +60,6 @@ def _along_step(source: str, event_tolerance: float) -> Method:
 
 
 def _of_preset(engine: str, preset: Preset) -> Method:
-    """Return a preset along its steps, or its dial."""
     setting, values = preset.dial or ("step", ENGINE_STEPS)
     source, own = f"{engine}:{preset.name}", preset.dial is not None
     return Method(source=source, setting=setting, values=values, of_engine=own)

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="restitution",
-    module="studies.restitution.study",
     help="""What each engine makes of a coefficient of restitution, and what setting gives which.
 
 A block that turns about a corner strikes its base with the other: the speed of that corner after
@@ -13,10 +12,7 @@ the impact falls; and what the block keeps of its angular rate, beside
 1 - 3/2 (1 + e) sin^2(alpha). Writes restitution.csv, corners.csv, rates.csv, two pictures and
 findings.txt; a minute.""",
     table="restitution.csv",
-    products=(
-        *("restitution.csv", "corners.csv", "rates.csv"),
-        *("corners.png", "rates.png", "findings.txt"),
-    ),
+    tables=("restitution.csv", "corners.csv", "rates.csv"),
     captions={
         "corners": (
             "How far the speed upwards of a corner that strikes the base, over that of its "

@@ -95,7 +95,6 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
 
 
 def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:
-    """Paint how far off each way is at most as it is asked, and with one thing varied."""
     axes, values = drawing.subplots(), off[list(VARIATIONS)].to_numpy(float)
     shown = cells(axes, np.where(np.isinf(values), 1.0, values), LEAST, 1.0, [*VARIATIONS.values()])
     names = (
@@ -112,7 +111,6 @@ def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:
 def _partly(
     drawing: SubFigure, rows: pd.DataFrame, ways: Sequence[tuple[str, str]], shown: Shown
 ) -> None:
-    """Draw a panel for each way whose coefficient is neither kept nor ignored."""
     across = min(ACROSS, len(ways))
     grid = drawing.subplots(
         math.ceil(len(ways) / across), across, sharex=True, sharey=True, squeeze=False
@@ -132,7 +130,6 @@ def _partly(
 
 
 def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:
-    """Draw the band over where an impact falls in a step, and lines of what is varied."""
     usual = group[group["varied"] == ""].groupby("wanted")
     right, base = usual[shown.measure.right].first(), usual[shown.measure.found]
     axes.plot(right.index, right, color="#777777", linewidth=0.8, label="as it should be")

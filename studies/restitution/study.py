@@ -88,7 +88,6 @@ def report(folder: Path) -> str:
 
 
 def _read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table back, with empty words as such."""
     return read_table(folder / f"{name}.csv", "way", "varied", "literal")
 
 
@@ -107,7 +106,6 @@ def headline(folder: Path) -> str:
 
 
 def _ends(best: pd.DataFrame, column: str) -> str:
-    """Return the least and the largest of a column, and of which engine."""
     ends = best.sort_values(column).iloc[[0, -1]][[column, "engine"]].to_numpy()
     return " to ".join(dict.fromkeys(f"{value:.3f} in {engine}" for value, engine in ends))
 

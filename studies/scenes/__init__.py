@@ -6,7 +6,6 @@ KINDS = ("frame", "slide", "floor", "block", "cart", "cylinder")
 
 STUDY = Study(
     name="scenes",
-    module="studies.scenes.study",
     help="""A frame, a slide, a moving floor, a cart, a rolling cylinder; their exact solutions.
 
 The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
@@ -17,24 +16,10 @@ cylinder rolls on its rim in space, five turns and fifty.
 Writes frame.csv, slide.csv, floor.csv, block.csv, cart.csv, cylinder.csv, their summaries and
 pictures, cart-steps.csv and findings.txt; resumable.""",
     table="frame-summary.csv",
-    products=(
-        "frame.csv",
-        "slide.csv",
-        "floor.csv",
-        "block.csv",
-        "cart.csv",
-        "cylinder.csv",
-        "frame-summary.csv",
-        "slide-summary.csv",
-        "floor-summary.csv",
-        "block-summary.csv",
-        "cart-summary.csv",
+    tables=(
+        *(f"{kind}.csv" for kind in KINDS),
+        *(f"{kind}-summary.csv" for kind in KINDS),
         "cart-steps.csv",
-        "cylinder-summary.csv",
-        "frame.png",
-        "slide.png",
-        "floor.png",
-        "findings.txt",
     ),
     chapters=(
         Chapter(

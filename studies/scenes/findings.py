@@ -35,7 +35,6 @@ def slide_sentence(lines: pd.DataFrame) -> str:
 
 
 def _largest(lines: pd.DataFrame, column: str) -> list[tuple[str, float]]:
-    """Return each preset in words, with the largest value of its engines."""
     presets = lines["source"].map(preset_of)
     return [
         (in_words(preset), float(lines.loc[presets == preset, column].max()))

@@ -97,7 +97,6 @@ def reduce(job: Job, response: Response) -> Row:
 
 
 def _named(source: str) -> tuple[str, str]:
-    """Return the engine and the preset of a source."""
     return engine_of(source), preset_of(source)
 
 

@@ -4,21 +4,14 @@ from studies.kit.study import Study
 
 STUDY = Study(
     name="score",
-    module="studies.score.study",
     help="""One engine on one page, registered or at MODULE:ENGINE or MODULE:build.
 
 The paper's cases with each of its presets, its errors along the step beside the published
 engines, its verdicts on extreme cases, what it is helped by. Writes score-sweep.csv,
 score-steps.csv, score-extremes.csv, score.txt, two figures and provenance.json; resumable.""",
     table="score-sweep.csv",
-    products=(
-        "score-sweep.csv",
-        "score-steps.csv",
-        "score-extremes.csv",
-        "score.txt",
-        "score.png",
-        "extremes.png",
-    ),
+    tables=("score-sweep.csv", "score-steps.csv", "score-extremes.csv"),
+    others=("score.txt",),
     captions={
         "score": "The engine's presets along their steps, largest error against run time; grey "
         "behind them the published engines.",

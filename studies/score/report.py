@@ -19,8 +19,7 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, part, right_but
 from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
-from studies.stability.findings import failures
-from studies.stability.report import verdicts
+from studies.stability.report import failures, verdicts
 
 
 def report(folder: Path) -> str:

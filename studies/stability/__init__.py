@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="stability",
-    module="studies.stability.study",
     help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
 
 Writes stability.csv with its matrix (PNG), steps.csv (the largest stable and accurate steps),
@@ -12,7 +11,7 @@ sensitivity.csv and findings.txt; resumable. A failure is an answer: the exit co
 a source gives no result at all. The full study takes about six minutes on two cores, --quick half
 a minute.""",
     table="stability.csv",
-    products=("stability.csv", "steps.csv", "sensitivity.csv", "stability.png", "findings.txt"),
+    tables=("stability.csv", "steps.csv", "sensitivity.csv"),
     chapters=(
         Chapter(
             folder="stability",

@@ -107,7 +107,6 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
 
 
 def _cell(axes: Axes, place: tuple[int, int], verdict: Verdict, error: float) -> None:
-    """Draw the mark of a verdict, and the size of an error as a power of ten, rounded up."""
     mark, (i, j) = MARKS[verdict], place
     axes.add_patch(Rectangle(place, 1, 1, lw=0.0, fc=mark.colour, ec="#cccccc", hatch=mark.hatch))
     axes.add_patch(Rectangle(place, 1, 1, fill=False, ec="white", lw=1.2))
@@ -139,7 +138,6 @@ def _label_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: in
 
 
 def _label_cases(axes: Axes, cases: pd.DataFrame) -> None:
-    """Name each case, and write at the right the exact peak, or what happens instead."""
     places = [j + 0.5 for j in range(len(cases))]
     axes.set_yticks(places, [WORDS.get(name, name) for name in cases["case"]], fontsize=8.5)
     exact = [

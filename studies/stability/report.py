@@ -9,11 +9,12 @@ import pandas as pd
 from analytic.response import Reason
 from studies.cases.extreme import extremes
 from studies.drawing.kept import Pictures, tell
-from studies.kit.tables import read_table, write_table
+from studies.kit.tables import table_in, write_table
 from studies.measures.again import WORST_AGAIN, commands, with_commands, worst_again
-from studies.measures.verdicts import Verdict
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
+from studies.measures.verdicts import ACCEPTED, Verdict
+from studies.measures.words import NAMED, each_out_of, listed, out_of
 from studies.sources.registry import resolve
-from studies.stability.findings import failures, first_claim
 from studies.stability.remedies import NOTHING
 from studies.stability.sensitivity import with_growth
 
@@ -29,7 +30,9 @@ UNBOUNDED = (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's tables; return the text, which findings.txt holds too."""
-    matrix, steps, moved = (_table(folder, name) for name in ("stability", "steps", "sensitivity"))
+    matrix, steps, moved = (
+        table_in(folder, name) for name in ("stability", "steps", "sensitivity")
+    )
     moved = with_growth(moved)
     write_table(folder / "sensitivity.csv", moved)
     rests, rough = matrix["case"] == "60 s at rest", matrix["case"] == "friction 1e9"
@@ -64,7 +67,7 @@ def report(folder: Path) -> str:
 
 def again(folder: Path) -> pd.DataFrame:
     """Return the failures, those that nothing mends first, with the commands that ask them."""
-    wrong = failures(_table(folder, "stability"))
+    wrong = failures(table_in(folder, "stability"))
     wrong = wrong.sort_values("remedy", key=lambda said: said != NOTHING, kind="stable")
     cases, asked = {case.name: case for case in extremes(False)}, []
     for name, source, outcome in wrong[["case", "source", "outcome"]].itertuples(index=False):
@@ -76,20 +79,14 @@ def again(folder: Path) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Return how many of the extreme cases the engines get right."""
-    return first_claim(_table(folder, "stability"))
+    return first_claim(table_in(folder, "stability"))
 
 
 def pictures(folder: Path) -> Pictures:
     """Draw the matrix of a folder from its stability.csv alone."""
     from studies.stability.figure import draw_matrix
 
-    return {"stability": draw_matrix(_table(folder, "stability"))}
-
-
-def _table(folder: Path, name: str) -> pd.DataFrame:
-    """Return a table with empty words as such; empty if none of the sources has a row in it."""
-    path = folder / f"{name}.csv"
-    return read_table(path) if path.is_file() else pd.DataFrame()
+    return {"stability": draw_matrix(table_in(folder, "stability"))}
 
 
 def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:
@@ -130,3 +127,39 @@ def growth(moved: pd.DataFrame) -> pd.DataFrame:
     table = medians.unstack("delta")
     table.columns = [f"{delta:.0e}" for delta in table.columns]
     return table.reset_index()
+
+
+def first_claim(matrix: pd.DataFrame) -> str:
+    """Say how many of the extreme cases each preset gets right, of how many engines and cases.
+
+    Cases beyond what the reference is valid for are in no count.
+    """
+    valid = matrix["verdict"] != Verdict.INVALID.value
+    asked = matrix[matrix["source"].map(is_engine) & valid]
+    if asked.empty:
+        return "No engine was put to the extreme cases."
+    right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
+    counts: dict[str, list[tuple[int, int]]] = {}
+    for source, good in right:
+        counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
+    engines = list(dict.fromkeys(map(engine_of, asked["source"])))
+    named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
+    verb = "get" if len(engines) > 1 else "gets"
+    parts = [
+        f"{in_words(name)} {_counted(counts[name], len(engines))}" for name in in_order(counts)
+    ]
+    return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
+
+
+def _counted(pairs: list[tuple[int, int]], engines: int) -> str:
+    """Return how many are right of how many, of each engine or of all; and of how many engines."""
+    right, total = zip(*pairs, strict=True)
+    if len(pairs) <= NAMED:
+        return each_out_of(right, total)
+    few = f" ({len(pairs)} engines)" if len(pairs) < engines else ""
+    return f"{out_of(sum(right), sum(total))}{few}"
+
+
+def failures(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows whose verdict is a failure of their source."""
+    return matrix[~matrix["verdict"].isin([verdict.value for verdict in ACCEPTED])]

@@ -2,7 +2,6 @@
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -10,12 +9,12 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
-from studies.kit.arguments import Out, Positive, check_sources
+from studies.kit.arguments import Out, check_sources
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import Running
+from studies.kit.options import PATIENT_RUNNING, PatientRunning
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.measures.verdicts import BANDS, friction_of, invalidity, judge
 from studies.sources.groups import core_sources
@@ -42,28 +41,11 @@ RUN_SHARE = 0.02
 """Part of the time limit that each run of a search for a step may take."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PatientRunning(Running):
-    """As `Running`, with time for what one job of this study holds.
-
-    Attributes
-    ----------
-    time_limit
-        Wall-clock time [s] after which an engine's case, its remedies included, or its search for
-        the largest step is given up.
-    """
-
-    time_limit: Positive = 180.0
-
-
-DEFAULT_RUNNING = PatientRunning()
-
-
 def command(
     *,
     out: Out,
     quick: bool = False,
-    running: PatientRunning = DEFAULT_RUNNING,
+    running: PatientRunning = PATIENT_RUNNING,
     sources: Annotated[tuple[str, ...], several_sources] = METHODS,
 ) -> int:
     """Put extreme cases to every method.

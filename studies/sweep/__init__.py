@@ -7,7 +7,6 @@ PULSES = {6: "half-sine", 7: "half-sine", 8: "full-sine", 9: "full-sine"}
 
 STUDY = Study(
     name="sweep",
-    module="studies.sweep.study",
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
 240 cases a figure, which are 120 problems in two sizes that similarity makes alike, through every
@@ -15,14 +14,7 @@ named source. Writes sweep.csv (a row for each case and source), a
 PNG for each figure, summary.csv, findings.txt and provenance.json. Finished cases are stored at
 once: a run that was interrupted goes on where it stopped when the same command is given again.""",
     table="sweep.csv",
-    products=(
-        "sweep.csv",
-        "summary.csv",
-        "findings.csv",
-        "findings.txt",
-        "overview.png",
-        *(f"{kind}-{number}.png" for kind in ("figure", "presets") for number in PULSES),
-    ),
+    tables=("sweep.csv", "summary.csv", "findings.csv"),
     chapters=(
         Chapter(
             folder="sweep",

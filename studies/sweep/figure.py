@@ -79,12 +79,10 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
 
 
 def _level(number: float) -> float:
-    """Return the height of a source's line in the band of overturned cases."""
     return TOP + ROW * (number + 0.7)
 
 
 def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
-    """Point to survivors above the scale: beyond θcr, and brought back by the ground."""
     for x, peak in zip(survivors["omega_over_p"], survivors["survived"], strict=True):
         axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
         axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
@@ -100,7 +98,6 @@ def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
 
 
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
-    """Write the sources beside their lines: in the band above, and at the end of their errors."""
     colours = {source: style_of(source).colour for source in sources}
     size = 7.5 if len(sources) < 9 else 6.0
     beside(

@@ -32,7 +32,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : DataFrame
-        From `studies.sweep.claims.preset_table`.
+        From `studies.sweep.study.preset_table`.
     """
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
@@ -122,7 +122,6 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
 
 
 def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
-    """Draw a strip for each source: its errors as colours, and marks where it is wrong."""
     size = mine["error"].abs()
     table = mine.assign(size=size).pivot_table(
         index="source", columns="omega_over_p", values="size", aggfunc="max", dropna=False

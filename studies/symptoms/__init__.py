@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="symptoms",
-    module="studies.symptoms.study",
     help="""From what users see to the setting that mends it, with the effect that was measured.
 
 A block creeps, sinks, bounces, tips too early, a moved base carries nothing, ...: for each engine
@@ -12,7 +11,7 @@ what it is by default, the one setting that helps most, line by line in an expor
 your own step (--dt), and what is left with all of them. It runs nothing: it reads the published
 tables of `rocking contact`, `rocking precision` and `rocking restitution`.""",
     table="symptoms.csv",
-    products=("symptoms.csv", "symptoms.png", "findings.txt"),
+    tables=("symptoms.csv",),
     captions={
         "symptoms": (
             "What users of an engine see, a panel for each symptom, a row for each engine, "

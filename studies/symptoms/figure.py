@@ -69,7 +69,6 @@ def draw_symptoms(lines: pd.DataFrame) -> Figure:
 
 
 def _title(lines: pd.DataFrame) -> str:
-    """Say how often one setting mends what is seen, and by how much in the middle."""
     mended = lines[lines["after"].notna()]
     factor = (mended["before"] / mended["after"]).abs().median()
     return (

@@ -77,7 +77,6 @@ def _scene(settings: Mapping[str, Any], friction: float | None = None) -> Scene:
 
 
 def _files(script: Script) -> dict[str, list[str]]:
-    """Return the lines of an exported scene that are its engine's, file by file."""
     inner = [f"    {line}" for line in (*script.step, *script.pose)]
     texts = {SCRIPT: "\n".join((*script.imports, *script.build, *inner)), **script.files}
     return {name: text.splitlines() for name, text in texts.items()}

@@ -1,14 +1,16 @@
-"""The page from what users see to the setting that mends it, from the published tables."""
+"""From what users see to the setting that mends it: the command, and its page as text."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated
+from textwrap import fill, indent
+from typing import Annotated, Any
 
 import pandas as pd
 
 from engines import ENGINES
-from studies.drawing.kept import Pictures, keep
+from studies.drawing.kept import WIDTH, Pictures, as_text, keep
 from studies.kit.arguments import (
     BadInputError,
     NotNegative,
@@ -21,12 +23,13 @@ from studies.kit.arguments import (
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import read_table
+from studies.measures.columns import column_of
 from studies.measures.published import published_in
 from studies.measures.slippery import too_slippery
-from studies.measures.words import listed
+from studies.measures.words import listed, part
 from studies.symptoms import STUDY
-from studies.symptoms.lines import TABLES, VARIANTS, lines_of
-from studies.symptoms.words import first_claim, page
+from studies.symptoms.lines import NUMBERS, TABLES, VARIANTS, lines_of
+from studies.symptoms.patch import BLOCK, named
 
 
 def command(
@@ -83,7 +86,6 @@ def command(
 
 
 def _read(folder: Path) -> pd.DataFrame:
-    """Read a table back, with empty words as such."""
     texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
     return read_table(folder / "symptoms.csv", *texts)
 
@@ -98,3 +100,74 @@ def pictures(folder: Path) -> Pictures:
     from studies.symptoms.figure import draw_symptoms
 
     return {"symptoms": draw_symptoms(_read(folder))}
+
+
+SHORT = 28
+"""Letters up to which a sentence quotes what a setting is in the library's words."""
+
+SHOWN = ("engine", "shown_by", "setting", *NUMBERS)
+"""Columns of a symptom's table."""
+
+HELPS = (
+    "A setting helps if it halves what there is, at the p dt of all and at the library's own step; "
+    "inf: cases fail."
+)
+"""How the tables are read."""
+
+ASK = "What the settings change in a script, line by line: rocking symptoms --engines"
+"""Where what is written out for one engine is asked, before its name."""
+
+CHANGES = (
+    "A setting is what changes in the script that `rocking export` writes of the defaults: below "
+    "the name of a file, lines that go (-) and lines that come (+), after those that stay. They "
+    f"are those of a block of {BLOCK.width:g} by {BLOCK.height:g} m. DT is the step in seconds; "
+    "what follows it is given as a formula, then at a step."
+)
+"""How what is written out for one engine is read."""
+
+
+def page(lines: pd.DataFrame) -> str:
+    """Return the page: a table for each symptom; of one engine also what its settings change."""
+    tables = {
+        _title(symptom, group.iloc[0]): group[list(SHOWN)].dropna(axis=1, how="all")
+        for symptom, group in lines.groupby("symptom", sort=False)
+    }
+    engines = lines["engine"].unique()
+    alone = len(engines) == 1
+    changes = [fill(CHANGES, WIDTH), *_changes(lines)] if alone else [f"{ASK} {engines[0]}"]
+    return "\n\n".join([as_text(first_claim(lines), tables), fill(HELPS, WIDTH), *changes])
+
+
+def _title(symptom: object, line: pd.Series[Any]) -> str:
+    meaning = column_of("", line["measure"])[-1].partition(";")[0].replace("|", "∣")
+    return fill(f"{symptom} ({meaning}; asked in {line['asked_in']})", WIDTH)
+
+
+def _changes(lines: pd.DataFrame) -> Iterator[str]:
+    for _, row in lines[lines["formula"] != ""].drop_duplicates("formula").iterrows():
+        alike = ", ".join(lines.loc[lines["formula"] == row["formula"], "symptom"])
+        parts = [f"{row['setting']} ({alike}):", indent(row["formula"], "  ")]
+        if row["literal"] != row["formula"]:
+            parts += [f"at DT = {row['dt_s']:.6g} s:", indent(row["literal"], "  ")]
+        yield "\n".join(parts)
+
+
+def first_claim(lines: pd.DataFrame) -> str:
+    """Say of every engine which single setting helps most against a wrong peak."""
+    first = lines[lines["symptom"] == lines.iloc[0]["symptom"]]
+    rows = first.to_dict("records")
+    words = [_helps(row) for row in rows if row["setting"]]
+    others = [str(row["engine"]) for row in rows if not row["setting"]]
+    if others:
+        words.append(f"in {listed(others)} no single setting halves it")
+    return f"Where a block tips too early or too late, {'; '.join(words)}."
+
+
+def _helps(row: Mapping[Any, Any]) -> str:
+    before, after = float(str(row["before"])), float(str(row["after"]))
+    values = named(str(row["formula"]))
+    setting = values if 0 < len(values) <= SHORT else row["setting"]
+    return (
+        f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
+        f"{part(after)}"
+    )

@@ -4,7 +4,6 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="validate",
-    module="studies.validate.study",
     help="""Random cases that nothing was tuned on, held against the exact solution.
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
@@ -13,16 +12,9 @@ lean on: the first cases with false hints; and with --estimate what each engine 
 error. Writes validate.csv, errors.csv, drawn.csv, bands.csv, hints.csv, leaning.csv, halves.csv and
 provenance.json; resumable.""",
     table="validate.csv",
-    products=(
-        "validate.csv",
-        "errors.csv",
-        "drawn.csv",
-        "bands.csv",
-        "hints.csv",
-        "leaning.csv",
-        "halves.csv",
-        "validate.png",
-        "findings.txt",
+    tables=(
+        *("validate.csv", "errors.csv", "drawn.csv", "bands.csv", "hints.csv", "leaning.csv"),
+        *("halves.csv",),
     ),
     chapters=(
         Chapter(

@@ -79,7 +79,6 @@ def width(compared: pd.DataFrame) -> str:
 
 
 def _sizes(compared: pd.DataFrame) -> str:
-    """Return each source's largest error, or the least and the largest of many."""
     largest = compared["error"].abs().groupby(compared["source"], sort=False).max().dropna()
     if len(largest) > NAMED:
         named = [f"{part(size)} ({name})" for name, size in largest.sort_values().items()]
@@ -137,7 +136,6 @@ def bands(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def _band(values: pd.Series[float], ends: Sequence[float]) -> pd.Series[str]:
-    """Return the name of the band of each value."""
     between = [f"from {low:g} to {high:g}" for low, high in pairwise(ends)]
     names = [f"below {ends[0]:g}", *between, f"above {ends[-1]:g}"]
     return pd.cut(values, [0.0, *ends, inf], right=False, labels=names)

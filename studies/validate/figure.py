@@ -53,7 +53,6 @@ def draw_conditioning(compared: pd.DataFrame) -> Figure:
 
 
 def _boxes(axes: Axes, cases: pd.DataFrame, sources: list[str]) -> None:
-    """Draw for each engine the middle half of its errors, the median, and whiskers to the ends."""
     rows(axes, [name_of(source) for source in sources], 10.0)
     for place, source in enumerate(sources):
         size = cases.loc[cases["source"] == source, "size"].clip(lower=LOWEST)
@@ -69,7 +68,6 @@ def _boxes(axes: Axes, cases: pd.DataFrame, sources: list[str]) -> None:
 
 
 def _title(bands: list[tuple[tuple[float, float], pd.DataFrame]]) -> str:
-    """Say how large errors are where a case is calm, and where it is not."""
     ((_, low), calm), ((high, _), wild) = bands[0], bands[-1]
     if calm.empty:
         return "No case that both survive"

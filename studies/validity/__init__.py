@@ -4,22 +4,14 @@ from studies.kit.study import Chapter, Study
 
 STUDY = Study(
     name="validity",
-    module="studies.validity.study",
     help="""Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
-on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, two
-pictures and findings.txt; resumable. The full study takes about a minute on one core, --quick a
+on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, a
+picture and findings.txt; resumable. The full study takes about a minute on one core, --quick a
 quarter of one.""",
     table="validity.csv",
-    products=(
-        "validity.csv",
-        "map.csv",
-        "compared.csv",
-        "validity.png",
-        "friction.png",
-        "findings.txt",
-    ),
+    tables=("validity.csv", "map.csv", "compared.csv"),
     chapters=(
         Chapter(
             folder="validity",
@@ -32,10 +24,6 @@ quarter of one.""",
         "validity": (
             "Amplitude over frequency for four H/B: where the reference holds, where its pivot "
             "would lift off, and symbols for what engines do there."
-        ),
-        "friction": (
-            "How far the pivot slides over the friction given, in parts of what the reference "
-            "needs, for four H/B."
         ),
     },
 )

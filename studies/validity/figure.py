@@ -1,11 +1,9 @@
-"""The map of validity drawn, with the engines' verdicts on it and their slips under it."""
+"""The map of validity drawn, with the engines' verdicts on it."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -29,8 +27,6 @@ SYMBOLS = {
 HOLDS, ENDS = "#e8f0f5", "#f4d3bd"
 """Colours of where the reference is valid, and of where its pivot would need to be pulled."""
 
-SMALLEST_SLIP = 1e-9
-
 
 def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     """Draw over amplitude and frequency where the reference holds, and what engines do there.
@@ -42,9 +38,12 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     """
     sources = list(beside["source"].unique())
     own = beside[beside["friction_factor"].isna()]
-    names = ("frequency  ω/p  [–]", "amplitude  $a_p$ / (g tan α)  [–]")
-    drawing, by_aspect = _panels(table["aspect"], 3.8, *names)
-    for aspect, axes in by_aspect.items():
+    aspects = sorted(table["aspect"].unique())
+    drawing, grid = panels(len(aspects), 2, (4.3, 3.8), sharex=True, sharey=True)
+    for aspect, axes in zip(aspects, grid, strict=True):
+        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
+        axes.set(xlabel="frequency  ω/p  [–]", ylabel="amplitude  $a_p$ / (g tan α)  [–]")
+        axes.label_outer()
         _map(axes, table[table["aspect"] == aspect])
         _verdicts(axes, own[own["aspect"] == aspect], sources)
     drawing.suptitle(
@@ -64,47 +63,11 @@ def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _panels(
-    aspects: pd.Series[float], height: float, along: str, up: str
-) -> tuple[Figure, dict[float, Axes]]:
-    """Return a figure with a panel for each H/B, two in a row, of a height [in] and two axes."""
-    each = sorted(aspects.unique())
-    drawing, grid = panels(len(each), 2, (4.3, height), sharex=True, sharey=True)
-    for axes, aspect in zip(grid, each, strict=True):
-        axes.set_title(f"H/B = {aspect:g}", fontsize=11)
-        axes.set(xlabel=along, ylabel=up)
-        axes.label_outer()
-    return drawing, dict(zip(each, grid, strict=True))
-
-
 def _whose(sources: list[str]) -> str:
-    """Say whose symbols stand where."""
     if len(sources) == 1:
         return f"symbols: {name_of(sources[0])}"
     names = ", ".join(map(name_of, sources))
     return f"black symbols: all alike; where they differ, from the left {names}"
-
-
-def draw_friction(beside: pd.DataFrame) -> Figure:
-    """Draw how far pivots slide under a part of the friction that the reference needs.
-
-    Parameters
-    ----------
-    beside : DataFrame
-        compared.csv.
-    """
-    sources = list(beside["source"].unique())
-    rows = beside[beside["friction_factor"].notna()]
-    names = ("friction / friction needed  [–]", "slide of the pivot over B  [–]")
-    drawing, by_aspect = _panels(beside["aspect"], 3.2, *names)
-    for aspect, axes in by_aspect.items():
-        _slips(axes, rows[rows["aspect"] == aspect], sources)
-    drawing.suptitle("Below the friction that the reference needs pivots slide", fontsize=11)
-    handles = [
-        Line2D([], [], **style_of(name).points(6.0), label=name_of(name)) for name in sources
-    ]
-    key(drawing, handles, len(sources), fontsize=10)
-    return drawing
 
 
 def _map(axes: Axes, table: pd.DataFrame) -> None:
@@ -140,19 +103,3 @@ def _verdicts(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
             place = x * 1.16 ** (number - 0.5 * (len(found) - 1))
             symbol = SYMBOLS[str(found[source])]
             axes.text(place, y, symbol, color=style_of(source).colour, fontweight="bold", **style)
-
-
-def _slips(axes: Axes, rows: pd.DataFrame, sources: list[str]) -> None:
-    for number, source in enumerate(sources):
-        group = rows[rows["source"] == source]
-        beside = 1.0 + 0.012 * (number - 0.5 * (len(sources) - 1))
-        gone = group["verdict"].isin(["slid away", "flew off"])
-        slip = group["slip_widths"].clip(lower=SMALLEST_SLIP).mask(gone, 0.2)
-        axes.plot(beside * group["friction_factor"], slip, **style_of(source).points())
-    axes.axvline(1.0, color="#999999", linewidth=1.0)
-    axes.set(yscale="log")
-    axes.set_ylim(0.5 * SMALLEST_SLIP, 0.5)
-    ticks = 10.0 ** np.arange(round(math.log10(SMALLEST_SLIP)), -2, 2)
-    axes.yaxis.set_ticks([*ticks, 0.2], [f"$10^{{{math.log10(t):.0f}}}$" for t in ticks] + ["away"])
-    axes.yaxis.set_ticks([], minor=True)
-    axes.grid(alpha=0.25)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
@@ -20,11 +20,11 @@ from studies.kit.naming import several_engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import write_table
+from studies.measures.words import listed
 from studies.sources.groups import core_sources
 from studies.sources.registry import resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.report import CASE, compared, first_claim, needs, verdicts
 
 MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
 MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
@@ -168,16 +168,82 @@ def report(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw a folder's figures from its tables alone."""
-    from studies.validity.figure import draw_friction, draw_validity
+    """Draw the map of a folder from its tables alone."""
+    from studies.validity.figure import draw_validity
 
     table, beside = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
-    drawn = {"validity": draw_validity(table, beside)}
-    if beside["friction_factor"].notna().any():
-        drawn["friction"] = draw_friction(beside)
-    return drawn
+    return {"validity": draw_validity(table, beside)}
 
 
 def headline(folder: Path) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
     return first_claim(pd.read_csv(folder / "map.csv"))
+
+
+CASE = ["aspect", "onsets", "omega_over_p"]
+
+
+def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
+    """Return the engines' rows beside the exact solution of their cases.
+
+    With the further columns exact_outcome, exact_peak, min_normal, friction_needed, agrees and
+    error (relative, of the peak where both rocked).
+    """
+    named = exact.rename(columns={"outcome": "exact_outcome", "peak_ratio": "exact_peak"})
+    joined = rows.merge(named, on=CASE, validate="many_to_one")
+    both = (joined["outcome"] == "rocked") & (joined["exact_outcome"] == "rocked")
+    return joined.assign(
+        agrees=joined["outcome"] == joined["exact_outcome"],
+        error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both),
+    )
+
+
+def first_claim(table: pd.DataFrame) -> str:
+    """Say from which amplitude on the reference does not hold, by slenderness."""
+    words = [
+        f"{f'from {ends:.2g} onsets' if math.isfinite(ends) else 'never'} at H/B {aspect:g}"
+        for aspect, ends in needs(table).set_index("aspect")["from_onsets"].items()
+    ]
+    return f"An engine is right to differ, because the pivot lifts off: {listed(words)}."
+
+
+def needs(table: pd.DataFrame) -> pd.DataFrame:
+    """Return what the reference needs, a line for each H/B.
+
+    How many of the map's cases and of those that survive need a pull at the pivot, and from which
+    amplitude on; the friction needed where it survives and stays down.
+    """
+    survives, lifts = table["outcome"] == "rocked", table["min_normal"] < 0.0
+    lost = lifts & survives
+    found = table.assign(
+        survive=survives,
+        lifted=lifts,
+        survivors_lifted=lost,
+        from_onsets=table["onsets"].where(lost),
+        friction=table["friction_needed"].where(survives & ~lifts),
+    )
+    groups = found.groupby("aspect")
+    return groups.agg(
+        cases=("survive", "size"),
+        lifted=("lifted", "sum"),
+        survive=("survive", "sum"),
+        survivors_lifted=("survivors_lifted", "sum"),
+        from_onsets=("from_onsets", "min"),
+        least_friction=("friction", "min"),
+        median_friction=("friction", "median"),
+    ).reset_index()
+
+
+def verdicts(rows: pd.DataFrame, by: pd.Series[Any]) -> pd.DataFrame:
+    """Return how many cases of each source end how, and their errors, for each value of `by`."""
+    keys = [rows["source"], by]
+    groups = rows.assign(error=rows["error"].abs()).groupby(keys, observed=True)
+    found = groups.agg(
+        agrees=("agrees", "sum"),
+        median_error=("error", "median"),
+        max_error=("error", "max"),
+        slip_widths=("slip_widths", "max"),
+        hop_widths=("hop_widths", "max"),
+    )
+    counts = groups["verdict"].value_counts().unstack(fill_value=0)
+    return counts.join(found).reset_index()

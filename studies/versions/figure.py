@@ -10,8 +10,7 @@ from matplotlib.lines import Line2D
 from studies.drawing.facets import key, panels
 from studies.drawing.styles import preset_style, title_of
 from studies.measures.presets import in_words, told
-from studies.versions.changes import answered
-from studies.versions.tables import CHANGED
+from studies.versions.tables import CHANGED, answered
 
 COLUMNS = 2
 """Panels side by side."""
@@ -53,13 +52,11 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
 
 
 def _handle(preset: str) -> Line2D:
-    """Return what stands for a preset, whatever its engine."""
     look = {**preset_style(preset).points(6.0), "linestyle": told(preset).line}
     return Line2D([], [], **look, label=in_words(preset))
 
 
 def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
-    """Draw medians and largest errors over both sets of cases."""
     releases = list(lines["release"].unique())
     axes.set(yscale="log", xlim=(-0.5, len(releases) - 0.5))
     axes.set_xticks(range(len(releases)), releases, rotation=60, ha="right", fontsize=8)

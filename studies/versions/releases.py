@@ -1,18 +1,28 @@
-"""Which releases of an engine there are, which of them are asked, and what room they take."""
+"""Which releases of an engine there are, and how one is asked.
 
-import importlib.util
+It is asked by this command once more, where its own packages are found first: a folder with the
+engine alone, so that what differs between two releases is the engine, and that takes no more room.
+Only a library that was built with an older numpy gets one, too. A folder is filled once and kept.
+"""
+
+from __future__ import annotations
+
 import os
 import re
+import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+import pandas as pd
 
 from engines import ENGINES
 from studies.kit.arguments import BadInputError
 from studies.kit.fingerprint import ROOT
 from studies.kit.provenance import version_of
+from studies.kit.tables import read_table
 
 INSTALLED, MINOR, ALL = "installed", "minor", "all"
 """Words for the release that is here, for the last of each minor number, and for all of them."""
@@ -151,15 +161,82 @@ def chosen(engine: str, asked: Sequence[str]) -> tuple[list[Release], str]:
     return sorted(found, key=lambda release: release.order), problem
 
 
-def places_of(library: str) -> list[Path]:
-    """Return the folders or the file of a library as it is installed here, others' apart."""
-    spec = importlib.util.find_spec(library)
-    if spec is None:
-        return []
-    return [Path(place) for place in spec.submodule_search_locations or [spec.origin or os.devnull]]
+OLD_NUMPY = ("numpy<2", "pandas<3")
+"""What a library needs that was built with an older numpy, and the pandas that works with that."""
+
+BUILT_WITH_OLD_NUMPY = "numpy.core.multiarray failed to import"
+"""What it says without."""
+
+USABLE = (0, 1)
+"""Exit codes of a run that left its table; 1 where rows failed."""
 
 
-def room_mib(places: Iterable[Path]) -> float:
-    """Return the room of some files and of those in some folders [MiB]."""
-    files = [path for place in places for path in (place, *place.rglob("*"))]
-    return sum(path.lstat().st_size for path in files if path.is_file()) / 2.0**20
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What came of a release.
+
+    Attributes
+    ----------
+    release : Release
+    answers : DataFrame or None
+        A row for each case and preset, the columns of answers.csv; None where it could not be had.
+    problem : str
+        Why there are no answers.
+    """
+
+    release: Release
+    answers: pd.DataFrame | None
+    problem: str = ""
+
+
+def ask(release: Release, out: Path, environments: Path, options: Sequence[str]) -> Asked:
+    """Run the short study of a release into its folder, or what is missing there.
+
+    Parameters
+    ----------
+    release : Release
+    out, environments : Path
+        Folders, with one inside for each release.
+    options : sequence of str
+        Further words of the command.
+    """
+    folder = out / release.folder
+    packages = None if release.here else environments / release.folder
+    words = ("--releases", INSTALLED, "--engines", release.engine, *options, "--out", str(folder))
+    try:
+        if packages:
+            fill(packages, release)
+        done = python("-m", "studies", "versions", *words, first=packages)
+        if done.returncode not in USABLE:
+            raise MissingError(complaint(done))
+        answers = read_table(folder / "answers.csv", "release")
+        if (found := set(answers["release"])) != {release.version}:
+            raise MissingError(f"{', '.join(sorted(found))} was loaded in its stead")
+    except MissingError as error:
+        return Asked(release, None, str(error))
+    return Asked(release, answers)
+
+
+def fill(folder: Path, release: Release) -> None:
+    """Install the packages of a release into a folder, unless they are there.
+
+    Raises
+    ------
+    MissingError
+        If the release cannot be installed.
+    """
+    if folder.is_dir():
+        return
+    part = folder.with_name(f".part.{folder.name}")
+    shutil.rmtree(part, ignore_errors=True)
+    _install(part, "--no-deps", f"{release.package}=={release.version}")
+    tried = python("-c", f"import {ENGINES[release.engine].library}", first=part)
+    if tried.returncode and BUILT_WITH_OLD_NUMPY in tried.stderr:
+        _install(part, *OLD_NUMPY)
+    part.rename(folder)
+
+
+def _install(folder: Path, *requirements: str) -> None:
+    done = pip("install", "--target", str(folder), "--quiet", "--no-input", *requirements)
+    if done.returncode:
+        raise MissingError(f"cannot be installed: {complaint(done)}")

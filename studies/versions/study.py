@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -11,7 +11,8 @@ from typing import Annotated
 import pandas as pd
 from tqdm import tqdm
 
-from engines import ENGINES, installed_engines
+from engines import installed_engines
+from studies.drawing.kept import Pictures, tell
 from studies.kit.arguments import (
     BadInputError,
     Count,
@@ -25,33 +26,27 @@ from studies.kit.arguments import (
 from studies.kit.journal import Row
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.tables import read_table, write_table
+from studies.measures.words import listed, out_of
 from studies.versions import STUDY
-from studies.versions.asked import Asked, ask, is_made
 from studies.versions.cases import jobs_of
 from studies.versions.releases import (
     INSTALLED,
-    MINOR,
+    Asked,
     Release,
+    ask,
     check_releases,
     chosen,
     installed,
-    places_of,
-    room_mib,
 )
-from studies.versions.report import headline, pictures, report
-from studies.versions.tables import releases_table
-
-MOST_MIB = 2048.0
-"""An engine whose releases take more room than this [MiB] is asked only if it is named."""
-
-__all__ = ["command", "headline", "pictures", "report"]
+from studies.versions.tables import CHANGED, answered, changes_table, is_changed, releases_table
 
 
 def command(
     *,
     out: Place,
     engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
-    releases: Annotated[tuple[str, ...], several] = (MINOR,),
+    releases: Annotated[tuple[str, ...], several] = (INSTALLED,),
     quick: bool = False,
     environments: Place | None = None,
     jobs: Count | None = None,
@@ -59,19 +54,18 @@ def command(
 ) -> int:
     """Ask the releases of each engine the same cases, each in an environment of its own.
 
-    The release that is installed is always among them. What is to be fetched is said before it
-    is. Without a network those of which there is an environment can still be named.
+    The release that is installed is always among them. The others are fetched. Without a network
+    those of which there is an environment can still be named.
 
     Parameters
     ----------
     out
         Folder for the results, with one inside for each release; made if there is none.
     engines
-        Names of engines, without a preset; by default all that are installed and take no more
-        than 2 GiB to fetch.
+        Names of engines, without a preset; by default all that are installed.
     releases
-        "minor": the last one of each minor number; "all"; "installed"; or some by name, as in
-        mujoco==3.2.7.
+        "installed", by default; "minor": the last one of each minor number; "all"; or some by name,
+        as in mujoco==3.2.7.
     quick
         A tenth of the cases.
     environments
@@ -81,7 +75,7 @@ def command(
     time_limit
         Wall-clock time [s] after which a case is given up.
     """
-    named, engines = engines is not None, installed_engines() if engines is None else engines
+    engines = installed_engines() if engines is None else engines
     check_engines(engines)
     if missing := [name for name in engines if name not in installed_engines()]:
         raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
@@ -94,18 +88,13 @@ def command(
     options = (*limits, *(("--quick",) if quick else ()))
     environments = environments or out / "environments"
     found = {engine: chosen(engine, releases) for engine in engines}
-    wanted, notes = _affordable(
-        {engine: some for engine, (some, _) in found.items()}, environments, named
-    )
-    if not wanted:
-        raise BadInputError(f"--engines is not given, and nothing is asked; {'; '.join(notes)}")
+    wanted = [release for some, _ in found.values() for release in some]
 
     def tabulate(_: object) -> Tables:
-        print(*notes, sep="\n", end="\n" * bool(notes), file=sys.stderr, flush=True)
-        each = tqdm([one for some in wanted.values() for one in some], disable=None, unit="release")
+        each = tqdm(wanted, disable=None, unit="release")
         return {"releases": releases_table([ask(one, out, environments, options) for one in each])}
 
-    growing = {"engine": list(wanted), "release": releases}
+    growing = {"engine": engines, "release": releases}
     plan = Plan(settings={"quick": quick}, growing=growing, tabulate=tabulate)
     code = carry_out(STUDY, plan, out, running, report)
     unlisted = [problem for _, problem in found.values() if problem]
@@ -133,18 +122,61 @@ def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
     return {"answers": answers, "releases": releases_table(asked)}
 
 
-def _affordable(
-    wanted: Mapping[str, Sequence[Release]], environments: Path, named: bool
-) -> tuple[dict[str, Sequence[Release]], list[str]]:
-    """Leave out engines that take too much, unless they are named; say what is to be fetched."""
-    kept, notes = {}, []
-    for engine, releases in wanted.items():
-        new = [one for one in releases if not (one.here or is_made(environments / one.folder))]
-        room = len(new) * room_mib(places_of(ENGINES[engine].library))
-        fetched = f"{len(new)} releases of {engine}, about {room:.0f} MiB"
-        if named or room <= MOST_MIB:
-            kept[engine] = releases
-            notes += [f"to fetch: {fetched}"] if new else []
-        else:
-            notes.append(f"left out: {fetched}; --engines {engine} asks them")
-    return kept, notes
+SHOWN = [
+    *("engine", "release", "source", "set", "cases", "failed", "right"),
+    *("median_error", "p90_error", "max_error", "moved", "turned", "message"),
+]
+
+
+def report(folder: Path) -> str:
+    """Write what changed beside a folder's releases.csv, draw both; return them as text."""
+    lines = read(folder, "releases")
+    write_table(folder / "changes.csv", changes_table(lines))
+    other = lines["moved"].isna() | is_changed(lines)
+    tables = {
+        f"Answers that moved by more than {CHANGED:g}, or turned into another outcome": (
+            read(folder, "changes")
+        ),
+        "Errors of the peak, relative, over cases that both survive, of the first release and of "
+        "those that do not answer as the one before": lines.loc[other, SHOWN],
+    }
+    return tell(folder, pictures(folder), headline(folder), tables)
+
+
+def read(folder: Path, name: str) -> pd.DataFrame:
+    """Read a table back, with empty words as such."""
+    words = ("release", "before", "source", "set", "note", "link")
+    return read_table(folder / f"{name}.csv", *words)
+
+
+def headline(folder: Path) -> str:
+    """Say between how many releases of each engine the answers changed."""
+    return first_claim(read(folder, "releases"), read(folder, "changes"))
+
+
+def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
+    """Say between which releases of which engines an answer moved, and between which none did."""
+    moved, still = [], []
+    for engine, mine in answered(lines).groupby("engine", sort=False):
+        releases = mine["release"].unique()
+        times = len(changes[changes["engine"] == engine])
+        name = f"{engine} ({releases[0]} to {releases[-1]}"
+        if times:
+            moved.append(f"{name}, at {out_of(times, len(releases) - 1)} steps)")
+        elif len(releases) > 1:
+            still.append(f"{name})")
+    if not (moved or still):
+        return "Of each engine one release was asked."
+    bound, words = f"by more than {CHANGED:g}", []
+    if still:
+        words.append(f"no answer moves {bound} in {listed(still)}")
+    if moved:
+        words.append(f"{'some do' if still else f'answers move {bound}'} in {listed(moved)}")
+    return f"From one release to the next {'; '.join(words)}."
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw errors by release from a folder's releases.csv and changes.csv alone."""
+    from studies.versions.figure import draw_versions
+
+    return {"versions": draw_versions(read(folder, "releases"), read(folder, "changes"))}

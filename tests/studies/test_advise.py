@@ -15,13 +15,23 @@ from engines.declaration import AT_REST
 from studies.__main__ import run
 from studies.advise import study
 from studies.advise.choice import TARGETS, advice, cheapest
-from studies.advise.evidence import TABLES, aspects, declared_step, published_engines, settings
+from studies.advise.evidence import (
+    RANDOM,
+    TABLES,
+    aspects,
+    counted,
+    declared_step,
+    judged,
+    published_engines,
+    random_runs,
+    settings,
+)
 from studies.advise.steps import off, worth_trying
-from studies.advise.tried import RANDOM, counted, judged, random_runs
 from studies.advise.words import literal
 from studies.cases.drawn import draw
 from studies.kit.digests import seal
 from studies.kit.journal import PROVENANCE
+from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
@@ -36,7 +46,7 @@ def known():
 
 
 def test_the_published_advice_follows_from_the_published_tables():
-    kept = study.read(PUBLISHED / "advice")
+    kept = table_in(PUBLISHED / "advice", "advice")
     engines = tuple(kept["engine"].unique())
     today = advice(PUBLISHED, engines, TARGETS, BLOCK)
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-12)

@@ -10,9 +10,9 @@ import pytest
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
-from studies.contact import claims as contact
+from studies.contact import report as contact
 from studies.contact.report import recommendation
-from studies.ensemble import report as ensemble
+from studies.ensemble import study as ensemble
 from studies.histories.study import CLAIMS
 from studies.measures.claims import (
     Claim,
@@ -25,10 +25,10 @@ from studies.overturning import report as overturning
 from studies.overturning.areas import with_verdicts
 from studies.precision import report as precision
 from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
-from studies.stability import findings as stability
+from studies.stability import report as stability
 from studies.stability.report import mended, peers
 from studies.validate import claims as validate
-from studies.validity import report as validity
+from studies.validity import study as validity
 
 
 def work(method, value, kind, median, largest, wall_s):

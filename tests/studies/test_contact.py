@@ -20,8 +20,7 @@ from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.run.drive import build, run
 from engines.run.look import Look
-from studies.contact.claims import prices, rules
-from studies.contact.report import recommendation, report, variant_table
+from studies.contact.report import prices, recommendation, report, rules, variant_table
 from studies.contact.study import (
     QUICK_ASPECTS,
     all_variants,

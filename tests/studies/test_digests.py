@@ -11,8 +11,7 @@ import pytest
 from commanding import CASE, refused
 
 from studies.__main__ import run
-from studies.advise.evidence import TABLES
-from studies.advise.tried import RANDOM
+from studies.advise.evidence import RANDOM, TABLES
 from studies.catalogue import CHAPTERS
 from studies.kit.digests import digest, seal
 from studies.kit.journal import seal as sealed_line

@@ -17,7 +17,7 @@ from studies.kit.plan import Plan, fill
 from studies.kit.study import Study
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
-STUDY = Study(name="made-up", module="studies.sweep.study", help="", products=("made-up.csv",))
+STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 SOURCES = ("exact", "pymunk", "box2d")
 
 

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from scipy.stats import CensoredData, binomtest, lognorm, norm
 
 from analytic import Outcome, Record, RigidBlock, simulate
@@ -27,8 +28,7 @@ from studies.ensemble.fragility import (
     fragilities,
     share_bounds,
 )
-from studies.ensemble.report import curves, first_claim, stripes
-from studies.ensemble.study import drawn, ensemble_jobs, recorded
+from studies.ensemble.study import curves, drawn, ensemble_jobs, first_claim, recorded, stripes
 from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
@@ -345,10 +345,7 @@ def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
     path = tmp_path / "still.csv"
     path.write_text("# units: g\n0 0\n0.1 0\n0.2 0\n")
     given = [str(path) if option == "FILE" else option for option in options]
-    assert run(["ensemble", "--out", str(tmp_path / "out"), *given]) == 2
-    errors = capsys.readouterr().err
-    assert len(errors.splitlines()) == 1
-    assert words in errors
+    refused(capsys, ["ensemble", "--out", tmp_path / "out", *given], words)
     assert not (tmp_path / "out").exists()
 
 

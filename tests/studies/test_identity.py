@@ -96,7 +96,7 @@ def test_a_run_that_is_taken_up_computes_again_what_an_edit_made_stale(
     monkeypatch.setattr(plan, "Makers", partial(Makers, root=copy))
     names = ("exact", "pymunk", "box2d")
     jobs = [replace(job(name), labels={"case": n}) for name in names for n in range(4)]
-    study = Study(name="made-up", module="", help="", products=("made-up.csv",))
+    study = Study(name="made-up", module="", help="", tables=("made-up.csv",))
 
     def go_on():
         read.cache_clear()
@@ -152,7 +152,7 @@ EDITS = {
         {"box2d"},
     ),
     "another study": ("studies/restitution/strike.py", "return ", "return 1 + ", set()),
-    "words": ("studies/sweep/claims.py", "return ", "return 1 + ", set()),
+    "words": ("studies/measures/words.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
     "the command line": ("studies/kit/arguments.py", "return ", "return 1 + ", set()),

@@ -6,14 +6,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import MODELS, Outcome, peak_ratios, simulate
 from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
 from studies.cases.window import AXES, LIMITS, Window
+from studies.kit.tables import table_in
 from studies.measures.published import PUBLISHED
-from studies.overturning.areas import modes_at, read, window_of
+from studies.overturning.areas import modes_at, window_of
 from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
@@ -150,13 +152,13 @@ def test_checks_hold():
 
 def test_what_is_told_is_counted_from_the_published_tables():
     folder = PUBLISHED / "overturning"
-    areas, boundaries = read(folder, "map"), read(folder, "boundaries")
+    areas, boundaries = table_in(folder, "map"), table_in(folder, "boundaries")
     parts = modes(areas, window_of(folder)).set_index("model")
     np.testing.assert_allclose(parts.sum(axis=1), 1.0, rtol=1e-12)
     told = edges(boundaries, ["exact"]).iloc[0]
     assert told["edges"] == told[["grid", "mode", "margin"]].sum()
     assert told["edges"] == (boundaries["model"] == "exact").sum()
-    cases, thresholds = read(folder, "edges"), read(folder, "thresholds")
+    cases, thresholds = table_in(folder, "edges"), table_in(folder, "thresholds")
     beside = beside_edges(cases).set_index("source")
     mine = cases[(cases["source"] == "dart:naive") & (cases["offset"].abs() == 1e-3)]
     rises = mine["overturns"].eq("above") == mine["offset"].gt(0.0)
@@ -165,10 +167,10 @@ def test_what_is_told_is_counted_from_the_published_tables():
     own = thresholds.loc[thresholds["source"] == "dart:naive", "shift"]
     assert (found["asked"], found["found"]) == (len(own), own.notna().sum())
     assert found["largest"] == own.abs().max()
-    assert apart(read(folder, "checks"))["thresholds"].tolist() == [24, 4, 1]
+    assert apart(table_in(folder, "checks"))["thresholds"].tolist() == [24, 4, 1]
     pd.testing.assert_frame_equal(
-        differences(areas, read(folder, "engines"), window_of(folder)),
-        read(folder, "differences"),
+        differences(areas, table_in(folder, "engines"), window_of(folder)),
+        table_in(folder, "differences"),
         check_dtype=False,
     )
 
@@ -207,7 +209,7 @@ def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
     assert "housner" in first
     assert run(arguments) == 0
     assert capsys.readouterr().out == first
-    table = read(tmp_path, "boundaries")
+    table = table_in(tmp_path, "boundaries")
     assert set(table["model"]) == {"exact", "housner"}
     assert run(["redraw", str(tmp_path)]) == 0
     for name in capsys.readouterr().out.splitlines():
@@ -230,7 +232,7 @@ def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):
 def test_a_map_on_which_nothing_overturns(window, tmp_path, capsys):
     arguments = ["overturning", "--out", str(tmp_path), "--columns", "6", "--rows", "12", *window]
     assert run([*arguments, "--quick", "--sources", "exact", "housner"]) == 0
-    found = edges(read(tmp_path, "boundaries"), ["exact", "housner"])
+    found = edges(table_in(tmp_path, "boundaries"), ["exact", "housner"])
     assert found[["model", "edges"]].to_numpy().tolist() == [["exact", 0], ["housner", 0]]
     assert "Edges of each model" in capsys.readouterr().out
     assert (tmp_path / "map.png").exists()
@@ -266,10 +268,10 @@ def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     arguments += ["--sources", "exact", *core_sources()]
     assert run([*arguments, "--quick"]) == 0
     capsys.readouterr()
-    edges = read(tmp_path, "edges")
+    edges = table_in(tmp_path, "edges")
     expected = (edges["offset"] > 0.0) == (edges["overturns"] == "above")
     assert ((edges["outcome"] == "overturned") == expected)[edges["offset"].abs() >= 1e-3].all()
-    assert read(tmp_path, "thresholds")["shift"].abs().max() < 1e-3
+    assert table_in(tmp_path, "thresholds")["shift"].abs().max() < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -299,11 +301,7 @@ def test_engines_agree_a_thousandth_from_an_edge(tmp_path, capsys):
     ],
 )
 def test_bad_input_is_one_line(extra, named, allowed, tmp_path, capsys):
-    assert run(["overturning", "--out", str(tmp_path / "new"), *extra]) == 2
-    error = capsys.readouterr().err
-    assert len(error.splitlines()) == 1
-    assert named in error
-    assert allowed in error
+    refused(capsys, ["overturning", "--out", tmp_path / "new", *extra], named, allowed)
     assert not (tmp_path / "new").exists()
 
 

@@ -24,16 +24,15 @@ from studies.histories import study as histories
 from studies.kit import provenance
 from studies.kit.jobs import Job
 from studies.kit.journal import FolderError
-from studies.kit.options import DEFAULT_RUNNING
+from studies.kit.options import DEFAULT_RUNNING, PatientRunning
 from studies.kit.plan import Plan, by_label, carry_out, fill
 from studies.kit.study import Study
 from studies.kit.tables import write_table
 from studies.sources.registry import SOURCES, UnknownSourceError, resolve
-from studies.stability.study import PatientRunning
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=2.0 * math.pi)
-STUDY = Study(name="made-up", module="studies.sweep.study", help="", products=("made-up.csv",))
+STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 
 
 def job(label, **more):

@@ -15,8 +15,8 @@ from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
 from studies.kit.tables import read_table
 from studies.page import facts, hero, readme
-from studies.page.markdown import table
-from studies.page.objections import objections
+from studies.page.engine_facts import objections
+from studies.page.facts import table
 
 ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / readme.PUBLISHED

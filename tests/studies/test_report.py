@@ -16,7 +16,7 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.block import GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.page import page, report
-from studies.page.engine_cases import AXES, engine_cases
+from studies.page.page import AXES, engine_cases
 from studies.sweep import study as sweep
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from scipy.integrate import solve_ivp
 
 from engines import ENGINES
@@ -143,9 +144,8 @@ def test_the_attributes_that_are_quoted_are_those_of_the_model_that_is_run(way):
 
 
 def test_an_engine_that_was_not_asked_is_refused(tmp_path, capsys):
-    assert run(["restitution", "--engines", "moreau", "--out", str(tmp_path / "a")]) == 2
-    told = capsys.readouterr().err
-    assert "--engines is 'moreau'; it must be one that was asked: pybullet, mujoco" in told
+    words = "--engines is 'moreau'; it must be one that was asked: pybullet, mujoco"
+    refused(capsys, ["restitution", "--engines", "moreau", "--out", tmp_path / "a"], words)
 
 
 @pytest.mark.parametrize("aspect", [1.5, 2.0, 6.0])

@@ -21,9 +21,8 @@ from studies.export.writing import Exported, files
 from studies.measures.formulas import by_step
 from studies.measures.published import PUBLISHED
 from studies.symptoms import study
-from studies.symptoms.lines import OWN, VARIANTS, lines_of
+from studies.symptoms.lines import HULL, MEASURED, OWN, SYMPTOMS, UNMOVED, VARIANTS, lines_of
 from studies.symptoms.patch import BLOCK, own_step_s, patch
-from studies.symptoms.seen import HULL, MEASURED, SYMPTOMS, UNMOVED
 
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 

@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import Outcome, RigidBlock, SinePulse, simulate
 from analytic.response import Reason, Response
 from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
-from studies.validity import report as validity
+from studies.validity import study as validity
 from studies.validity.cases import ValidityCase, grid, reference_map
 from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
 
@@ -151,8 +152,8 @@ def test_verdicts_are_counted_by_source_and_class():
 
 
 def test_the_command_refuses_what_cannot_slide(tmp_path, capsys):
-    assert run(["validity", "--out", str(tmp_path / "x"), "--sources", "exact"]) == 2
-    assert "--sources names 'exact'; it must name engines" in capsys.readouterr().err
+    words = "--sources names 'exact'; it must name engines"
+    refused(capsys, ["validity", "--out", tmp_path / "x", "--sources", "exact"], words)
 
 
 def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys, monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 
 from studies.measures import words
 from studies.measures.posed import Posed
-from studies.sweep import claims as sweep
+from studies.sweep import study as sweep
 
 
 @pytest.mark.parametrize(

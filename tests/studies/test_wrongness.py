@@ -19,7 +19,7 @@ from studies.measures.wrongness import (
     kinds_of,
     wrong_in,
 )
-from studies.sweep import claims as sweep
+from studies.sweep import study as sweep
 
 REST_WORD, ROCKED, OVER, _, FAILED = (outcome.value for outcome in Outcome)
 

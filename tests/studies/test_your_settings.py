@@ -11,7 +11,7 @@ from analytic import RigidBlock
 from studies import respond
 from studies.__main__ import run
 from studies.advise.evidence import published_engines
-from studies.advise.reverse import SETS, kept_errors
+from studies.advise.words import SETS, kept_errors
 from studies.cases.drawn import RandomCase
 from studies.measures.formulas import at_step
 from studies.measures.published import PUBLISHED
