@@ -37,9 +37,9 @@ REASONS = {
     "Interrupts": "KeyboardInterrupt",
     "Aborts": "the process was ended by signal SIGABRT",
     "Crashes": "the process was ended by signal SIGSEGV",
-    "Loops": "no result within the time limit of 2 s",
+    "Loops": "no result within the time limit of 6 s",
     "LeavesAChild": "the process ended by itself with exit code 5",
-    "Talks": "no result within the time limit of 2 s",
+    "Talks": "no result within the time limit of 6 s",
     "Fills": "MemoryError; a process may take 4 GB",
     "GoesBack": "ValueError: the engine says that it took -1 steps",
     "IsNowhere": "the engine's state is not finite",
@@ -84,7 +84,7 @@ def rows(tmp_path_factory):
         patch.setenv(hostile.NOTE, str(note))
         compile_look()
         found = []
-        for limit_s, endless in ((2.0, True), (PATIENCE_S, False)):
+        for limit_s, endless in ((6.0, True), (PATIENCE_S, False)):
             jobs = []
             for world in (*REASONS, *ANSWERING):
                 if ("time limit" in REASONS.get(world, "")) == endless:
@@ -137,7 +137,7 @@ LOADED = {
     "exits_at_once": ("import os; os._exit(0)", "ended by itself with exit code 0"),
     "interrupts": ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     "crashes": ("import ctypes; ctypes.string_at(0)", "ended by signal SIGSEGV"),
-    "loops": ("while True: pass", "not within 1 s"),
+    "loops": ("while True: pass", "not within 2 s"),
     "takes_little": ("def World(scene): pass", "it takes (scene), and what builds a world takes"),
     "not_there": ("import os; World = os.system", "neither a declaration nor what builds a world"),
 }
@@ -163,7 +163,7 @@ def announced(monkeypatch, tmp_path):
 def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, monkeypatch, capfd):
     source, words = LOADED[module]
     Path(f"{module}.py").write_text(source)
-    monkeypatch.setattr(loading, "LOADING_S", 1.0 if module == "loops" else PATIENCE_S)
+    monkeypatch.setattr(loading, "LOADING_S", 2.0 if module == "loops" else PATIENCE_S)
     line = refused(capfd, ["score", f"{module}:World", "--out", "out"], words)
     assert line.startswith(f"rocking: ENGINE: engine '{module}:World' ")
     assert not Path("out").exists()
