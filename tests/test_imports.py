@@ -37,34 +37,42 @@ EACH = (*SCIENCE.split(), *LIBRARIES.split())
 ONE = "compare --width 0.5 --height 1.5 --amplitude 0.4 --omega 6.2832 --json --sources"
 
 
-def told_by(*arguments):
-    """Return what a command loads in its own process."""
-    code = (
-        "import sys, json; from studies.__main__ import run; run(sys.argv[1:]);"
-        "print(); print(json.dumps([*sys.modules]))"
-    )
-    asked = [sys.executable, "-c", code, *arguments]
+ANSWERING = (
+    "import sys, json; from studies.__main__ import run; seen = set(sys.modules)\n"
+    "for arguments in json.loads(sys.argv[1]):\n"
+    "    run(arguments); print('\\nLOADED', json.dumps([*(set(sys.modules) - seen)]))\n"
+    "    seen |= set(sys.modules)"
+)
+"""Commands one after the other, and after each what it was the first to load."""
+
+
+def told_by(*commands):
+    """Return what each command loads beside what those before it did, in one process."""
+    asked = [sys.executable, "-c", ANSWERING, json.dumps(commands)]
     done = subprocess.run(asked, capture_output=True, text=True, check=True)
-    return set(json.loads(done.stdout.splitlines()[-1]))
+    lists = re.findall("^LOADED (.*)$", done.stdout, re.MULTILINE)
+    names = (words[0] for words in commands)
+    return {name: set(json.loads(text)) for name, text in zip(names, lists, strict=True)}
 
 
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["--help"],
         [*ONE.split(), "exact", "housner", "modified"],
         [*ONE.split(), "exact", "mujoco:fixed"],
     ],
-    ids=["help", "models", "engine"],
+    ids=["models", "engine"],
 )
 def test_an_answer_at_once_loads_nothing_that_it_does_not_need(arguments):
     """An engine's library is loaded in a process of the engine's own."""
-    assert not told_by(*arguments) & set(EACH)
+    assert not told_by(arguments)["compare"] & set(EACH)
 
 
-@pytest.mark.parametrize("command", [study.name for study in COMMANDS])
-def test_help_loads_no_table_and_no_plot(command):
-    assert not told_by(command, "--help") & set(EACH)
+def test_no_help_loads_a_table_a_plot_or_an_engine():
+    """Neither that of all commands, which comes first, nor that of each."""
+    told = told_by(["--help"], *([study.name, "--help"] for study in COMMANDS))
+    assert {name: loaded & set(EACH) for name, loaded in told.items() if loaded & set(EACH)} == {}
+    assert {study.module for study in COMMANDS} <= set().union(*told.values())
 
 
 def test_a_run_of_an_engine_loads_its_library_alone():

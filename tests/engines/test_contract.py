@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from known import Bare
 from scipy.integrate import solve_ivp
-from uses import BLOCK, HERE, SHAKEN, error, every_use, pulse, rocked, scene
+from uses import BLOCK, HERE, SHAKEN, WITH_BULLET, error, every_use, pulse, rocked, scene
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason
@@ -150,6 +150,7 @@ def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
     assert response.reason is Reason.SLID
 
 
+@WITH_BULLET
 def test_faults_are_asked_while_a_run_goes_on(monkeypatch):
     """A setting that was not taken ends a run long before its hour of rest is over."""
     monkeypatch.setattr(BulletWorld, "fault", lambda self: "the moon is full")
@@ -182,6 +183,7 @@ SINGLE = {"precision": Precision.SINGLE, "shortest_step": 1e-6}
 DOUBLE = {"precision": Precision.DOUBLE, "shortest_step": 1e-12}
 
 
+@WITH_BULLET
 def test_single_precision_is_judged_by_what_it_tells_apart(monkeypatch):
     """A block at rest, whose corners are 6e-8 of its height off in single precision."""
     at_rest = []
@@ -191,6 +193,7 @@ def test_single_precision_is_judged_by_what_it_tells_apart(monkeypatch):
     assert at_rest == [False, True]
 
 
+@WITH_BULLET
 def test_single_precision_rocks(monkeypatch):
     """Rotations rounded to 6e-8 of themselves, heights to 6e-8 of the block's: an impact is seen
     1e-7 of a width too early or late."""

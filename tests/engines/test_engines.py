@@ -15,6 +15,7 @@ from declared import equal_to
 from known import Bare
 from uses import (
     BLOCK,
+    CORE,
     FIXED,
     HERE,
     MIRRORED,
@@ -38,7 +39,7 @@ from uses import (
 from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome, Reason
-from engines import ENGINES, FRAMES, Scene, core_engines
+from engines import ENGINES, FRAMES, Scene
 from engines.declaration import UNTUNED, Stepping
 from engines.run.drive import LAG, build, run, simulate_world
 from engines.world import Pose
@@ -165,7 +166,7 @@ def test_first_order(engine):
     assert 0.6 < math.log(coarse / fine, 4.0) < 1.6
 
 
-@pytest.mark.parametrize("engine", core_engines())
+@pytest.mark.parametrize("engine", CORE)
 def test_naive_is_worse_than_fixed(engine):
     motions = [pulse(1.3, omega, 2) for omega in (2.5, 3.0, 3.5, 4.0)]
     naive, fixed = (
@@ -357,7 +358,7 @@ def test_a_preset_that_there_is_not_is_refused(engine):
 def test_an_engine_or_geometry_that_there_is_not_is_refused():
     with pytest.raises(ValueError, match="engine is 'ode'; it must be one of pybullet, mujoco"):
         rocked("ode")
-    for engine in core_engines():
+    for engine in CORE:
         with pytest.raises(ValueError, match="geometry is 'ball'; it must be one of box, corners"):
             rocked(engine, settings={"geometry": "ball"})
 

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 from declared import equal_to
-from uses import BLOCK, HERE, SHAKEN, error, errors_of_sweep, pulse, rocked
+from uses import BLOCK, CORE, HERE, SHAKEN, error, errors_of_sweep, pulse, rocked
 
 from analytic import conditioning, simulate
 from analytic.block import RigidBlock
@@ -68,7 +68,7 @@ def test_what_landing_is_helped_by_matters(engine, left_out, times):
     assert max(errors_of_sweep(engine, 96, settings=left_out)) > times * max(some_errors(engine))
 
 
-@pytest.fixture(params=core_engines())
+@pytest.fixture(params=CORE)
 def engine(request):
     return str(request.param)
 

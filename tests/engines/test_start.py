@@ -11,6 +11,7 @@ import pytest
 from declared import rounding
 from uses import (
     BLOCK,
+    CORE,
     HERE,
     LANDING,
     band,
@@ -26,7 +27,6 @@ from analytic import RigidBlock, simulate
 from analytic.criteria import free_amplitude, frictionless_fall, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome, Reason
-from engines import core_engines
 
 STILL = Still()
 TILT = 0.4 * BLOCK.alpha
@@ -107,7 +107,7 @@ def test_equal_steps(engine):
     assert times[1] - times[0] == pytest.approx(swing, rel=1e-2)
 
 
-@pytest.mark.parametrize("engine", core_engines())
+@pytest.mark.parametrize("engine", CORE)
 def test_steps_are_of_second_order_from_the_first_on(engine):
     """A first step with the wrong inertia, or a whole kick, would leave an error of first order."""
     exact = quarter_period(BLOCK, TILT)
@@ -152,7 +152,7 @@ def test_lifted_at_once(engine, preset, frame, side):
     assert found.uplifts[0] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("engine", core_engines())
+@pytest.mark.parametrize("engine", CORE)
 def test_lifted_at_once_is_of_second_order(engine):
     """Steps of a fifth: an error of first order would keep a fifth."""
     exact = simulate(BLOCK, COSINE[1.0]).peak_ratio
@@ -187,7 +187,7 @@ def test_a_balanced_block_may_be_shaken():
     """It falls to the side from which the base is moved away, as the exact solution does."""
     motion = SinePulse(amplitude=1.0, omega=10.0)
     exact = simulate(BLOCK, motion, start=BALANCED)
-    for engine in core_engines():
+    for engine in CORE:
         assert rocked(engine, motion, start=BALANCED).outcome is exact.outcome
 
 

@@ -16,6 +16,8 @@ from studies.cases.paper import sweep_cases
 SHAKEN = pulse(1.3, 3.0, 2)
 """A pulse under which the block is struck once before its peak."""
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
+CORE = [name for name in core_engines() if name in HERE]
+WITH_BULLET = pytest.mark.skipif("pybullet" not in HERE, reason="it has no wheel for this Python")
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
 FIXED = [name for name, preset in USES if preset == "fixed"]

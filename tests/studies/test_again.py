@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 
 import pytest
-import quickjs
 
 from analytic import RigidBlock, SinePulse
 from analytic.motion import Delayed
@@ -72,7 +71,7 @@ def test_a_start_is_asked_in_the_units_of_the_command_line():
 
 @pytest.mark.parametrize("source", ["exact", "mujoco", "mujoco:naive"])
 def test_the_page_has_the_same_words(source):
-    script = quickjs.Context()
+    script = pytest.importorskip("quickjs").Context()
     script.eval(Path(page.__file__).with_name("rocking.js").read_text(encoding="utf-8"))
     values = f"0.5, 3, 2, 0.4, 6.2832, '{source}', {str(written_out(source)).lower()}"
     found = json.loads(script.eval(f"JSON.stringify(commands({values}))"))

@@ -6,6 +6,7 @@ import os
 import signal
 import warnings
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 from commanding import BLOCK, CASE
@@ -19,6 +20,7 @@ from studies.kit.app import make_app
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
 from studies.page import report
+from studies.versions import releases
 
 BACKSTOP_S = 600
 """Ends a test that hangs; nothing is expected within it."""
@@ -40,6 +42,13 @@ BEGINNINGS = {
     "readme": [()],
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
+FEW = {
+    "estimate": ("--cases", "1", "--tests", "1"),
+    "steps": ("--cases", "1"),
+    "sweep": ("--figure", "6"),
+    "validate": ("--cases", "1"),
+}
+"""What makes little work of those that do: thousands of jobs are made before a folder is opened."""
 ODD_WORDS = """
 0 1 2 -1 -5 1.5 1,5 1_000 ١٢ +3 0x10 1e5 1e-7 5e-324 1e-308 1e308 -1e308 1e400 1000000000 1000000001
 9223372036854775808 18446744073709551616 inf -inf nan NaN -0.0 - -- --- --= = --help -h --version
@@ -84,6 +93,8 @@ def place(tmp_path_factory):
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
         patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
+        # as where there is no network, and without a process for each engine
+        patch.setattr(releases, "pip", lambda *words: CompletedProcess(words, 1, "", "ERROR: no"))
         yield folder
     assert Path.cwd() == kept
 
@@ -141,7 +152,7 @@ def check(arguments):
 
 def beginnings(name):
     quick = ("--quick",) if "--quick" in OPTIONS[name] else ()
-    return BEGINNINGS.get(name, [("--out", "FOLDER", *quick)])
+    return BEGINNINGS.get(name, [("--out", "FOLDER", *quick, *FEW.get(name, ()))])
 
 
 def with_words(name, beginning, words):

@@ -187,6 +187,7 @@ def test_a_killed_scheduler_loses_nothing_and_is_one_line(tmp_path, monkeypatch)
     assert len(keys) == len(set(keys)) == 240
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_terminated_soon_ends_with_all_it_started(tmp_path, monkeypatch):
     monkeypatch.setitem(SOURCES, "lasts", Source("engine", lasts))
     note = tmp_path / "note"

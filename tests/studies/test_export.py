@@ -1,6 +1,7 @@
 """Exported scenes: they run without this project, and find the peak that it finds."""
 
 import math
+import re
 import resource
 import subprocess
 import sys
@@ -30,11 +31,23 @@ USES = [
     for use in ENGINES[name].presets
     if use.stepping is Stepping.FIXED
 ]
-ALONE = (
-    "import runpy, sys; sys.modules.update(analytic=None, engines=None, studies=None);"
-    "runpy.run_path(sys.argv[1])"
-)
-"""A script is run where this project cannot be imported."""
+FIRST = [use for n, use in enumerate(USES) if use[0] not in dict(USES[:n])]
+"""A preset of each engine."""
+ONE_EACH = [pytest.param(*use, marks=[] if use in FIRST else pytest.mark.slow) for use in USES]
+"""Each preset, quickly where it is the first, for what depends on the engine alone."""
+ALONE = """
+import importlib, os, runpy, sys
+sys.modules.update(analytic=None, engines=None, studies=None)
+importlib.import_module(sys.argv[1])
+for script in sys.argv[2:]:
+    sys.stdout.flush()
+    child = os.fork()
+    if not child:
+        runpy.run_path(script)
+    if os.waitpid(child, 0)[1]:
+        sys.exit(1)
+"""
+"""Scripts are run where this project cannot be imported, each in a process that has its library."""
 
 
 def scene(motion, preset, **options):
@@ -54,9 +67,10 @@ def written(folder, engine, what, expected):
         (folder / name).write_text(text)
 
 
-def run_alone(folder, from_folder="/"):
-    command = [sys.executable, "-c", ALONE, str(folder / "block.py")]
-    return subprocess.run(command, cwd=from_folder, capture_output=True, text=True, timeout=600)
+def run_alone(engine, *folders):
+    scripts = (str(folder / "block.py") for folder in folders)
+    command = [sys.executable, "-c", ALONE, ENGINES[engine].library, *scripts]
+    return subprocess.run(command, cwd="/", capture_output=True, text=True, timeout=600)
 
 
 COSINE = SinePulse(amplitude=4.5, omega=6.0, half_cycles=2, phase=1.5)
@@ -70,18 +84,32 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize(("engine", "preset"), USES)
-def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, name, tmp_path):
-    motion, start = SCENES[name]
+WRITTEN = [
+    *((*use, tuple(SCENES) if use in FIRST else ("pulse",)) for use in USES),
+    *(
+        pytest.param(*use, tuple(SCENES)[1:], marks=pytest.mark.slow)
+        for use in USES
+        if use not in FIRST
+    ),
+]
+"""A pulse with each preset, and all scenes with the first of each engine; the others slowly."""
+
+
+@pytest.mark.parametrize(("engine", "preset", "scenes"), WRITTEN)
+def test_an_exported_scene_finds_the_same_peak_alone(engine, preset, scenes, tmp_path):
     step = {} if preset in UNTUNED else {"step": 2e-3}
-    asked = scene(motion, preset, start=start, **step)
-    row = run(engine, asked)
-    assert row.peak_ratio > 0.01
-    written(tmp_path, engine, asked, row.peak_ratio)
-    done = run_alone(tmp_path)
+    peaks = {}
+    for name in scenes:
+        motion, start = SCENES[name]
+        asked = scene(motion, preset, start=start, **step)
+        peaks[name] = run(engine, asked).peak_ratio
+        assert peaks[name] > 0.01
+        (tmp_path / name).mkdir()
+        written(tmp_path / name, engine, asked, peaks[name])
+    done = run_alone(engine, *(tmp_path / name for name in peaks))
     assert done.returncode == 0, done.stdout + done.stderr
-    assert f"largest rotation {row.peak_ratio:.12g}; " in done.stdout
+    found = re.findall(r"largest rotation (\S+); ", done.stdout)
+    assert found == [f"{peak:.12g}" for peak in peaks.values()]
 
 
 FLOORS = [
@@ -98,11 +126,11 @@ def test_a_script_moves_its_floor_in_every_way_that_carries(engine, floor, tmp_p
     row = run(engine, asked)
     assert row.peak_ratio > 0.01
     written(tmp_path, engine, asked, row.peak_ratio)
-    done = run_alone(tmp_path)
+    done = run_alone(engine, tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(("engine", "preset"), USES)
+@pytest.mark.parametrize(("engine", "preset"), ONE_EACH)
 def test_a_script_runs_from_any_folder_and_says_the_versions(engine, preset, tmp_path):
     asked = scene(PULSE, preset, **({} if preset in UNTUNED else {"step": 5e-3}))
     written(tmp_path, engine, asked, run(engine, asked).peak_ratio)
@@ -126,7 +154,7 @@ def test_a_script_runs_from_any_folder_and_says_the_versions(engine, preset, tmp
 def test_a_script_says_when_its_peak_is_another(engine, preset, tmp_path):
     asked = scene(PULSE, preset)
     written(tmp_path, engine, asked, run(engine, asked).peak_ratio * (1.0 + 1e-8))
-    done = run_alone(tmp_path)
+    done = run_alone(engine, tmp_path)
     assert done.returncode == 1
     assert "expected" in done.stdout
 
@@ -154,7 +182,7 @@ def test_the_command_writes_files_and_refuses_to_write_over_them(tmp_path, capsy
     assert rocking([*CALL, *SHAKEN, *out]) == 0
     text = capsys.readouterr().out
     assert "largest rotation to expect: 0.3" in text
-    assert run_alone(tmp_path / "scene").returncode == 0
+    assert run_alone(engine, tmp_path / "scene").returncode == 0
     assert rocking([*CALL, *SHAKEN, *out]) == 2
     assert "it must be a new or an empty folder" in capsys.readouterr().err
 

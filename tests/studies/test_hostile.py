@@ -137,7 +137,7 @@ LOADED = {
     "exits_at_once": ("import os; os._exit(0)", "ended by itself with exit code 0"),
     "interrupts": ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     "crashes": ("import ctypes; ctypes.string_at(0)", "ended by signal SIGSEGV"),
-    "loops": ("while True: pass", "not within 5 s"),
+    "loops": ("while True: pass", "not within 2 s"),
     "takes_little": ("def World(scene): pass", "it takes (scene), and what builds a world takes"),
     "not_there": ("import os; World = os.system", "neither a declaration nor what builds a world"),
 }
@@ -163,7 +163,7 @@ def announced(monkeypatch, tmp_path):
 def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, monkeypatch, capfd):
     source, words = LOADED[module]
     Path(f"{module}.py").write_text(source)
-    monkeypatch.setattr(loading, "LOADING_S", 5.0 if module == "loops" else PATIENCE_S)
+    monkeypatch.setattr(loading, "LOADING_S", 2.0 if module == "loops" else PATIENCE_S)
     line = refused(capfd, ["score", f"{module}:World", "--out", "out"], words)
     assert line.startswith(f"rocking: ENGINE: engine '{module}:World' ")
     assert not Path("out").exists()

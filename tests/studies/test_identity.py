@@ -25,8 +25,8 @@ from studies.sources.registry import Source
 from studies.stability import study as stability
 
 AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
-DEAR = ("overturning", "precision", "versions")
-"""Studies that take many seconds before their first row."""
+DEAR = ("harmonic", "overturning", "precision", "scenes", "versions")
+"""Studies that take many seconds before their first row, or for one of each source."""
 RESUMABLE = [
     pytest.param(study, chapter, id=chapter.folder, marks=[pytest.mark.slow] * (study.name in DEAR))
     for study, chapter in CHAPTERS

@@ -60,6 +60,12 @@ def whole_sweep(folder):
     raise SystemExit(run([*arguments, "--time-limit", "3600"]))
 
 
+def plain_sweep(folder):
+    """The same without its pictures."""
+    sweep.drawn = lambda *_: {}
+    whole_sweep(folder)
+
+
 def sweep_on_a_full_disk(folder):
     """The same where no file may grow beyond 20 kB."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
@@ -157,10 +163,10 @@ def keys_of(lines):
     return [unseal(line)["key"] for line in lines[HEAD:]]
 
 
-def finish(folder):
+def finish(folder, function=whole_sweep):
     """Run the sweep to its end; return what it says."""
     gate_of(folder).touch()
-    with start(folder) as process:
+    with start(folder, function) as process:
         output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, errors) == (0, "")
     return output
@@ -217,7 +223,7 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
     assert 30 <= len(finished) < HEAD + 240
     assert not (folder / "sweep.csv").exists()
     # there is room again
-    finish(folder)
+    finish(folder, plain_sweep)
     lines = lines_of(folder)
     assert lines[: len(finished)] == finished
     assert len(keys_of(lines)) == len(set(keys_of(lines))) == 240
@@ -225,7 +231,7 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
 
 def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
     folder = tmp_path / "out"
-    with start(folder) as first:
+    with start(folder, plain_sweep) as first:
         wait_at_the_gate(folder, first)
         with start(folder) as second:
             assert "in use by another run" in refusal_of(second)

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import quickjs
 
 from analytic import RigidBlock, SinePulse, simulate
 from studies.cases.paper import free_rocking_window
 from studies.page import page
 
+quickjs = pytest.importorskip("quickjs")  # it has no wheel for Python 3.13
 SCRIPT = Path(page.__file__).with_name("rocking.js").read_text(encoding="utf-8")
 # the truncation of 400 classical Runge-Kutta steps in a time 1/p, through a few impacts
 TOLERANCE = 1e-7
