@@ -46,6 +46,7 @@ from studies.kit.options import (
 from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
+    WHERE_IT_ROCKS,
     Excitation,
     Posed,
     Standing,
@@ -106,14 +107,13 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
-    if standing.scene == "slide":
+    if not standing.rocks:
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
-        given = {"tilt": excitation.tilt, "rate": excitation.rate, "plot": plot}
-        refuse_given({**given, "estimate": estimate or None}, "only where something rocks")
+        refuse_given({"plot": plot, "estimate": estimate or None}, WHERE_IT_ROCKS)
     check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
-    posed = excitation.pose(block)
+    posed = standing.pose(block, excitation)
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     window = _window(block, motion, duration)
