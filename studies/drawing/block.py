@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 
 from analytic.motion import FloatArray
+from engines.layouts import System, layout_of
 
 INK, SOFT, BLOCK, GROUND = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4"
 
@@ -23,6 +24,26 @@ def outline(width: float, height: float, theta: float) -> FloatArray:
     sine, cosine = math.sin(theta), math.cos(theta)
     turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]]) + pivot
     return turned
+
+
+def outlines(system: System, at: float) -> FloatArray:
+    """Return the corners of every body of a system, shape (bodies, 4, 2) [m].
+
+    Parameters
+    ----------
+    system : System
+        One of those in `engines.layouts.LAYOUTS`.
+    at : float
+        Its rotation [rad], or its place along the base [m] where nothing rocks.
+    """
+    corners = []
+    for body in layout_of(system, 1.0, None, (at, 0.0)).bodies:
+        x, z = 0.5 * body.width, 0.5 * body.height
+        sine, cosine = math.sin(body.at.theta), math.cos(body.at.theta)
+        box = np.array([[-x, -z], [x, -z], [x, z], [-x, z]])
+        turned = box @ np.array([[cosine, -sine], [sine, cosine]])
+        corners.append(turned + np.array([body.at.x, body.at.z]))
+    return np.array(corners)
 
 
 def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:

@@ -314,6 +314,11 @@ class Standing:
                 return SlidingBlock(width=width, height=height, friction=friction)
             return block
 
+    def refuse(self, allowed: str) -> None:
+        """Raise BadInputError if an option was given a value, which is allowed otherwise."""
+        scene = None if self.scene == ONE_BLOCK.scene else self.scene
+        refuse_given({"scene": scene, "columns": self.columns, "load": self.load}, allowed)
+
     @property
     def rocks(self) -> bool:
         """Whether it is told by a rotation, and may begin with one."""
