@@ -123,7 +123,8 @@ def test_another_scene_is_shown_and_an_engine_that_cannot_hold_it_is_named(
     assert run(["animate", *CASE, *options, *film]) == int(frame)
     told = capsys.readouterr().err
     assert ("failed: newton: not available: " in told) == frame
-    assert Image.open(tmp_path / "film.gif").n_frames > 10
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames > 10
 
 
 @pytest.mark.parametrize(
