@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
+from analytic import RigidBlock, simulate
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
@@ -55,7 +55,7 @@ from studies.kit.posing import (
 )
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.differences import conditioning_of_one
-from studies.measures.halving import halved, with_estimates
+from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
 
@@ -109,7 +109,7 @@ def command(
     """
     if not standing.rocks:
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
-        refuse_given({"plot": plot, "estimate": estimate or None}, WHERE_IT_ROCKS)
+        refuse_given({"plot": plot}, WHERE_IT_ROCKS)
     check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
@@ -229,7 +229,10 @@ def compare(
     if estimate:
         finer = [half for job in jobs if (half := halved(job)) is not None]
         halves = run_jobs(finer, executor=executor, reduce=_reduce)
-        rows = with_estimates(rows, halves, own_steps=effort.own and yours.dt is None)
+        unheld = "" if isinstance(block, RigidBlock) else OF_BLOCKS
+        unheld = OF_A_PEAK if isinstance(block, SlidingBlock) else unheld
+        own_steps = effort.own and yours.dt is None
+        rows = with_estimates(rows, halves, own_steps=own_steps, unheld=unheld)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
     said = (compared["exact"]["message"], slides(exact, yours.friction))

@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from engines.layouts import System
 from studies.cases.paper import free_rocking_window
@@ -53,7 +54,7 @@ def commands(
     """
     if missing := _without_option(block, motion, options):
         return f"no option asks for {missing}", ""
-    words = {"width": block.width, "height": block.height}
+    words = {**_scene_of(block), "width": block.width, "height": block.height}
     if isinstance(motion, SinePulse):
         words |= {"half-cycles": motion.half_cycles, "amplitude": _in_g(motion.amplitude)}
         words |= {"omega": motion.omega} | ({"phase": motion.phase} if motion.phase else {})
@@ -116,11 +117,26 @@ def worst_again(table: pd.DataFrame) -> pd.DataFrame:
 
 def _without_option(block: System, motion: Motion, options: Mapping[str, Any]) -> str:
     """Return what of a case the command line has no option for."""
-    if RigidBlock(width=block.width, height=block.height) != block:
+    size = {"width": block.width, "height": block.height}
+    if block not in (RigidBlock(**size), _framed(block, size)):
         return "such a body, or its restitution"
     if not isinstance(motion, SinePulse | Still):
         return "its motion of the base"
     return ", ".join(name for name in options if name not in FLAGS)
+
+
+def _framed(block: System, size: Mapping[str, float]) -> RockingFrame | None:
+    """Return the frame of such a size that a block is by the options of the command line."""
+    if not isinstance(block, RockingFrame):
+        return None
+    return RockingFrame(**size, columns=block.columns, load=block.load)
+
+
+def _scene_of(block: System) -> dict[str, Any]:
+    """Return the options that name a scene, none of one block."""
+    if not isinstance(block, RockingFrame):
+        return {}
+    return {"scene": "frame", "columns": block.columns, "load": block.load}
 
 
 def _in_g(amplitude: float) -> float:
