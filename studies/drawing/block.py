@@ -63,6 +63,26 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
     return drawing
 
 
+def draw_scene(system: System, at: float) -> Figure:
+    """Draw the bodies of a system at rest, dashed, and where they are: see `outlines`."""
+    rest, moved = outlines(system, 0.0), outlines(system, at)
+    every = np.concatenate((rest, moved))
+    (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
+    spare = 0.12 * max(right - left, top)
+    drawing = Figure(figsize=(4.4, 0.3 + 4.4 * (top + 2.0 * spare) / (right - left + 2.0 * spare)),
+                     layout="constrained")  # fmt: skip
+    axes = drawing.subplots()
+    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare), aspect="equal")
+    axes.set_axis_off()
+    ground = (left - spare, -0.5 * spare), right - left + 2.0 * spare, 0.5 * spare
+    axes.add_patch(Rectangle(*ground, color=GROUND, linewidth=0))
+    for corners in moved:
+        axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
+    for corners in rest:
+        axes.add_patch(Polygon(corners, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
+    return drawing
+
+
 def _dimensions(axes: Axes, corners: FloatArray) -> None:
     """Name B along the block's foot and H along the side away from its pivot."""
     pivot, foot, far, _ = corners

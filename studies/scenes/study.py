@@ -20,12 +20,16 @@ from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
+from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
 from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
+from studies.scenes.told import again, drawings, shown
 from studies.sources.groups import core_sources
+
+__all__ = ["again", "command", "headline", "pictures", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
@@ -223,6 +227,9 @@ TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
     tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
+    worst = again(folder).groupby("scene", sort=False)
+    asked = {f"{WORST_AGAIN}: {name}": worst_again(lines) for name, lines in worst}
+    tables |= {**shown(folder), **asked}
     return tell(folder, pictures(folder), headline(folder), tables)
 
 
@@ -240,9 +247,10 @@ def headline(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw what there is of frames, slides and floors, from their summaries alone."""
+    """Draw the scenes, and what there is of frames, slides and floors, from the tables alone."""
     from studies.scenes.figure import draw_floors, draw_frames, draw_slides
 
     drawn = zip(("frame", "slide", "floor"), (draw_frames, draw_slides, draw_floors), strict=True)
     found = zip(drawn, engines_in(folder), strict=False)
-    return {name: draw(lines) for (name, draw), lines in found if not lines.empty}
+    bars = {name: draw(lines) for (name, draw), lines in found if not lines.empty}
+    return {**drawings(folder), **bars}
