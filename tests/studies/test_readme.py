@@ -70,12 +70,12 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     (newton,) = (line for line in facts.scenes(copy).splitlines() if "Newton" in line)
     assert " | – | " in newton
     path = copy / "scenes" / "frame.csv"
-    rows = pd.read_csv(path)
+    rows = read_table(path)
     mine = rows["source"] == "drake:naive"
     rows.loc[mine, "error"] = 0.25
     rows.loc[rows[mine].index[:3], "outcome"] = "overturned"
     rows.loc[rows[mine].index[:3], "error"] = float("nan")
-    rows.to_csv(path, index=False)
+    rows.to_csv(path, index=False, na_rep="nan")
     (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
     assert "25 % (3 wrong) → 9.4e-05" in drake
     shutil.rmtree(copy / "scenes")
