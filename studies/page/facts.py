@@ -209,7 +209,7 @@ def scenes(published: Path) -> str:
     held: list[tuple[str, pd.DataFrame, Callable[[float], str]]] = [("a block", block, part)]
     if (published / "scenes" / "provenance.json").is_file():
         held += [
-            (known.title, lines_of(published / "scenes", name), known.words)
+            (known.title, lines_of(published / "scenes" / f"{name}.csv", name), known.words)
             for name, known in SCENES.items()
         ]
     heads = [f"{title}, {lines['cases'].max()} cases" for title, lines, _ in held]

@@ -62,8 +62,15 @@ SCENES = {
 """Scenes that have a section of their own, by name."""
 
 
-def lines_of(folder: Path, name: str) -> pd.DataFrame:
+def lines_of(path: Path, name: str) -> pd.DataFrame:
     """Return a line for each engine and preset that was asked about a scene.
+
+    Parameters
+    ----------
+    path : Path
+        The scene's table.
+    name : str
+        Of the scene.
 
     Returns
     -------
@@ -71,7 +78,7 @@ def lines_of(folder: Path, name: str) -> pd.DataFrame:
         source, cases, how many are wrong by kind, median_error and largest_error, in the unit of
         the scene's error, and ms: the mean time of a case.
     """
-    rows, error = asked(folder, name), SCENES[name].error
+    rows, error = asked(path, name), SCENES[name].error
     lines = [
         {
             "source": source,
@@ -93,9 +100,9 @@ COLUMNS = (
 """Of `lines_of`."""
 
 
-def asked(folder: Path, name: str) -> pd.DataFrame:
+def asked(path: Path, name: str) -> pd.DataFrame:
     """Return the rows of a scene's engines, without those that are not built for it."""
-    rows = read_table(folder / f"{name}.csv")
+    rows = read_table(path)
     if rows.empty:
         return pd.DataFrame(columns=["source", SCENES[name].error, "wall_s"])
     return rows[rows["source"].map(is_engine) & (rows["reason"] != "UNAVAILABLE")]
@@ -118,7 +125,10 @@ def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:
 
 def shown(folder: Path) -> dict[str, pd.DataFrame]:
     """Return the lines of each scene's engines, by title."""
-    return {f"Engines on {told.title}": lines_of(folder, name) for name, told in SCENES.items()}
+    return {
+        f"Engines on {told.title}": lines_of(folder / f"{name}.csv", name)
+        for name, told in SCENES.items()
+    }
 
 
 def again(folder: Path) -> pd.DataFrame:
@@ -128,7 +138,7 @@ def again(folder: Path) -> pd.DataFrame:
     """
     worst = {}
     for name, told in SCENES.items():
-        rows = asked(folder, name)
+        rows = asked(folder / f"{name}.csv", name)
         wrong = kinds_in(rows, told.error) != "" if len(rows) else pd.Series(dtype=bool)
         size = rows[told.error].abs().where(~wrong, np.inf).groupby(rows["source"], sort=False)
         places = size.idxmax()
@@ -161,7 +171,7 @@ def drawings(folder: Path) -> Pictures:
 
     drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
     for name, told in SCENES.items():
-        if len(lines := lines_of(folder, name)):
+        if len(lines := lines_of(folder / f"{name}.csv", name)):
             title = f"{told.title.capitalize()}: error against run time, median to largest"
             drawn[f"{name}-time"] = draw_times(lines, title, told.along)
     return drawn

@@ -141,7 +141,7 @@ def test_kinds_of_a_frame_and_of_a_slide_are_counted():
 def test_the_published_scenes_are_told_as_their_summaries_are():
     """By a second way: the kinds together are the wrong of the summary, medians and times too."""
     for name, count, median in (("frame", "frames", "median_error"), ("slide", "slides", "")):
-        lines = lines_of(PUBLISHED / "scenes", name).set_index("source")
+        lines = lines_of(PUBLISHED / "scenes" / f"{name}.csv", name).set_index("source")
         summary = read_table(PUBLISHED / "scenes" / f"{name}-summary.csv").set_index("source")
         assert list(lines.index) == list(summary.index)
         assert (lines[[*KINDS]].sum(axis=1) == summary["wrong"]).all()
@@ -178,7 +178,7 @@ def test_a_scene_is_drawn_with_all_its_bodies():
 
 
 def test_errors_are_drawn_at_their_times_where_there_are_some():
-    lines = lines_of(PUBLISHED / "scenes", "frame")
+    lines = lines_of(PUBLISHED / "scenes" / "frame.csv", "frame")
     axes = draw_times(lines, "title", "error").axes[0]
     points = {tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "o"}
     assert points == {*zip(lines["ms"], lines["median_error"], strict=True)}
