@@ -11,12 +11,12 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic import RigidBlock, simulate
+from analytic import RigidBlock, RockingFrame, frame_faults, simulate
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.columns import slip_error
@@ -235,9 +235,18 @@ def compare(
         rows = with_estimates(rows, halves, own_steps=own_steps, unheld=unheld)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
-    said = (compared["exact"]["message"], slides(exact, yours.friction))
+    faults = _faults(block, posed, yours.friction)
+    said = (compared["exact"]["message"], slides(exact, yours.friction), *faults)
     compared["exact"]["message"] = "; ".join(filter(None, said))
     return [compared[name] for name in sources]
+
+
+def _faults(block: System, posed: Posed, friction: float | None) -> tuple[str, ...]:
+    """Return what of a frame's premises a friction does not hold."""
+    if friction is None or not isinstance(block, RockingFrame):
+        return ()
+    sizes = {"spacing": SPACING * block.height, "depth": BEAM_DEPTH * block.height}
+    return frame_faults(block, posed.motion, posed.start, **sizes, friction=friction)
 
 
 def frame(

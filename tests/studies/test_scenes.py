@@ -62,6 +62,16 @@ def test_a_beam_that_would_tip_is_named(capsys):
     assert "not here: the beam would tip: L = 1.4 m, needs " in capsys.readouterr().out
 
 
+def test_a_frame_that_would_slide_is_named(capsys):
+    asked = (*OF_A_FRAME, "--friction", "0.38", "--sources", "exact", "pymunk:fixed", "--duration")
+    code, (exact, found) = compared(capsys, *asked, "1.5")
+    assert exact["message"] == "the beam would slide: mu = 0.38, needs 0.436"
+    code, (exact, found) = compared(capsys, *(w.replace("0.38", "0.2") for w in asked), "1.5")
+    assert code == 1
+    assert exact["message"].startswith("the feet would slide: mu = 0.2, needs 0.351; the beam")
+    assert "the pivot slid" in found["message"]
+
+
 def test_a_slide_is_compared(capsys):
     asked = ("--scene", "slide", "--friction", "0.2", "--sources", "exact", "pymunk")
     code, (exact, found) = compared(capsys, *asked)
