@@ -89,8 +89,12 @@ def test_a_beam_lies_flat_on_the_corners_of_its_columns(theta):
     *columns, beam = drawn(stage.drawing.axes[0])
     assert len(columns) == 3
     underside = beam[beam[:, 1] < beam[:, 1].mean()]
-    for column in columns:
-        assert column[:, 1].min() == pytest.approx(0.0, abs=1e-12)
+    for column, home in zip(columns, (-3.0, 0.0, 3.0), strict=True):
+        pivot, top = column[column[:, 1].argmin()], column[column[:, 1].argmax()]
+        assert pivot == pytest.approx([home + math.copysign(0.25, theta), 0.0], abs=1e-12)
+        # the corner that carries the beam is where it was on the beam
+        moved = top[0] - (home - math.copysign(0.25, theta))
+        assert beam[:, 0].mean() == pytest.approx(moved)
         assert underside[:, 1] == pytest.approx([column[:, 1].max()] * 2)
     low, high = stage.drawing.axes[0].get_xlim()
     assert low < min(beam[:, 0]) < max(beam[:, 0]) < high
