@@ -19,14 +19,13 @@ from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import read_table
 from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.scenes import STUDY
 from studies.scenes.cases import jobs
 from studies.scenes.findings import floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.told import again, drawings, shown
+from studies.scenes.told import again, drawings, found_in, shown
 from studies.sources.groups import core_sources
 
 __all__ = ["again", "command", "headline", "pictures", "report", "shown"]
@@ -226,7 +225,7 @@ TABLES = ("frame-summary", "slide-summary", "floor-summary", "block-summary")
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
-    tables = {name: read_table(folder / f"{name}.csv") for name in TABLES}
+    tables = {name: found_in(folder / f"{name}.csv") for name in TABLES}
     worst = again(folder).groupby("scene", sort=False)
     asked = {f"{WORST_AGAIN}: {name}": worst_again(lines) for name, lines in worst}
     tables |= {**shown(folder), **asked}
@@ -235,8 +234,9 @@ def report(folder: Path) -> str:
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    *tables, floors, blocks = [read_table(folder / f"{name}.csv") for name in TABLES]
-    return [*(table[table["source"].map(is_engine)] for table in tables), floors, blocks]
+    *tables, floors, blocks = [found_in(folder / f"{name}.csv") for name in TABLES]
+    engines = (table[table["source"].map(is_engine).astype(bool)] for table in tables)
+    return [*engines, floors, blocks]
 
 
 def headline(folder: Path) -> str:

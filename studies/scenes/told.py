@@ -102,10 +102,15 @@ COLUMNS = (
 
 def asked(path: Path, name: str) -> pd.DataFrame:
     """Return the rows of a scene's engines, without those that are not built for it."""
-    rows = read_table(path)
+    rows = found_in(path)
     if rows.empty:
         return pd.DataFrame(columns=["source", SCENES[name].error, "wall_s"])
     return rows[rows["source"].map(is_engine) & (rows["reason"] != "UNAVAILABLE")]
+
+
+def found_in(path: Path) -> pd.DataFrame:
+    """Read a table; one of a scene that nobody who was asked holds is blank."""
+    return read_table(path) if path.read_bytes().strip() else pd.DataFrame(columns=["source"])
 
 
 def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:

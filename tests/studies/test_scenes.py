@@ -175,6 +175,12 @@ def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
         assert row["export"].startswith("rocking export --scene ")
 
 
+def test_an_engine_that_holds_one_scene_alone_has_its_report(tmp_path, capsys):
+    asked = ["scenes", "--quick", "--sources", "newton:fixed", "--jobs", "1"]
+    assert run([*asked, "--out", str(tmp_path)]) == 0
+    assert "newton:fixed" in capsys.readouterr().out
+
+
 def test_a_scene_is_drawn_with_all_its_bodies():
     for told in SCENES.values():
         bodies = len(layout_of(told.system, 1.0, None, (0.0, 0.0)).bodies)
