@@ -130,6 +130,8 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
     n, s = numbers(scene, settings, dt_s), values(scene, settings)
     lines = filled(build, n=n, s=s)
     step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"
+    led = f"floors[0].position.x / {n.unit!r}" if settings.floor == "velocity" else "base_x"
+    under = f" - {led}" * (scene.frame == "world")
     return Script(
         imports=("import Box2D",),
         settings=(step.format(repr(dt_s)), *settings_of(lines)),
@@ -139,7 +141,8 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
             *moved(scene, settings.floor, n.unit, FLOORS),
             step.format("DT"),
         ),
-        pose=("theta, rate = -bodies[0].angle, -bodies[0].angularVelocity",),
+        pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
+        place=f"bodies[0].position.x / {n.unit!r}{under}",
     )
 
 

@@ -153,6 +153,8 @@ def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
     unit, theta = settings.unit, n.coordinates[2]
+    carried = f"base_x * {unit!r}" if settings.floor == "both" else "drive.getPosition(0)"
+    under = f" - {carried}" * (scene.frame == "world")
     return Script(
         imports=("import dartpy as dart",),
         settings=(f"world.setTimeStep({dt_s!r})", *settings_of(lines)),
@@ -162,7 +164,11 @@ def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
             *moved(scene, settings.floor, unit, FLOORS),
             "world.step(False)",
         ),
-        pose=(f"theta, rate = joints[0].getPosition({theta}), joints[0].getVelocity({theta})",),
+        pose=(
+            f"theta = joints[number].getPosition({theta})",
+            f"rate = joints[number].getVelocity({theta})",
+        ),
+        place=f"(joints[0].getPosition({n.coordinates[0]}){under}) / {unit!r}",
     )
 
 

@@ -183,17 +183,22 @@ def build(drake: Any, n: Any, s: Any) -> Any:
 
 
 POSES = {
-    True: "theta, rate = state[2], state[{planar}]",
-    False: "theta, rate = 2.0 * math.atan2(state[2], state[0]), state[{space}]",
+    True: ("theta = state[3 * number + 2]", "rate = state[3 * number + {planar}]"),
+    False: (
+        "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
+        "rate = state[6 * number + {space}]",
+    ),
 }
-"""Whether it is planar -> the line of a script that reads a pose."""
+"""Whether it is planar -> the lines of a script that read a pose."""
 
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
     """Return a scene as calls of Drake; see `engines.parts.script`."""
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
-    count = len(scene.bodies)
+    count, lines_of_pose = len(scene.bodies), POSES[settings.planar]
+    across = IN_PLANE if settings.planar else IN_SPACE
+    under = " - rail.get_translation(context)" * n.moving
     moved = "desired.FixValue(context, [base_x, base_velocity])"
     if settings.solver == CENIC:
         moved = "desired.FixValue(context, [base_x, -base_velocity])  # CENIC turns it round"
@@ -215,8 +220,9 @@ def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
         ),
         pose=(
             "state = plant.GetPositionsAndVelocities(context, blocks)",
-            POSES[settings.planar].format(planar=3 * count + 2, space=7 * count + 1),
+            *(line.format(planar=3 * count + 2, space=7 * count + 1) for line in lines_of_pose),
         ),
+        place=f"plant.GetPositions(context, blocks)[{across[0]}]{under}",
     )
 
 

@@ -14,10 +14,10 @@ MODEL = "block.xml"
 SAID = ("<option", "<geom", "<pair", "<weld")
 """Elements of a model that a preset sets, the joints apart."""
 
-PLANAR_POSE = ("theta, rate = data.qpos[2], data.qvel[2]",)
+PLANAR_POSE = ("theta, rate = data.qpos[3 * number + 2], data.qvel[3 * number + 2]",)
 FREE_POSE = (
-    "theta = 2.0 * math.atan2(data.qpos[5], data.qpos[3])",
-    "rate = data.qvel[4]",
+    "theta = 2.0 * math.atan2(data.qpos[7 * number + 5], data.qpos[7 * number + 3])",
+    "rate = data.qvel[6 * number + 4]",
 )
 
 
@@ -46,6 +46,8 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
     s = kept(scene, s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())
+    # the joint of a welded base is the last, a free one
+    under = f" - {'data.qpos[-7]' if welded(scene, s) else 'base_x'}" * (scene.frame == "world")
     return Script(
         imports=("import mujoco",),
         settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
@@ -56,6 +58,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
         ),
         step=tuple(_step(scene, s)),
         pose=PLANAR_POSE if s.planar else FREE_POSE,
+        place=f"data.qpos[0]{under}",
         moment=Moment.END if s.integrator == "RK4" else Moment.MIDDLE,
         files={MODEL: model},
     )

@@ -108,4 +108,5 @@ def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
             "theta = 2.0 * math.atan2(float(place[0, 4]), float(place[0, 6]))",
             "rate = float(velocity[0, 4])",
         ),
+        place="float(place[0, 0])" + " - float(place[1, 0])" * n.moving,
     )

@@ -42,7 +42,9 @@ class Script:
     step : tuple of str
         Lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2].
     pose : tuple of str
-        Lines that read `theta` [rad] and `rate` [rad/s].
+        Lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`.
+    place : str
+        How far the first body's centre is along the base [m], which should be at `base_x` [m].
     moment : Moment
         At which moment of a step the velocity holds.
     files : mapping
@@ -54,6 +56,7 @@ class Script:
     build: tuple[str, ...]
     step: tuple[str, ...]
     pose: tuple[str, ...]
+    place: str
     moment: Moment = Moment.MIDDLE
     files: Mapping[str, str] = field(default_factory=dict)
 

@@ -151,6 +151,8 @@ def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, unit = filled(build, n=n, s=s), settings.unit_of(scene)
     times, weight = "" if unit == 1.0 else f" * {unit!r}", scene.system.gravity
+    belt = f"base_x{times}" if settings.floor == "belt" else "float(base.entity_pose.p[0])"
+    under = f" - {belt}" * (scene.frame == "world")
     return Script(
         imports=("import sapien",),
         settings=settings_of(lines),
@@ -164,10 +166,11 @@ def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
             "system.step()",
         ),
         pose=(
-            "turn = bodies[0].entity_pose.q",
+            "turn = bodies[number].entity_pose.q",
             "theta = 2.0 * math.atan2(turn[2], turn[0])",
-            "rate = float(bodies[0].angular_velocity[1])",
+            "rate = float(bodies[number].angular_velocity[1])",
         ),
+        place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
     )
 
 

@@ -39,6 +39,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     hold = hold_call(scene, s, BASE)
     move = move_call(s, BASE, (HELD_BY, most_force(scene)), [PLACE, *ground[1:]], SPEED)
     engine, base, made, settings = engine_call(scene, s, dt_s), base_call(s, BASE), [], []
+    at = "p.getBasePositionAndOrientation({})[0][0]"
     names = [f"block{number or ''}" for number in range(len(scene.bodies))]
     for number, (body, name) in enumerate(zip(scene.bodies, names, strict=True)):
         shape, called = body_shape(scene, number, s, dt_s), Constant(f"shape{number or ''}")
@@ -57,6 +58,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             written(base),
             *(f"held_by = {written(hold)}",) * holds,
             *_beginning(scene, names),
+            f"bodies = [{', '.join(names)}]",
             "p.setTimeStep(DT)",
         ),
         step=(
@@ -64,10 +66,11 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             *("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
         ),
         pose=(
-            "q = p.getBasePositionAndOrientation(block)[1]",
+            "q = p.getBasePositionAndOrientation(bodies[number])[1]",
             "theta = 2.0 * math.atan2(q[1], q[3])",
-            "rate = p.getBaseVelocity(block)[1][1]",
+            "rate = p.getBaseVelocity(bodies[number])[1][1]",
         ),
+        place=f"{at.format('block')}{(' - ' + at.format('base')) * moves}",
     )
 
 

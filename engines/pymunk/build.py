@@ -141,6 +141,9 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
     s, moves = values(scene, settings, dt_s), scene.frame == "world"
     lines, unit = filled(build, n=numbers(scene, settings.unit), s=s), settings.unit
     held, times = defined(hold, s=s) if s.margin else (), "" if unit == 1.0 else f" * {unit!r}"
+    # a base that the library moves is a step ahead
+    ahead = " + DT * base.velocity.x" * (settings.floor == "velocity")
+    under = f" - base.position.x{ahead}" * moves
     return Script(
         imports=("import pymunk",),
         settings=(f"space.step({dt_s!r})", *settings_of(lines)),
@@ -151,7 +154,8 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
             *(f"space.gravity = pull_x{times}, pull_z{times}", "space.step(DT)"),
             *(f"base.position = base_x{times}, 0.0",) * (moves and settings.floor == "both"),
         ),
-        pose=("theta, rate = -bodies[0].angle, -bodies[0].angular_velocity",),
+        pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
+        place=f"(bodies[0].position.x{under}) / {unit!r}",
         moment=Moment.MIDDLE if settings.positions else Moment.NEXT,
     )
 

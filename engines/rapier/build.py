@@ -142,6 +142,8 @@ def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
     """Return a scene as calls of Rapier; see `engines.parts.script`."""
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
+    led = f"base_x{times}" if settings.floor == "both" else "base.translation.x"
+    under = f" - {led}" * (scene.frame == "world")
     return Script(
         imports=("import rapier3d as rapier",),
         settings=(f"parameters.dt = {dt_s!r}", *settings_of(lines)),
@@ -152,9 +154,10 @@ def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
             "world.step()",
         ),
         pose=(
-            "turn = bodies[0].rotation",
-            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[0].angvel.y",
+            "turn = bodies[number].rotation",
+            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
         ),
+        place=f"(bodies[0].translation.x{under}) / {n.unit!r}",
     )
 
 

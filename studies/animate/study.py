@@ -1,4 +1,4 @@
-"""One block in several sources side by side, on the same shaken base and the same clock."""
+"""One scene in several sources side by side, on the same shaken base and the same clock."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic.block import RigidBlock
 from analytic.motion import FloatArray
 from analytic.response import Outcome
+from analytic.slide import SlidingBlock
+from engines.layouts import System
 from studies.cases.paper import Case, free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
 from studies.kit.digests import check
@@ -20,13 +21,22 @@ from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
-from studies.kit.options import DEFAULT_COMPUTING, Computing
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, posed_block, refuse_endless
+from studies.kit.options import DEFAULT_COMPUTING, NOT_YOURS, Computing, Yours
+from studies.kit.posing import (
+    DEFAULT_EXCITATION,
+    ONE_BLOCK,
+    Excitation,
+    Posed,
+    Standing,
+    refuse_endless,
+)
 from studies.kit.refusing import one_line
 from studies.kit.runner import exit_code, run_jobs
 from studies.sources.groups import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+OF_A_SLIDE = tuple(name for name in DEFAULT_SOURCES if name != "housner")
+"""By default asked of a block that slides, which has no linearization."""
 FRAMES_A_SECOND = 25
 MOST_FRAMES = 1500
 """A minute of film, which holds up to 3 GB of memory while it is drawn."""
@@ -39,31 +49,37 @@ def command(
     width: Positive | None = None,
     height: Positive | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
+    standing: Standing = ONE_BLOCK,
+    yours: Yours = NOT_YOURS,
     results: Place | None = None,
     sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
     slower: Positive = 1.0,
     computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
-    """Show a block rocking in several sources side by side.
+    """Show a block, a frame or a slide in several sources side by side.
+
+    The bodies of a frame are drawn as its first column turns.
 
     Parameters
     ----------
     out
         The film: a .gif, or an .mp4 (which needs the extra [video]).
     width
-        Full width B of the block [m].
+        Full width B of the block or of each column [m].
     height
-        Full height H of the block [m].
+        Its full height H [m].
     results
         Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
         shown in which the sources differ most.
     sources
-        As in `rocking compare`, at most 8.
+        As in `rocking compare`, at most 8; the models are not asked by default where nothing rocks.
     slower
         Seconds of film for a second of shaking.
     """
     from studies.drawing.film import check_film, write_film
 
+    if not standing.rocks and sources == DEFAULT_SOURCES:
+        sources = OF_A_SLIDE
     check_sources(sources)
     check_film(out)
     if len(sources) > 8:
@@ -71,22 +87,23 @@ def command(
     if results is None:
         if width is None or height is None:
             raise BadInputError("--width and --height missing; give them, or --results")
-        block = posed_block(width, height)
-        posed = excitation.pose(block)
+        block = standing.system(width, height, yours.friction)
+        posed = standing.pose(block, excitation)
     else:
+        standing.refuse("only without --results")
         refuse_given({"width": width, "height": height}, "only without --results")
         excitation.refuse("only without --results")
         case = most_different(results, sources)
         block, posed = case.block, Posed(case.motion, (0.0, 0.0))
     window = free_rocking_window(block, posed.motion)
-    refuse_endless(block, window)
+    refuse_endless(block, window, dt=yours.dt)
     frames = window * slower * FRAMES_A_SECOND
     if not frames < MOST_FRAMES:
         seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
         raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
     executor = computing.executor(at_once=True)
-    rows = shown(block, posed, sources, times, executor)
+    rows = shown(block, posed, sources, times, executor, yours)
     usable = [row for row in rows if row["outcome"] != Outcome.FAILED.value]
     if usable:
         write_film(out, block, posed.motion, times, usable, FRAMES_A_SECOND)
@@ -141,13 +158,15 @@ def _furthest_apart(peaks: pd.DataFrame) -> Case:
 
 
 def shown(
-    block: RigidBlock,
+    block: System,
     posed: Posed,
     sources: Sequence[str],
     times: FloatArray,
     executor: Executor,
+    yours: Yours = NOT_YOURS,
 ) -> list[Row]:
-    """Run the sources, and return their rows with the rotation [rad] at every time."""
+    """Run the sources, and return their rows with the rotation [rad] or place [m] at every time."""
+    own = yours.options(sources, block)
     begin = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     jobs = [
         Job(
@@ -157,7 +176,7 @@ def shown(
             source=source,
             duration=float(times[-1]),
             times=times,
-            options=begin,
+            options={**begin, **own[source]},
         )
         for source in sources
     ]
@@ -170,7 +189,7 @@ def shown(
         history = row["history"]
         if history is not None:
             row["theta"] = np.interp(times, history.time, history.theta)
-            if row["outcome"] == Outcome.OVERTURNED.value:
+            if row["outcome"] == Outcome.OVERTURNED.value and not isinstance(block, SlidingBlock):
                 # a block that is lost from sight when its outcome is decided has fallen
                 beyond = times > history.time[-1]
                 row["theta"][beyond] = math.copysign(math.pi / 2, history.theta[-1])

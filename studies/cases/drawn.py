@@ -1,16 +1,18 @@
-"""Random blocks and pulses, and which of them the reference is sure of."""
+"""Random blocks or frames and pulses, and which of them the reference is sure of."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import count
+from typing import Literal
 
 import numpy as np
 
-from analytic import simulate
-from analytic.block import GRAVITY, RigidBlock
+from analytic import RockingFrame, frame_demands, simulate
+from analytic.block import GRAVITY, RigidBlock, Rocker
 from analytic.motion import SinePulse
 from analytic.response import Response
+from engines.layouts import BEAM_DEPTH, SPACING
 
 LEAST_NORMAL = 0.2
 """Cases are kept where the reference's normal force stays above this part of the weight.
@@ -31,7 +33,7 @@ class RandomCase:
     omega_over_p: float
 
     @property
-    def block(self) -> RigidBlock:
+    def block(self) -> Rocker:
         """The block."""
         return RigidBlock(width=self.width_m, height=self.aspect * self.width_m)
 
@@ -45,19 +47,62 @@ class RandomCase:
         )
 
 
-def draw(seed: int) -> Iterator[RandomCase]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomFrame(RandomCase):
+    """A frame and a pulse drawn at random; aspect and width are a column's."""
+
+    columns: int
+    load: float
+
+    @property
+    def block(self) -> Rocker:
+        """The frame."""
+        height = self.aspect * self.width_m
+        return RockingFrame(width=self.width_m, height=height, columns=self.columns, load=self.load)
+
+
+Drawn = Literal["block", "frame"]
+"""Scenes of which random cases are drawn."""
+
+KINDS: dict[Drawn, type[RandomCase]] = {"block": RandomCase, "frame": RandomFrame}
+"""Scene -> its random cases."""
+
+KEPT, NEAR, LIFTED, SLIDES, TIPS = "kept", "near", "lifted", "slides", "tips"
+"""What becomes of what was drawn: all but the first are left out."""
+
+FRICTION = 1.0
+"""What a frame's contacts may need: those of squat columns need more than engines may have."""
+
+
+def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
     """Yield random cases without end, the same ones for the same seed.
 
     H/B from 1.2 to 12, B from 0.02 to 10 m, 1 to 4 half cycles, amplitudes from 1.02 to 4 onsets
     and omega/p from 0.3 to 12, width and frequency with uniform logarithms; only where the
-    reference's normal force stays above LEAST_NORMAL weights.
+    reference's normal force stays above LEAST_NORMAL weights. Frames have 2 to 5 columns and loads
+    from 0.1 to 10, with uniform logarithms; only where their beam would not tip, nor anything slide
+    by a friction of FRICTION.
     """
-    kept = (drawn for drawn, exact in everything(seed) if exact.min_normal > LEAST_NORMAL)
+    kept = (drawn for drawn, exact in everything(seed, scene) if fate_of(drawn, exact) == KEPT)
     for case, drawn in enumerate(kept):
         yield replace(drawn, case=case)
 
 
-def everything(seed: int) -> Iterator[tuple[RandomCase, Response]]:
+def fate_of(drawn: RandomCase, exact: Response) -> str:
+    """Say whether a case is kept, or why it is left out."""
+    system, normal = drawn.block, exact.min_normal
+    if isinstance(system, RockingFrame):
+        apart, depth = SPACING * system.height, BEAM_DEPTH * system.height
+        needs = frame_demands(system, drawn.motion, spacing=apart, depth=depth)
+        if needs.spacing >= apart:
+            return TIPS
+        if needs.pressing > 0.0 and max(needs.base, needs.top) > FRICTION:
+            return SLIDES
+        normal = needs.pressing
+    return KEPT if normal > LEAST_NORMAL else NEAR if normal > 0.0 else LIFTED
+
+
+def everything(seed: int, scene: Drawn = "block") -> Iterator[tuple[RandomCase, Response]]:
     """Yield all that is drawn, numbered from 0, with its exact response."""
     generator = np.random.default_rng(seed)
     for number in count():
@@ -70,4 +115,8 @@ def everything(seed: int) -> Iterator[tuple[RandomCase, Response]]:
             amplitude_g=float(generator.uniform(1.02, 4.0)) / aspect,
             omega_over_p=math.exp(generator.uniform(math.log(0.3), math.log(12.0))),
         )
+        if scene == "frame":
+            columns = int(generator.integers(2, 6))
+            load = math.exp(generator.uniform(math.log(0.1), math.log(10.0)))
+            drawn = RandomFrame(**asdict(drawn), columns=columns, load=load)
         yield drawn, simulate(drawn.block, drawn.motion)

@@ -11,13 +11,13 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
+from analytic import RigidBlock, RockingFrame, frame_faults, simulate
 from analytic.cart import CartBlock
 from analytic.motion import FloatArray, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.columns import slip_error
@@ -48,6 +48,7 @@ from studies.kit.options import (
 from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
+    WHERE_IT_ROCKS,
     Excitation,
     Posed,
     Standing,
@@ -57,7 +58,7 @@ from studies.kit.posing import (
 )
 from studies.kit.runner import exit_code, run_jobs
 from studies.measures.differences import conditioning_of_one
-from studies.measures.halving import halved, with_estimates
+from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
 from studies.sources.groups import core_sources
 from studies.sources.registry import DEFAULT_EFFORT, Effort
 
@@ -130,17 +131,16 @@ def command(
             json=json,
         )
     width, height = both_sizes(width, height)
-    if standing.scene == "slide":
+    if not standing.rocks:
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
-        given = {"tilt": excitation.tilt, "rate": excitation.rate, "plot": plot}
-        refuse_given({**given, "estimate": estimate or None}, "only where something rocks")
+        refuse_given({"plot": plot}, WHERE_IT_ROCKS)
     if standing.scene == "cart":
         sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_given({"estimate": estimate or None}, "only on a base that moves as it is told")
     check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
-    posed = excitation.pose(block)
+    posed = standing.pose(block, excitation)
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     window = _window(block, motion, duration)
@@ -269,12 +269,24 @@ def compare(
     if estimate:
         finer = [half for job in jobs if (half := halved(job)) is not None]
         halves = run_jobs(finer, executor=executor, reduce=_reduce)
-        rows = with_estimates(rows, halves, own_steps=effort.own and yours.dt is None)
+        unheld = "" if isinstance(block, RigidBlock) else OF_BLOCKS
+        unheld = OF_A_PEAK if isinstance(block, SlidingBlock) else unheld
+        own_steps = effort.own and yours.dt is None
+        rows = with_estimates(rows, halves, own_steps=own_steps, unheld=unheld)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
     compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
-    said = (compared["exact"]["message"], slides(exact, yours.friction))
+    faults = _faults(block, posed, yours.friction)
+    said = (compared["exact"]["message"], slides(exact, yours.friction), *faults)
     compared["exact"]["message"] = "; ".join(filter(None, said))
     return [compared[name] for name in sources]
+
+
+def _faults(block: System, posed: Posed, friction: float | None) -> tuple[str, ...]:
+    """Return what of a frame's premises a friction does not hold."""
+    if friction is None or not isinstance(block, RockingFrame):
+        return ()
+    sizes = {"spacing": SPACING * block.height, "depth": BEAM_DEPTH * block.height}
+    return frame_faults(block, posed.motion, posed.start, **sizes, friction=friction)
 
 
 def frame(

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 
 from analytic.motion import FloatArray
+from engines.layouts import System, layout_of
 
 INK, SOFT, BLOCK, GROUND = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4"
 
@@ -25,6 +26,26 @@ def outline(width: float, height: float, theta: float) -> FloatArray:
     return turned
 
 
+def outlines(system: System, at: float) -> FloatArray:
+    """Return the corners of every body of a system, shape (bodies, 4, 2) [m].
+
+    Parameters
+    ----------
+    system : System
+        One of those in `engines.layouts.LAYOUTS`.
+    at : float
+        Its rotation [rad], or its place along the base [m] where nothing rocks.
+    """
+    corners = []
+    for body in layout_of(system, 1.0, None, (at, 0.0)).bodies:
+        x, z = 0.5 * body.width, 0.5 * body.height
+        sine, cosine = math.sin(body.at.theta), math.cos(body.at.theta)
+        box = np.array([[-x, -z], [x, -z], [x, z], [-x, z]])
+        turned = box @ np.array([[cosine, -sine], [sine, cosine]])
+        corners.append(turned + np.array([body.at.x, body.at.z]))
+    return np.array(corners)
+
+
 def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:
     """Draw a block that rocks, with the names of its parts."""
     drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
@@ -39,6 +60,26 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
     _dimensions(axes, corners)
     _angles(axes, corners, width, height, theta)
     _shaking(axes)
+    return drawing
+
+
+def draw_scene(system: System, at: float) -> Figure:
+    """Draw the bodies of a system at rest, dashed, and where they are: see `outlines`."""
+    rest, moved = outlines(system, 0.0), outlines(system, at)
+    every = np.concatenate((rest, moved))
+    (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
+    spare = 0.12 * max(right - left, top)
+    drawing = Figure(figsize=(4.4, 0.3 + 4.4 * (top + 2.0 * spare) / (right - left + 2.0 * spare)),
+                     layout="constrained")  # fmt: skip
+    axes = drawing.subplots()
+    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare), aspect="equal")
+    axes.set_axis_off()
+    ground = (left - spare, -0.5 * spare), right - left + 2.0 * spare, 0.5 * spare
+    axes.add_patch(Rectangle(*ground, color=GROUND, linewidth=0))
+    for corners in moved:
+        axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
+    for corners in rest:
+        axes.add_patch(Polygon(corners, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
     return drawing
 
 

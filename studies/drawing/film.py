@@ -1,7 +1,8 @@
-"""Moving pictures of rocking blocks: the blocks above, their rotations below."""
+"""Moving pictures of what stands on a base: the bodies above, how they move below."""
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,16 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patches import Rectangle
 from PIL import Image
 from tqdm import tqdm
 
-from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome
+from engines.layouts import System, layout_of
+from studies.drawing.block import outlines
 from studies.drawing.styles import line_of, style_of
 from studies.kit.arguments import BadInputError, check_writable
 from studies.kit.drafts import draft_place
@@ -57,7 +60,7 @@ def _ffmpeg() -> str:
 
 def write_film(
     path: Path,
-    block: RigidBlock,
+    block: System,
     motion: Motion,
     times: FloatArray,
     rows: Sequence[Row],
@@ -74,7 +77,8 @@ def write_film(
     times : ndarray, shape (n,)
         Ground times [s], equally spaced.
     rows : sequence of Row
-        Each with its source, outcome, and "theta" [rad], shape (n,).
+        Each with its source, outcome, and "theta", shape (n,): the rotation [rad], or the place
+        [m] of what slides.
     frames_a_second : int
     """
     stage = Stage(block, motion, times, rows)
@@ -141,12 +145,21 @@ class Screen(Figure):
 
 
 class Stage:
-    """A figure that can show any time of the responses."""
+    """A figure that can show any time of the responses.
+
+    Bodies that rock together are drawn as the first one turns.
+    """
 
     def __init__(
-        self, block: RigidBlock, motion: Motion, times: FloatArray, rows: Sequence[Row]
+        self, block: System, motion: Motion, times: FloatArray, rows: Sequence[Row]
     ) -> None:
         self.block, self.times, self.rows = block, times, rows
+        self._rocks = bool(layout_of(block, 1.0, None, (0.0, 0.0)).rocking)
+        most = 0.0 if self._rocks else max(float(np.abs(row["theta"]).max()) for row in rows)
+        at_rest = outlines(block, 0.0).max(axis=(0, 1))
+        spare = 1.15 * math.hypot(block.width, block.height)
+        self._reach = float(at_rest[0]) - 0.5 * block.width + spare + most
+        self._top = float(at_rest[1]) - block.height + 1.2 * spare
         self.shift = motion.displacement(times)
         self.drawing = Screen(figsize=(2.1 * max(len(rows), 3), 5.2), layout="constrained")
         halves = self.drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1))
@@ -156,19 +169,21 @@ class Stage:
             *(self._panel(axes, row) for axes, row in zip(panels, rows, strict=True)), strict=True
         )
         self._blocks = [
-            axes.add_patch(self._outline(row)) for axes, row in zip(panels, rows, strict=True)
+            axes.add_collection(self._bodies(row)) for axes, row in zip(panels, rows, strict=True)
         ]
         exact: FloatArray | None = next(
             (row["theta"] for row in rows if row["source"] == "exact"), None
         )
         self._right = np.zeros(len(times)) if exact is None else exact
         self._ghosts = [
-            axes.add_patch(Polygon(outline(block, 0.0), fill=False, edgecolor="#000000",
-                                   linestyle=(0, (3, 2)), linewidth=1.2, zorder=4))
+            axes.add_collection(PolyCollection([*outlines(block, 0.0)], facecolor="none",
+                                               edgecolor="#000000", linestyle=(0, (3, 2)),
+                                               linewidth=1.2, zorder=4))
             for axes, row in zip(panels, rows, strict=True)
             if exact is not None and row["source"] != "exact"
         ]  # fmt: skip
-        self._told = [verdict(row, exact, block.alpha) for row in rows]
+        told = partial(verdict, alpha=block.alpha) if self._rocks else ended
+        self._told = [told(row, exact) for row in rows]
         self._verdicts = [
             axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top", fontsize=9,
                       color=style_of(row["source"]).colour, fontweight="bold")
@@ -184,8 +199,8 @@ class Stage:
 
     def _panel(self, axes: Axes, row: Row) -> tuple[Any, Rectangle]:
         """Set up a panel; return its posts, and the ground that hides their feet."""
-        reach = 1.15 * math.hypot(self.block.width, self.block.height)
-        axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, 1.2 * reach), aspect="equal")
+        reach = self._reach
+        axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, self._top), aspect="equal")
         axes.set_axis_off()
         axes.set_title(row["source"], fontsize=9)
         ground = Rectangle(
@@ -194,7 +209,7 @@ class Stage:
         axes.add_patch(ground)
         self._spacing = 2.0 * reach / (POSTS - 1)
         posts = axes.vlines(
-            self._post_places(0.0), 0.0, 1.2 * reach, color="#e4e4e4", linewidth=2, zorder=0
+            self._post_places(0.0), 0.0, self._top, color="#e4e4e4", linewidth=2, zorder=0
         )
         return posts, ground
 
@@ -203,43 +218,43 @@ class Stage:
         moved: FloatArray = places - math.fmod(shift, self._spacing)
         return moved
 
-    def _outline(self, row: Row) -> Polygon:
+    def _bodies(self, row: Row) -> PolyCollection:
         colour = style_of(row["source"]).colour
-        corners = outline(self.block, 0.0)
-        return Polygon(corners, facecolor=colour, edgecolor="#222222", alpha=0.8, zorder=3)
+        return PolyCollection([*outlines(self.block, 0.0)], facecolor=colour, edgecolor="#222222",
+                              alpha=0.8, zorder=3)  # fmt: skip
 
     def _graph(self, axes: Axes, motion: Motion) -> Any:
         for row in self.rows:
             style = style_of(row["source"])
             axes.plot(
                 self.times,
-                row["theta"] / self.block.alpha,
+                row["theta"] / (self.block.alpha if self._rocks else 1.0),
                 linestyle=line_of(row["source"]),
                 linewidth=style.width,
                 color=style.colour,
                 alpha=0.9,
                 label=row["source"],
             )
-        axes.set_ylim(-1.6, 1.6)
         axes.set_xlim(0.0, float(self.times[-1]))
         if motion.duration:
             axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
-        axes.axhline(1.0, color="#aaaaaa", linewidth=0.8)
-        axes.axhline(-1.0, color="#aaaaaa", linewidth=0.8)
+        if self._rocks:
+            axes.set_ylim(-1.6, 1.6)
+            axes.axhline(1.0, color="#aaaaaa", linewidth=0.8)
+            axes.axhline(-1.0, color="#aaaaaa", linewidth=0.8)
         axes.set_xlabel("time  [s]")
-        axes.set_ylabel("rotation  θ/θcr  [–]")
+        axes.set_ylabel("rotation  θ/θcr  [–]" if self._rocks else "place on the base  [m]")
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
         return axes.axvline(0.0, color="#cc0000", linewidth=1.0)
 
     def show(self, frame: int) -> None:
         """Set the figure to a frame."""
-        reach = 1.15 * math.hypot(self.block.width, self.block.height)
-        for row, patch, posts in zip(self.rows, self._blocks, self._posts, strict=True):
-            patch.set_xy(outline(self.block, float(row["theta"][frame])))
+        for row, bodies, posts in zip(self.rows, self._blocks, self._posts, strict=True):
+            bodies.set_verts(outlines(self.block, float(row["theta"][frame])))
             places = self._post_places(float(self.shift[frame]))
-            posts.set_segments([[(x, 0.0), (x, 1.2 * reach)] for x in places])
+            posts.set_segments([[(x, 0.0), (x, self._top)] for x in places])
         for ghost in self._ghosts:
-            ghost.set_xy(outline(self.block, float(self._right[frame])))
+            ghost.set_verts(outlines(self.block, float(self._right[frame])))
         for text, (since, words) in zip(self._verdicts, self._told, strict=True):
             text.set_text(words if frame >= since else "")
         self._clock.set_xdata([self.times[frame]] * 2)
@@ -276,18 +291,9 @@ def verdict(row: Row, exact: FloatArray | None, alpha: float) -> tuple[int, str]
     return int(size.argmax()), words
 
 
-def outline(block: RigidBlock, theta: float) -> FloatArray:
-    """Return the corners of a block that stands on the corner that its rotation [rad] leans to.
-
-    Positive theta leans it towards +x, about its right corner; shape (4, 2) [m].
-    """
-    half = 0.5 * block.width
-    pivot = half if theta >= 0.0 else -half
-    corners = np.array(
-        [(-half, 0.0), (half, 0.0), (half, block.height), (-half, block.height)], dtype=np.float64
-    )
-    corners[:, 0] -= pivot
-    cosine, sine = math.cos(theta), math.sin(theta)
-    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]])
-    turned[:, 0] += pivot
-    return turned
+def ended(row: Row, exact: FloatArray | None) -> tuple[int, str]:
+    """Return the last frame, and what is said then of a block that slid: where it lies."""
+    place, last = float(row["theta"][-1]), len(row["theta"]) - 1
+    if exact is None or row["source"] == "exact":
+        return last, f"lies at {1e3 * place:+.1f} mm".replace("-", "−")
+    return last, f"{1e3 * (place - float(exact[-1])):+.2g} mm off".replace("-", "−")

@@ -11,8 +11,8 @@ import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome
-from studies.cases.drawn import RandomCase, draw
-from studies.measures.differences import with_reference
+from studies.cases.drawn import Drawn, RandomCase, draw
+from studies.measures.differences import with_reference, with_reference_of_frames
 from studies.measures.halving import BOUNDED, estimates_of
 from studies.measures.wrongness import FALL, REST, wrong_in
 
@@ -26,24 +26,26 @@ CONFIDENCE = 0.95
 """Of the interval of a factor."""
 
 
-def survivors(seed: int) -> Iterator[RandomCase]:
+def survivors(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
     """Yield without end the random cases in which the exact solution rocks and survives."""
     kept = (
         drawn
-        for drawn in draw(seed)
+        for drawn in draw(seed, scene)
         if simulate(drawn.block, drawn.motion).outcome is Outcome.ROCKED
     )
     for number, drawn in enumerate(kept):
         yield replace(drawn, case=number)
 
 
-def both_sets(cases: int, tests: int, seed: int) -> Iterator[tuple[str, RandomCase]]:
+def both_sets(
+    cases: int, tests: int, seed: int, scene: Drawn = "block"
+) -> Iterator[tuple[str, RandomCase]]:
     """Yield so many cases that test and so many that calibrate, each with what it is for.
 
     Those that test are drawn with the seed, those that calibrate with the next one.
     """
     for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
-        for case in islice(survivors(first), count):
+        for case in islice(survivors(first, scene), count):
             yield use, case
 
 
@@ -61,7 +63,8 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
         The rows at the whole step with the columns of `with_reference`, estimate, and over: the
         error over the estimate, 0 where there is no error to speak of; nan unless both rocked.
     """
-    whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
+    held = with_reference_of_frames if "load" in rows else with_reference
+    whole = held(rows[rows["half"] == 0]).reset_index(drop=True)
     whole["estimate"] = math.nan
     for _, mine in whole.groupby("set"):
         finer = rows[(rows["half"] == 1) & (rows["set"] == mine["set"].iloc[0])]

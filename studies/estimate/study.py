@@ -8,10 +8,11 @@ from typing import Annotated
 
 import pandas as pd
 
+from studies.cases.drawn import Drawn
 from studies.drawing.kept import Pictures, tell
 from studies.estimate import STUDY
 from studies.estimate.calibration import CALIBRATE, beside_errors, both_sets, factors
-from studies.kit.arguments import BadInputError, Count, Place, check_sources
+from studies.kit.arguments import BadInputError, Count, Place, check_sources, one_of
 from studies.kit.jobs import Job
 from studies.kit.naming import sources_option
 from studies.kit.options import (
@@ -37,6 +38,7 @@ def command(
     cases: Count = 300,
     tests: Count = 100,
     seed: Count = 1,
+    scene: Annotated[Drawn, one_of(Drawn)] = "block",
     sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
     effort: EffortOptions = OWN_EFFORT,
     yours: Yours = NOT_YOURS,
@@ -56,6 +58,8 @@ def command(
     seed
         Seed of the random numbers of the cases that test, a positive whole number; those that
         calibrate are drawn with the next one.
+    scene
+        block: one block that rocks. frame: a beam on 2 to 5 columns.
     sources
         Engines, as they are declared; those that choose their own steps have none to halve.
     yes
@@ -68,8 +72,9 @@ def command(
     running.refuse_too_much(asked, cases + tests, everyone, yes=yes, effort=effort)
     refuse_two_steps(effort.step, yours)
     own = {name: value for name, value in asdict(yours).items() if value is not None}
+    own |= {} if scene == "block" else {"scene": scene}
     plan = Plan(
-        jobs=pairs(cases, tests, seed, sources, effort, yours),
+        jobs=pairs(cases, tests, seed, sources, effort, yours, scene=scene),
         settings={"seed": seed, "tests": tests, **asdict(effort), **own},
         growing={"case": range(max(cases, tests)), "source": sources},
     )
@@ -83,6 +88,8 @@ def pairs(
     sources: tuple[str, ...],
     effort: Effort = OWN_EFFORT,
     yours: Yours = NOT_YOURS,
+    *,
+    scene: Drawn = "block",
 ) -> list[Job]:
     """Return two jobs for each case and source, the second at half the step.
 
@@ -92,7 +99,7 @@ def pairs(
         If a source has no step that could be halved.
     """
     jobs = []
-    for use, case in both_sets(cases, tests, seed):
+    for use, case in both_sets(cases, tests, seed, scene):
         own = yours.options(sources, case.block)
         for source in sources:
             labels = {"set": use, **asdict(case), "half": 0}

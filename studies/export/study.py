@@ -3,16 +3,25 @@
 from pathlib import Path
 from typing import Any
 
+from analytic.response import Response
+from analytic.slide import SlidingBlock
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from studies.cases.paper import free_rocking_window
-from studies.export.writing import Exported, files
+from studies.export.writing import CALLED, Exported, files
 from studies.kit.arguments import BadInputError, Place, Positive, Step
 from studies.kit.drafts import write_all
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
+from studies.kit.journal import Row
 from studies.kit.options import NOT_YOURS, Yours, refuse_two_steps
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, posed_block, refuse_endless
+from studies.kit.posing import (
+    DEFAULT_EXCITATION,
+    ONE_BLOCK,
+    Excitation,
+    Standing,
+    refuse_endless,
+)
 from studies.kit.runner import exit_code, run_jobs
 
 
@@ -24,11 +33,12 @@ def command(
     height: Positive,
     preset: str | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
+    standing: Standing = ONE_BLOCK,
     step: Step | None = None,
     yours: Yours = NOT_YOURS,
     time_limit: Positive = 60.0,
 ) -> int:
-    """Write a scene as a script that needs an engine's library alone, with the peak to expect.
+    """Write a scene as a script that needs an engine's library alone, with what to expect of it.
 
     Parameters
     ----------
@@ -38,9 +48,9 @@ def command(
         Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
         library reads one.
     width
-        Full width B of the block [m].
+        Full width B of the block or of each column [m].
     height
-        Full height H of the block [m].
+        Its full height H [m].
     preset
         One of the engine's with equal steps: naive or fixed; fixed by default.
     step
@@ -50,8 +60,11 @@ def command(
     """
     refuse_two_steps(step, yours)
     asked, used = _asked(engine, preset)
-    block = posed_block(width, height)
-    posed = excitation.pose(block)
+    block = standing.system(width, height, yours.friction)
+    if type(block) not in CALLED:
+        words = "it must be one that a script can look at: block, frame or slide"
+        raise BadInputError(f"--scene is {standing.scene!r}; {words}")
+    posed = standing.pose(block, excitation)
     motion = posed.motion
     _check_folder(out)
     window = free_rocking_window(block, motion)
@@ -66,15 +79,14 @@ def command(
             for name, how in (("exact", begin), (source, options))
         ],
         executor=Local(workers=1, time_limit_s=time_limit),
-        reduce=summary,
+        reduce=_reduce,
     )
     if code := exit_code(rows):
         return code
-    exact, found = (float(row["peak_ratio"]) for row in rows)
+    exact, found = (row["told"] for row in rows)
     if not found:
-        raise BadInputError(
-            f"--engine is {engine!r}; its block stays at rest, with no peak to tell"
-        )
+        words = "what stands on its base stays at rest, with nothing to tell"
+        raise BadInputError(f"--engine is {engine!r}; {words}")
     scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
     what = Exported(
         engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
@@ -84,8 +96,18 @@ def command(
     write_all(out, texts)
     for name in texts:
         print(out / name)
-    print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
+    if standing.rocks:
+        print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
+    else:
+        shown = (" ".join(f"{slip:.12g}" for slip in slips) for slips in (found, exact))
+        print("slips to expect: {} m; exact {} m".format(*shown))
     return 0
+
+
+def _reduce(job: Job, response: Response) -> Row:
+    """Return the summary, and what a script is to find: the peak, or slips where nothing rocks."""
+    slides = isinstance(job.block, SlidingBlock)
+    return {**summary(job, response), "told": response.slips if slides else response.peak_ratio}
 
 
 def _asked(engine: str, preset: str | None) -> tuple[Engine, Preset]:

@@ -1,17 +1,27 @@
 """The files of an exported scene, as text."""
 
 import inspect
+import math
 from dataclasses import dataclass
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from analytic import RigidBlock, RockingFrame, SlidingBlock
 from analytic.motion import Motion
 from engines import Scene
 from engines.declaration import Engine, Preset
 from engines.parts.script import Script
 from engines.run import ground
+from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.kit.provenance import project_version, version_of
 from studies.measures.words import listed
+
+CALLED = {
+    RigidBlock: "A rocking block",
+    RockingFrame: "A rocking frame",
+    SlidingBlock: "A sliding block",
+}
+"""Class of a system -> what it is, in words."""
 
 BLOCK, GROUND = "block.py", "ground.py"
 """Files of every exported scene."""
@@ -26,17 +36,23 @@ class Exported:
     engine, preset : Engine, Preset
     scene : Scene
     watched_s : float
-        How long the block is watched [s].
-    expected, exact : float
-        Largest rotation over the critical one: the engine's and the exact one.
+        How long it is watched [s].
+    expected, exact : float or tuple of float
+        Largest rotation over the critical one, or the slips [m] where nothing rocks: the engine's
+        and the exact one.
     """
 
     engine: Engine
     preset: Preset
     scene: Scene
     watched_s: float
-    expected: float
-    exact: float
+    expected: float | tuple[float, ...]
+    exact: float | tuple[float, ...]
+
+    @property
+    def called(self) -> str:
+        """What it is, in words."""
+        return CALLED[type(self.scene.system)]
 
 
 def files(what: Exported) -> dict[str, str]:
@@ -85,6 +101,8 @@ def block_text(what: Exported, script: Script) -> str:
         version=project_version(),
         packages={name: version_of(name) for name in what.engine.packages},
         listed=listed,
+        slow=SLIP_RATE * math.sqrt(what.scene.system.gravity * what.scene.system.width),
+        short=LEAST_SLIP * what.scene.system.width,
     )
 
 

@@ -370,6 +370,31 @@ class Standing:
                 return CartBlock(width=width, height=height, **cart)
             return block
 
+    def refuse(self, allowed: str) -> None:
+        """Raise BadInputError if an option was given a value, which is allowed otherwise."""
+        scene = None if self.scene == ONE_BLOCK.scene else self.scene
+        refuse_given({"scene": scene, "columns": self.columns, "load": self.load}, allowed)
+
+    @property
+    def rocks(self) -> bool:
+        """Whether it is told by a rotation, and may begin with one."""
+        return self.scene != "slide"
+
+    def pose(self, system: System, excitation: Excitation) -> Posed:
+        """Return the motion and the start that options mean for the system.
+
+        Raises
+        ------
+        BadInputError
+            As of `Excitation.pose`, or if something is tilted that does not rock.
+        """
+        if not self.rocks:
+            refuse_given({"tilt": excitation.tilt, "rate": excitation.rate}, WHERE_IT_ROCKS)
+        return excitation.pose(system)
+
+
+WHERE_IT_ROCKS = "only where something rocks"
+"""Of options of a rotation."""
 
 ONE_BLOCK = Standing()
 """One block."""

@@ -11,7 +11,9 @@ from typing import Any
 import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
+from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.paper import free_rocking_window
 from studies.kit.provenance import record_of
@@ -53,7 +55,7 @@ def commands(
     """
     if missing := _without_option(block, motion, options):
         return f"no option asks for {missing}", ""
-    words = {"width": block.width, "height": block.height}
+    words = {**_scene_of(block), "width": block.width, "height": block.height}
     if isinstance(motion, SinePulse):
         words |= {"half-cycles": motion.half_cycles, "amplitude": _in_g(motion.amplitude)}
         words |= {"omega": motion.omega} | ({"phase": motion.phase} if motion.phase else {})
@@ -66,7 +68,7 @@ def commands(
     watched = "" if usual else f" --duration {duration}"
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
-    if not (usual and outcome in ("rocked", "overturned") and written_out(source)):
+    if not (usual and outcome in ("rocked", "overturned", "slid") and written_out(source)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"
 
@@ -116,11 +118,31 @@ def worst_again(table: pd.DataFrame) -> pd.DataFrame:
 
 def _without_option(block: System, motion: Motion, options: Mapping[str, Any]) -> str:
     """Return what of a case the command line has no option for."""
-    if RigidBlock(width=block.width, height=block.height) != block:
+    if _asked(block) != block:
         return "such a body, or its restitution"
+    if isinstance(block, SlidingBlock) and ("start" in options or isinstance(motion, Still)):
+        return "its launch"
     if not isinstance(motion, SinePulse | Still):
         return "its motion of the base"
     return ", ".join(name for name in options if name not in FLAGS)
+
+
+def _asked(block: System) -> System:
+    """Return what the options of the command line make of a block."""
+    options = _scene_of(block)
+    kinds: dict[str, Any] = {"frame": RockingFrame, "slide": SlidingBlock}
+    kind = kinds.get(options.pop("scene", ""), RigidBlock)
+    asked: System = kind(width=block.width, height=block.height, **options)
+    return asked
+
+
+def _scene_of(block: System) -> dict[str, Any]:
+    """Return the options that name a scene, none of one block."""
+    if isinstance(block, SlidingBlock):
+        return {"scene": "slide", "friction": block.friction}
+    if isinstance(block, RockingFrame):
+        return {"scene": "frame", "columns": block.columns, "load": block.load}
+    return {}
 
 
 def _in_g(amplitude: float) -> float:

@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from analytic import (
+    RockingFrame,
     condition_numbers,
     conditioning,
     peak_ratios,
@@ -68,6 +69,37 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
         difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rocked),
         false_overturning=(found == "overturned") & (right != "overturned"),
         missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
+    )
+
+
+def with_reference_of_frames(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add to rows of frames what `with_reference` adds to those of blocks, as far as it is told.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        As for `with_reference`, aspect and omega_over_p those of a column and the frame, and load.
+
+    Returns
+    -------
+    DataFrame
+        With exact_outcome, exact_peak, agrees, error, kappa, kappa_eta and sensitivity.
+    """
+    frames = zip(rows["aspect"], rows["load"], strict=True)
+    kept = [RockingFrame(width=1.0, height=h, load=load).restitution for h, load in frames]
+    posed, restitution = posed_cases(rows), np.array(kept)
+    peak, outcome = peak_ratios(*posed, restitution=restitution)
+    found = condition_numbers(*posed, restitution=restitution)
+    right = pd.Series([_word(item) for item in outcome], rows.index)
+    both_rocked = (rows["outcome"] == "rocked") & (right == "rocked")
+    return rows.assign(
+        exact_outcome=right,
+        exact_peak=peak,
+        agrees=kinds_of(rows["outcome"], right) == "",
+        error=(rows["peak_ratio"] / peak - 1.0).where(both_rocked),
+        kappa=found.amplitude,
+        kappa_eta=found.restitution,
+        sensitivity=sensitivities(*posed, restitution=restitution),
     )
 
 

@@ -29,6 +29,10 @@ ELSEWHERE = "the factor was found at the preset's own step"
 """Of landing steps twice and four times as long it is the same to 3 %, of a fixed MuJoCo step eight
 times as long it is twice as large."""
 
+OF_BLOCKS = "the factor was found on blocks"
+OF_A_PEAK = "the factor is of a peak"
+"""Why there is none of another scene."""
+
 MOST_TRUSTED = 30.0
 """A factor above is no bound: the estimate does not see the error."""
 
@@ -75,6 +79,20 @@ def estimate(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
     return abs(float(row["peak_ratio"]) / float(finer["peak_ratio"]) - 1.0)
 
 
+def estimate_beyond(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
+    """Return the estimate, of what slid by the slips of its response: over the largest.
+
+    It is inf where half the step has another number of slips.
+    """
+    if not row["outcome"] == finer["outcome"] == Outcome.SLID.value:
+        return estimate(row, finer)
+    slips, others = row["response"].slips, finer["response"].slips
+    if len(slips) != len(others):
+        return math.inf
+    apart = (abs(one - other) for one, other in zip(slips, others, strict=True))
+    return float(max(apart) / max(map(abs, others)))
+
+
 def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame) -> list[float]:
     """Return the estimate of each row, nan for one without a run at half its step.
 
@@ -89,23 +107,27 @@ def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame) -> list[float]:
 
 
 def with_estimates(
-    rows: Sequence[Row], finer: Sequence[Row], *, own_steps: bool = True
+    rows: Sequence[Row], finer: Sequence[Row], *, own_steps: bool = True, unheld: str = ""
 ) -> list[Row]:
     """Return rows of different sources with their estimates, and with what these bound.
 
     bound is the estimate times the published factor; nan, and said in the message, for a source
-    whose estimates give none. The message also says that the factor was found at another step,
-    where the presets' own were not used.
+    whose estimates give none, or where they were not held against errors, as `unheld` says. The
+    message also says that the factor was found at another step, where the presets' own were not
+    used.
     """
     halves = {row["source"]: row for row in finer}
-    return [{**row, **_estimated(row, halves.get(row["source"]), own_steps)} for row in rows]
+    return [
+        {**row, **_estimated(row, halves.get(row["source"]), own_steps, unheld)} for row in rows
+    ]
 
 
-def _estimated(row: Row, finer: Row | None, own_steps: bool) -> Row:
+def _estimated(row: Row, finer: Row | None, own_steps: bool, unheld: str) -> Row:
     if finer is None:
         return {"estimate": math.nan, "bound": math.nan}
-    found, trust = estimate(row, finer), published_trust(row["source"])
+    found, trust = estimate_beyond(row, finer), published_trust(row["source"])
     warning = "the estimate was never held against errors" if trust is None else trust.warning()
+    warning = unheld or warning
     if found == math.inf:
         warning = f"at half the step: {finer['outcome']}"
     elsewhere = "" if warning or own_steps else ELSEWHERE

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
-from studies.measures.presets import in_order, in_words
+from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.words import (
     duration,
@@ -35,6 +35,7 @@ from studies.measures.words import (
 from studies.measures.wrongness import KINDS, WORDS
 from studies.page import hero
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
+from studies.scenes.told import SCENES, lines_of
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -195,6 +196,42 @@ def presets_text(lines: pd.DataFrame) -> str:
         for _, row in lines.iterrows()
     ]
     return table(heads, rows)
+
+
+def scenes(published: Path) -> str:
+    """Return the scenes as a table of Markdown: a row for each engine, a cell for each scene.
+
+    A cell has the median error and how many outcomes are wrong, as documented and then of the last
+    of the engine's presets that were asked.
+    """
+    block = presets(published).rename(columns={"median": "median_error"})
+    held: list[tuple[str, pd.DataFrame, Callable[[float], str]]] = [("a block", block, part)]
+    if (published / "scenes" / "provenance.json").is_file():
+        held += [
+            (known.title, lines_of(published / "scenes" / f"{name}.csv", name), known.words)
+            for name, known in SCENES.items()
+        ]
+    heads = [f"{title}, {lines['cases'].max()} cases" for title, lines, _ in held]
+    engines = dict.fromkeys(engine_of(source) for _, lines, _ in held for source in lines["source"])
+    rows = [
+        (f"**{ENGINES[name].title}**", *(_scene(lines, name, say) for _, lines, say in held))
+        for name in engines
+    ]
+    return table(("", *heads), rows)
+
+
+def _scene(lines: pd.DataFrame, engine: str, say: Callable[[float], str]) -> str:
+    """Return what the presets of an engine make of a scene; a dash of one that cannot hold it."""
+    mine = lines[lines["source"].map(engine_of) == engine]
+    if mine.empty:
+        return "–"
+    by_preset = {preset_of(row["source"]): row for _, row in mine.iterrows()}
+    ends = [by_preset[name] for name in in_order(by_preset)][:: max(len(by_preset) - 1, 1)]
+    said = []
+    for row in ends:
+        wrong = int(sum(row[kind] for kind in KINDS))
+        said.append(say(row["median_error"]) + (f" ({wrong} wrong)" if wrong else ""))
+    return " → ".join(said)
 
 
 def models(published: Path) -> dict[str, str]:

@@ -152,8 +152,10 @@ def _address(kind: str, image: io.BytesIO) -> str:
 
 
 def _tables(chapter: Chapter, folder: Path, study: Any) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Yield a chapter's tables, and of a study that has them the commands of its worst cases."""
+    """Yield a chapter's tables, and of a study that has them others and its worst cases."""
     yield from ((name, read_table(folder / name)) for name in chapter.tables)
+    if hasattr(study, "shown"):
+        yield from study.shown(folder).items()
     if hasattr(study, "again"):
         yield WORST_AGAIN, study.again(folder)
 

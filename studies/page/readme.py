@@ -75,6 +75,7 @@ def pages(root: Path) -> dict[Path, str]:
         "asked": capital(facts.asked(published).words),
         "missing": facts.missing(published),
         "presets": facts.presets_short(lines),
+        "scenes": facts.scenes(published),
         "presets_all": facts.presets_text(lines),
         "models": facts.models(published),
         "advised": facts.advised(published),

@@ -31,6 +31,22 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
         ),
     ),
     captions={
+        "frame-scene": (
+            "A rocking frame: two columns that lean to the right about their right corners, and on "
+            "their tops a beam that stays level; dashed, where they stand at rest."
+        ),
+        "slide-scene": (
+            "A sliding block on its base, to the right of where it began, which is dashed; it "
+            "stays flat, and only friction holds it."
+        ),
+        "frame-time": (
+            "Frames: for each engine and preset a line from the median to the largest error of the "
+            "peak, against the run time of a case, both on logarithmic scales."
+        ),
+        "slide-time": (
+            "Slides: for each engine and preset a line from the median to the largest error of a "
+            "slip, against the run time of a case, both on logarithmic scales."
+        ),
         "frame": (
             "Error of the peak of a rocking frame for each engine, a bar from the median to the "
             "largest for its defaults, its tuned contact at equal steps and steps that land on "

@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import key, preset_dots
+from studies.drawing.labels import Name, around
 from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of, in_order, preset_of, told
 
@@ -80,6 +81,34 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
     axes.grid(axis="x", alpha=0.25)
     axes.legend(loc="center", frameon=False)
     axes.set_title("A floor that is moved by position alone carries nothing", fontsize=12)
+    return figure
+
+
+def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
+    """Draw for each engine and preset a line from the median to the largest error at its time.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of `studies.scenes.told.lines_of`.
+    title, along : str
+        What stands above, and along the axis of errors.
+    """
+    figure = Figure(figsize=(8.0, 4.6), layout="constrained")
+    axes = figure.subplots()
+    axes.set(xscale="log", yscale="log", xlabel="run time of a case  [ms]", ylabel=along)
+    names = []
+    for row in lines.dropna(subset="median_error").to_dict("records"):
+        engine, preset = engine_of(row["source"]), preset_of(row["source"])
+        ends = [max(row[name], LOWEST) for name in ("median_error", "largest_error")]
+        colour = told(preset).colour
+        axes.plot([row["ms"]] * 2, ends, color=colour, linewidth=1.5, alpha=0.5)
+        axes.plot(row["ms"], ends[0], "o", color=colour, markersize=6)
+        names.append(Name(title_of(engine), row["ms"], ends[0], colour))
+    axes.grid(alpha=0.25)
+    key(figure, preset_dots(in_order(map(preset_of, lines["source"]))), 4, fontsize=10)
+    axes.set_title(title, fontsize=12)
+    around(axes, names)
     return figure
 
 

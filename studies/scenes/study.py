@@ -19,7 +19,7 @@ from studies.kit.journal import Row
 from studies.kit.naming import several_sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import read_table
+from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, is_engine, preset_of
 from studies.measures.rolling import reduced
 from studies.scenes import KINDS, STUDY
@@ -28,7 +28,10 @@ from studies.scenes.cases import jobs
 from studies.scenes.findings import cart_sentence, floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table
+from studies.scenes.told import again, drawings, found_in, shown
 from studies.sources.groups import core_sources
+
+__all__ = ["again", "command", "headline", "pictures", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
@@ -234,28 +237,20 @@ TABLES = tuple(f"{kind}-summary" for kind in KINDS)
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
-    return tell(folder, pictures(folder), headline(folder), tables_in(folder))
-
-
-def tables_in(folder: Path) -> dict[str, pd.DataFrame]:
-    """Return a folder's summaries; without a line where it is from before a scene was asked."""
-    places = {name: folder / f"{name}.csv" for name in TABLES}
-    empty = pd.DataFrame(columns=["source"])
-    return {name: read_table(at) if at.is_file() else empty for name, at in places.items()}
+    tables = {name: found_in(folder / f"{name}.csv") for name in TABLES}
+    worst = again(folder).groupby("scene", sort=False)
+    asked = {f"{WORST_AGAIN}: {name}": worst_again(lines) for name, lines in worst}
+    tables |= {**shown(folder), **asked}
+    return tell(folder, pictures(folder), headline(folder), tables)
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
     """Return the lines of the summaries that are of engines."""
-    frames, slides, floors, blocks, on_carts, rolling = tables_in(folder).values()
+    tables = [found_in(folder / f"{name}.csv") for name in TABLES]
     return [
-        *map(_of_engines, (frames, slides)),
-        *(floors, blocks),
-        *map(_of_engines, (on_carts, rolling)),
+        table[table["source"].map(is_engine).astype(bool)] if "source" in table else table
+        for table in tables
     ]
-
-
-def _of_engines(table: pd.DataFrame) -> pd.DataFrame:
-    return table[table["source"].map(is_engine)]
 
 
 def headline(folder: Path) -> str:
@@ -267,9 +262,10 @@ def headline(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw what there is of frames, slides and floors, from their summaries alone."""
+    """Draw the scenes, and what there is of frames, slides and floors, from the tables alone."""
     from studies.scenes.figure import draw_floors, draw_frames, draw_slides
 
     drawn = zip(("frame", "slide", "floor"), (draw_frames, draw_slides, draw_floors), strict=True)
     found = zip(drawn, engines_in(folder), strict=False)
-    return {name: draw(lines) for (name, draw), lines in found if not lines.empty}
+    bars = {name: draw(lines) for (name, draw), lines in found if not lines.empty}
+    return {**drawings(folder), **bars}

@@ -19,6 +19,7 @@ from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, part, right_but
 from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
+from studies.scenes.told import SCENES, lines_of
 from studies.stability.report import failures, verdicts
 
 
@@ -42,6 +43,7 @@ def report(folder: Path) -> str:
         "What each preset is helped by, and misses": helps(engine),
     }
     finding = f"{introduction(engine)} {headline(folder)}"
+    tables |= beyond(folder)
     return tell(folder, pictures(folder), finding, tables, "score.txt")
 
 
@@ -62,6 +64,16 @@ def pictures(folder: Path) -> Pictures:
     return {
         "score": draw_score(ladder(folder), published()),
         "extremes": draw_matrix(table_of(folder, "extremes")),
+    }
+
+
+def beyond(folder: Path) -> dict[str, pd.DataFrame]:
+    """Return by title the errors in each further scene that the engine holds."""
+    paths = {name: folder / f"score-{name}.csv" for name in SCENES}
+    return {
+        SCENES[name].title.capitalize(): lines_of(path, name)
+        for name, path in paths.items()
+        if path.is_file()
     }
 
 
@@ -93,7 +105,8 @@ def introduction(engine: Engine) -> str:
         f"{engine.title}{f' ({listed(versions)})' if versions else ''}, in "
         f"{engine.precision.name.lower()} precision, "
         f"{'in space' if engine.spatial else 'in the plane'}; frames {listed(engine.frames)}, "
-        f"geometries {listed(engine.geometries)}."
+        f"geometries {listed(engine.geometries)}; beyond one body "
+        f"{listed([ability.value for ability in engine.abilities])}."
     )
 
 

@@ -2,7 +2,7 @@
 
 import functools
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from json import dumps
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from analytic.response import Response
-from engines import ENGINES
+from engines import ENGINES, Scene
 from studies.kit.arguments import BadInputError, Out, Place, check_writable, several_or_none
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
@@ -21,6 +21,8 @@ from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.provenance import write_text
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
+from studies.scenes import cases as scenes
+from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
 from studies.score.report import headline, pictures, published, report
@@ -36,7 +38,13 @@ FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11
 """Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
 SWEEP, STEPS, EXTREMES = "score-sweep", "score-steps", "score-extremes"
-"""The tables."""
+"""The tables of one block."""
+
+BEYOND: dict[str, Callable[[Sequence[str], bool], Iterator[Job]]] = {
+    "score-frame": scenes.frames,
+    "score-slide": scenes.slides,
+}
+"""Tables of further scenes, each with what yields its jobs."""
 
 
 def command(
@@ -114,7 +122,7 @@ def known(engine: str) -> str:
 
 
 def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
-    """Return the plan of the three tables."""
+    """Return the plan of the tables."""
     return Plan(
         jobs=score_jobs(name, quick),
         settings={"engine": name, "quick": quick, "bands": BANDS},
@@ -126,22 +134,34 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
 
 
 def score_jobs(name: str, quick: bool) -> list[Job]:
-    """Return the jobs of the three tables, preset by preset."""
+    """Return the jobs of the tables, preset by preset; those of further scenes where it can."""
     uses = [f"{name}:{preset}" for preset in presets_of(SOURCES[name])]
     swept = sweep_jobs(QUICK_FIGURES if quick else FIGURES, uses, DEFAULT_EFFORT)
     if quick:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % QUICK_EVERY == 0]
     along = [job for job in precision.precision_jobs(quick, [name]) if job.source in uses]
     extreme = stability.matrix_jobs(uses, quick)
-    return [*_in(SWEEP, swept), *_in(STEPS, along), *_in(EXTREMES, extreme)]
+    beyond = [job for table, of in BEYOND.items() for job in _in(table, held(of(uses, quick)))]
+    return [*_in(SWEEP, swept), *_in(STEPS, along), *_in(EXTREMES, extreme), *beyond]
 
 
-def _in(table: str, jobs: Sequence[Job]) -> list[Job]:
+def held(jobs: Iterable[Job]) -> list[Job]:
+    """Return the jobs of scenes that their engines hold."""
+    return [
+        job
+        for job in jobs
+        if not job.asked.declared.lacks(
+            Scene(system=job.block, motion=job.motion, preset=job.asked.preset), job.asked.used
+        )
+    ]
+
+
+def _in(table: str, jobs: Iterable[Job]) -> list[Job]:
     return [replace(job, labels={**job.labels, "table": table}) for job in jobs]
 
 
 def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
-    """Put a job of any of the three tables to its source."""
+    """Put a job of any of the tables to its source."""
     if job.labels["table"] == STEPS:
         budget_s = precision.QUICK_BUDGET_S if quick else precision.BUDGET_S
         return precision.measure(job, source, budget_s=budget_s)
@@ -154,6 +174,8 @@ def reduce(job: Job, response: Response) -> Row:
     """Return the columns that follow the labels of a job's table."""
     if job.labels["table"] == STEPS:
         return precision.reduce(job, response)
+    if job.labels["table"] in BEYOND:
+        return reduce_scene(job, response)
     row = summary(job, response)
     if job.labels["table"] == EXTREMES:
         row |= stability.judged(stability.case_of(job), job.source, response)

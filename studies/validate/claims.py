@@ -9,7 +9,18 @@ from math import inf
 import pandas as pd
 
 from analytic.response import Outcome
-from studies.cases.drawn import LEAST_NORMAL, everything
+from studies.cases.drawn import (
+    FRICTION,
+    KEPT,
+    LEAST_NORMAL,
+    LIFTED,
+    NEAR,
+    SLIDES,
+    TIPS,
+    Drawn,
+    everything,
+    fate_of,
+)
 from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
 from studies.measures.words import NAMED, gathered, listed, part, right_of
 from studies.measures.wrongness import counted, wrong_in
@@ -18,37 +29,38 @@ PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
 """Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
 
 LEFT_OUT = {
-    "near": f"the normal force falls to {LEAST_NORMAL:g} of the weight or less",
-    "lifted": "the normal force is lost: the pivot would have to be held down",
+    NEAR: f"the normal force falls to {LEAST_NORMAL:g} of the weight or less",
+    LIFTED: "the normal force is lost: the pivot would have to be held down",
 }
 """Cases that nobody was asked about -> why not."""
 
+OF_FRAMES = {
+    SLIDES: f"a foot or the beam would slide by a friction of {FRICTION:g}",
+    TIPS: "the beam would tip",
+}
+"""The same, of frames alone."""
 
-def census(seed: int, kept: int) -> pd.DataFrame:
+
+def census(seed: int, kept: int, scene: Drawn = "block") -> pd.DataFrame:
     """Count what was drawn until `kept` cases had a least normal force above LEAST_NORMAL.
 
     Returns
     -------
     DataFrame
-        Rows drawn, kept, near and lifted, the last two being those left out; the columns set,
-        cases, overturned and share, both of the exact solution, and why.
+        Rows drawn, kept, and those left out; the columns set, cases, overturned and share, both of
+        the exact solution, and why.
     """
-    counts = {name: [0, 0] for name in ("drawn", "kept", *LEFT_OUT)}
-    for _, exact in everything(seed):
-        if counts["kept"][0] == kept:
+    left = LEFT_OUT if scene == "block" else LEFT_OUT | OF_FRAMES
+    counts = {name: [0, 0] for name in ("drawn", KEPT, *left)}
+    for drawn, exact in everything(seed, scene):
+        if counts[KEPT][0] == kept:
             break
-        for name in ("drawn", _set_of(exact.min_normal)):
+        for name in ("drawn", fate_of(drawn, exact)):
             counts[name][0] += 1
             counts[name][1] += exact.outcome is Outcome.OVERTURNED
     table = pd.DataFrame.from_dict(counts, orient="index", columns=["cases", "overturned"])
     table = table.assign(share=table["overturned"] / table["cases"])
-    return table.rename_axis("set").reset_index().assign(why=[LEFT_OUT.get(n, "") for n in counts])
-
-
-def _set_of(normal: float) -> str:
-    if normal > LEAST_NORMAL:
-        return "kept"
-    return "near" if normal > 0.0 else "lifted"
+    return table.rename_axis("set").reset_index().assign(why=[left.get(n, "") for n in counts])
 
 
 def first_claim(compared: pd.DataFrame) -> str:
@@ -64,9 +76,14 @@ def first_claim(compared: pd.DataFrame) -> str:
     )
 
 
+FRAMES = {"columns": "{} columns", "load": "load {}"}
+"""Column of a frame -> it in words."""
+
+
 def width(compared: pd.DataFrame) -> str:
     """Say how wide random cases are: between which ends each of their numbers lies."""
     ends = {
+        **{words: compared[name] for name, words in FRAMES.items() if name in compared},
         "H/B {}": compared["aspect"],
         "B {} m": compared["width_m"],
         "{} half cycles": compared["half_cycles"],
@@ -109,6 +126,7 @@ def worst(compared: pd.DataFrame, count: int = 5) -> pd.DataFrame:
     order = compared.assign(size=size).sort_values("size", ascending=False)
     first = order.groupby("source").head(count).sort_values("source", kind="stable")
     posed = ["case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p"]
+    posed += [name for name in FRAMES if name in order]
     found = ["outcome", "exact_outcome", "exact_peak", "error"]
     return first[["source", *posed, *found, "kappa", "kappa_eta", "sensitivity"]]
 

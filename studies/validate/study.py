@@ -10,10 +10,10 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.drawn import RandomCase, draw
+from studies.cases.drawn import KINDS, Drawn, draw
 from studies.drawing.kept import Pictures, tell
 from studies.kit import provenance
-from studies.kit.arguments import Count, Out, check_sources
+from studies.kit.arguments import Count, Out, check_sources, one_of
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import several_sources
@@ -21,7 +21,12 @@ from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Runn
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
 from studies.measures.again import WORST_AGAIN, asked_again, worst_again
-from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
+from studies.measures.differences import (
+    WELL_CONDITIONED,
+    sensitivity_of,
+    with_reference,
+    with_reference_of_frames,
+)
 from studies.measures.halving import ELSEWHERE
 from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
@@ -41,6 +46,7 @@ def command(
     out: Out,
     cases: Count = 500,
     seed: Count = 1,
+    scene: Annotated[Drawn, one_of(Drawn)] = "block",
     sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
     effort: EffortOptions = OWN_EFFORT,
     estimate: bool = False,
@@ -58,6 +64,8 @@ def command(
         Number of random cases.
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
+    scene
+        block: one block that rocks. frame: a beam on 2 to 5 columns.
     sources
         Who is asked.
     estimate
@@ -70,7 +78,7 @@ def command(
     # the exact solution is asked, too, whether a case is kept
     everyone = ("exact", *(3 if estimate else 1) * sources)
     running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)
-    asked = plan(cases, seed, sources, effort, estimate=estimate)
+    asked = plan(cases, seed, sources, effort, scene=scene, estimate=estimate)
     return carry_out(STUDY, asked, out, running, report)
 
 
@@ -80,13 +88,14 @@ def plan(
     sources: Sequence[str],
     effort: Effort = OWN_EFFORT,
     *,
+    scene: Drawn = "block",
     estimate: bool = False,
 ) -> Plan:
     """Return the plan that puts random cases to some sources, the first with false hints too.
 
     With `estimate` all of them are asked at half the step, too.
     """
-    drawn = list(islice(draw(seed), cases))
+    drawn = list(islice(draw(seed, scene), cases))
     jobs = [
         Job(
             labels={"table": STUDY.name, **asdict(case)},
@@ -101,7 +110,7 @@ def plan(
     finer = half_jobs(jobs) if estimate else []
     return Plan(
         jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort), *finer],
-        settings={"seed": seed, **asdict(effort)},
+        settings={"seed": seed, **asdict(effort), **({} if scene == "block" else {"scene": scene})},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
         needed=without_hints,
@@ -130,7 +139,8 @@ def report(folder: Path) -> str:
     if halves := (folder / f"{HALVES}.csv").exists():
         compared = with_bounds(compared, compare(folder, HALVES))
     judged = sensitivity_of(compared)
-    left, in_bands = census(settings["seed"], compared["case"].nunique()), bands(compared)
+    scene, kept_cases = settings.get("scene", "block"), compared["case"].nunique()
+    left, in_bands = census(settings["seed"], kept_cases, scene), bands(compared)
     kept = {"drawn": left, "bands": in_bands}
     write_table(folder / "errors.csv", compared)
     tables = {
@@ -160,12 +170,14 @@ def report(folder: Path) -> str:
 def again(folder: Path) -> pd.DataFrame:
     """Return the cases in which each source errs most, with the commands that ask them again."""
     compared = pd.read_csv(folder / "errors.csv")
-    return asked_again(folder, worst(compared), compared, RandomCase)
+    kind = KINDS[provenance.record_of(folder)["settings"].get("scene", "block")]
+    return asked_again(folder, worst(compared), compared, kind)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:
     """Read a table back, and hold it against the exact solution."""
-    return with_reference(pd.read_csv(folder / f"{table}.csv", dtype={"message": str}))
+    rows = pd.read_csv(folder / f"{table}.csv", dtype={"message": str})
+    return with_reference_of_frames(rows) if "load" in rows else with_reference(rows)
 
 
 def pictures(folder: Path) -> Pictures:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from itertools import islice
 from typing import Any
 
-from analytic.block import RigidBlock
+from analytic.block import Rocker
 from analytic.motion import Motion
 from engines import ENGINES
 from studies.cases.drawn import RandomCase, draw
@@ -41,7 +41,7 @@ def jobs_of(release: Release, quick: bool) -> list[Job]:
     ]
 
 
-def posed(quick: bool) -> list[tuple[dict[str, Any], RigidBlock, Motion]]:
+def posed(quick: bool) -> list[tuple[dict[str, Any], Rocker, Motion]]:
     """Return labels, block and motion of every case: those of the figure, then random ones."""
     asked: dict[str, Iterable[Case | RandomCase]] = {
         f"figure {FIGURE}": sweep_cases([FIGURE]),

@@ -8,13 +8,15 @@ import os
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.collections import PolyCollection
 from PIL import Image
 
-from analytic import RigidBlock, SinePulse, Still
+from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
-from studies.drawing.film import GifWriter, Stage, outline, verdict
+from studies.drawing.block import outlines
+from studies.drawing.film import GifWriter, Stage, verdict
 from studies.kit.arguments import BadInputError
 from studies.kit.digests import seal
 from studies.kit.executors import Local
@@ -26,7 +28,7 @@ CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6
 
 @pytest.mark.parametrize("theta", [0.3, -0.3])
 def test_a_leaning_block_stands_on_one_corner(theta):
-    corners = outline(BLOCK, theta)
+    (corners,) = outlines(BLOCK, theta)
     lowest = corners[np.argmin(corners[:, 1])]
     assert lowest == pytest.approx([math.copysign(0.25, theta), 0.0])
     assert corners[:, 1].min() >= 0.0
@@ -42,7 +44,7 @@ def test_an_overturned_block_lies():
     rows = shown(BLOCK, Posed(pulse, (0.0, 0.0)), ("exact", "housner"), times, Local(1, 10.0))
     assert abs(rows[1]["theta"][-1]) == pytest.approx(math.pi / 2)
     assert abs(rows[0]["theta"]).max() < BLOCK.alpha
-    flat = outline(BLOCK, float(rows[1]["theta"][-1]))
+    (flat,) = outlines(BLOCK, float(rows[1]["theta"][-1]))
     assert flat[:, 1].max() == pytest.approx(0.5)
 
 
@@ -65,12 +67,85 @@ def test_the_exact_outline_is_drawn_over_every_other_block():
     ]
     stage = Stage(BLOCK, Still(), times, rows)
     stage.show(4)
-    panel = stage.drawing.axes[1]
-    corners = [patch.get_xy()[:4] for patch in panel.patches if len(patch.get_xy()) == 5]
-    assert corners == [
-        pytest.approx(outline(BLOCK, 0.3)),
-        pytest.approx(outline(BLOCK, 0.1)),
+    assert drawn(stage.drawing.axes[1]) == [
+        pytest.approx(outlines(BLOCK, 0.3)[0]),
+        pytest.approx(outlines(BLOCK, 0.1)[0]),
     ]
+
+
+def drawn(panel):
+    """Return the corners of the bodies in a panel, apart from its ground."""
+    bodies = [found for found in panel.collections if isinstance(found, PolyCollection)]
+    return [path.vertices[:4] for found in bodies for path in found.get_paths()]
+
+
+@pytest.mark.parametrize("theta", [0.2, -0.2])
+def test_a_beam_lies_flat_on_the_corners_of_its_columns(theta):
+    frame = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
+    stage = Stage(frame, Still(), np.arange(2.0), [
+        {"source": "mujoco:naive", "outcome": "rocked", "theta": np.array([0.0, theta])}
+    ])  # fmt: skip
+    stage.show(1)
+    *columns, beam = drawn(stage.drawing.axes[0])
+    assert len(columns) == 3
+    underside = beam[beam[:, 1] < beam[:, 1].mean()]
+    for column, home in zip(columns, (-3.0, 0.0, 3.0), strict=True):
+        pivot, top = column[column[:, 1].argmin()], column[column[:, 1].argmax()]
+        assert pivot == pytest.approx([home + math.copysign(0.25, theta), 0.0], abs=1e-12)
+        # the corner that carries the beam is where it was on the beam
+        moved = top[0] - (home - math.copysign(0.25, theta))
+        assert beam[:, 0].mean() == pytest.approx(moved)
+        assert underside[:, 1] == pytest.approx([column[:, 1].max()] * 2)
+    low, high = stage.drawing.axes[0].get_xlim()
+    assert low < min(beam[:, 0]) < max(beam[:, 0]) < high
+
+
+def test_a_slide_is_drawn_where_it_is_and_told_where_it_lies():
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    exact, late = np.array([0.0, -0.2, 0.1]), np.array([0.0, -0.1, 0.08])
+    stage = Stage(box, Still(), np.arange(3.0), [
+        {"source": "exact", "outcome": "slid", "theta": exact},
+        {"source": "mujoco:naive", "outcome": "slid", "theta": late},
+    ])  # fmt: skip
+    stage.show(1)
+    bodies, ghost = drawn(stage.drawing.axes[1])
+    assert [bodies[:, 0].mean(), ghost[:, 0].mean()] == pytest.approx([-0.1, -0.2])
+    stage.show(2)
+    said = [axes.texts[0].get_text() for axes in stage.drawing.axes[:2]]
+    assert said == ["lies at +100.0 mm", "−20 mm off"]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--scene", "frame", "--load", "2"], ["--scene", "slide", "--friction", "0.2"]],
+)
+def test_another_scene_is_shown_and_an_engine_that_cannot_hold_it_is_named(
+    options, tmp_path, capsys
+):
+    film = ["--out", str(tmp_path / "film.gif"), "--sources", "exact", "newton", "--slower", "0.2"]
+    frame = "frame" in options
+    assert run(["animate", *CASE, *options, *film]) == int(frame)
+    told = capsys.readouterr().err
+    assert ("failed: newton: not available: " in told) == frame
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames > 10
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--scene", "frame"], "--load missing"),
+        (["--scene", "slide"], "--friction missing"),
+        (["--scene", "slide", "--friction", "0.2", "--tilt", "0.1"], "only where something rocks"),
+        (["--scene", "frame", "--load", "2", "--dt", "0.001"], "it must come with equal steps"),
+    ],
+)
+def test_a_scene_that_cannot_be_shown_is_one_line(options, words, tmp_path, capsys):
+    asked = ["animate", *CASE, *options, "--out", str(tmp_path / "film.gif")]
+    assert run([*asked, "--sources", "exact", "mujoco:landing"]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert len(told.strip().splitlines()) == 1
 
 
 def sweep(folder, peaks):

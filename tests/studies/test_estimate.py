@@ -1,5 +1,6 @@
 """Estimates: an answer beside the one at half the step, and what the difference bounds."""
 
+import json
 import math
 from itertools import islice
 
@@ -27,6 +28,8 @@ from studies.measures.halving import (
     FACTORS,
     MOST_TRUSTED,
     NO_BOUND,
+    OF_A_PEAK,
+    OF_BLOCKS,
     Trust,
     estimate,
     halved,
@@ -224,6 +227,34 @@ def test_pairs_are_asked_at_another_step(tmp_path):
         answer = respond("mujoco", case.block, case.motion, step=step)
         assert rows.loc[(0, half), "peak_ratio"] == pytest.approx(answer.peak_ratio, rel=1e-12)
         assert rows.loc[(0, half), "steps"] == answer.steps
+
+
+def test_frames_are_asked_at_half_their_steps_too(tmp_path, capsys):
+    asked = ["--scene", "frame", "--cases", "2", "--tests", "1", "--sources", "mujoco:landing"]
+    assert run(["estimate", "--out", str(tmp_path), *asked, "--jobs", "1"]) == 0
+    lines = pd.read_csv(tmp_path / "estimates.csv")
+    assert set(lines["set"]) == {TEST, CALIBRATE}
+    # of second order: half the step has a fourth of the error, the difference is three fourths
+    assert lines["over"].to_numpy() == pytest.approx([4.0 / 3.0] * 3, rel=0.1)
+
+
+def test_a_slide_s_estimate_is_of_its_slips(capsys):
+    asked = ["--scene", "slide", "--friction", "0.2", "--width", "1", "--height", "0.5"]
+    pulse = ["--amplitude", "0.4", "--omega", "6.2832", "--sources", "pymunk:fixed", "newton:naive"]
+    assert run(["compare", *asked, *pulse, "--estimate", "--json"]) == 0
+    for line in map(json.loads, capsys.readouterr().out.splitlines()):
+        assert line["error"] < 2.5 * line["estimate"] < 5.0 * line["error"]
+        assert line["bound"] is None
+        assert OF_A_PEAK in line["message"]
+
+
+def test_a_frame_s_estimate_has_no_bound_from_blocks(capsys):
+    frame = ["--scene", "frame", "--load", "2", "--width", "0.5", "--height", "1.5"]
+    pulse = ["--amplitude", "0.4", "--omega", "6.2832", "--duration", "1.6"]
+    assert run(["compare", *frame, *pulse, "--sources", "mujoco", "--estimate", "--json"]) == 0
+    (line,) = map(json.loads, capsys.readouterr().out.splitlines())
+    assert 0.0 < line["estimate"] < 1e-5
+    assert (line["bound"], OF_BLOCKS in line["message"]) == (None, True)
 
 
 def test_a_comparison_carries_estimates(capsys):

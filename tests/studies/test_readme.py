@@ -61,6 +61,27 @@ def test_the_readme_follows_its_tables(tmp_path):
     assert "5760" not in after[0]
 
 
+def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
+    copy = tmp_path / readme.PUBLISHED
+    shutil.copytree(PUBLISHED, copy)
+    (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
+    assert "3.8 % → 9.4e-05" in drake
+    assert drake.count("|") == 5
+    (newton,) = (line for line in facts.scenes(copy).splitlines() if "Newton" in line)
+    assert " | – | " in newton
+    path = copy / "scenes" / "frame.csv"
+    rows = read_table(path)
+    mine = rows["source"] == "drake:naive"
+    rows.loc[mine, "error"] = 0.25
+    rows.loc[rows[mine].index[:3], "outcome"] = "overturned"
+    rows.loc[rows[mine].index[:3], "error"] = float("nan")
+    rows.to_csv(path, index=False, na_rep="nan")
+    (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
+    assert "25 % (3 wrong) → 9.4e-05" in drake
+    shutil.rmtree(copy / "scenes")
+    assert "frame" not in facts.scenes(copy)
+
+
 def said(root):
     """Return README.md and the page about the engines, of a folder."""
     pages = readme.pages(root)

@@ -3,20 +3,28 @@
 import json
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.patches import Polygon
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
 from analytic.response import Outcome
 from engines import ENGINES
+from engines.layouts import layout_of
 from studies import respond, side_by_side
 from studies.__main__ import run
+from studies.drawing.block import draw_scene
 from studies.kit.jobs import ask
 from studies.kit.tables import read_table
+from studies.measures.published import PUBLISHED
+from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, frames, slides, steps
+from studies.scenes.figure import draw_times
 from studies.scenes.findings import floor_sentence, frame_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.study import block_summary, floor_summary, reduce, tabulate
+from studies.scenes.told import SCENES, again, kinds_in, lines_of
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
 PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
@@ -52,6 +60,16 @@ def test_a_beam_that_would_tip_is_named(capsys):
     tall = ("--width", "3", "--height", "0.7", "--amplitude", "5", "--omega", "20")
     run(["compare", *tall, "--scene", "frame", "--load", "1", "--sources", "exact"])
     assert "not here: the beam would tip: L = 1.4 m, needs " in capsys.readouterr().out
+
+
+def test_a_frame_that_would_slide_is_named(capsys):
+    asked = (*OF_A_FRAME, "--friction", "0.38", "--sources", "exact", "pymunk:fixed", "--duration")
+    code, (exact, found) = compared(capsys, *asked, "1.5")
+    assert exact["message"] == "the beam would slide: mu = 0.38, needs 0.436"
+    code, (exact, found) = compared(capsys, *(w.replace("0.38", "0.2") for w in asked), "1.5")
+    assert code == 1
+    assert exact["message"].startswith("the feet would slide: mu = 0.2, needs 0.351; the beam")
+    assert "the pivot slid" in found["message"]
 
 
 def test_a_slide_is_compared(capsys):
@@ -113,6 +131,73 @@ def test_bad_input_is_one_line(options, problem, capsys):
     assert run(["compare", *SIZE, *options]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert problem in line
+
+
+def test_kinds_of_a_frame_and_of_a_slide_are_counted():
+    frames = pd.DataFrame({
+        "outcome": ["overturned", "rocked", "at rest", "failed", "overturned"],
+        "exact": [0.5, math.inf, 0.5, 0.5, math.inf],
+    })  # fmt: skip
+    found = [*kinds_in(frames, "error")]
+    assert found == ["fall_wrong", "fall_wrong", "rest_wrong", "no_answer", ""]
+    slides = pd.DataFrame({
+        "outcome": ["failed", "overturned", "at rest", "slid", "slid"],
+        "slip_error_m": [math.nan, math.nan, math.nan, 0.1, math.nan],
+    })  # fmt: skip
+    found = [*kinds_in(slides, "slip_error_m")]
+    assert found == ["no_answer", "fall_wrong", "rest_wrong", "", "rest_wrong"]
+
+
+def test_the_published_scenes_are_told_as_their_summaries_are():
+    """By a second way: the kinds together are the wrong of the summary, medians and times too."""
+    for name, count, median in (("frame", "frames", "median_error"), ("slide", "slides", "")):
+        lines = lines_of(PUBLISHED / "scenes" / f"{name}.csv", name).set_index("source")
+        summary = read_table(PUBLISHED / "scenes" / f"{name}-summary.csv").set_index("source")
+        assert list(lines.index) == list(summary.index)
+        assert (lines[[*KINDS]].sum(axis=1) == summary["wrong"]).all()
+        assert (lines["cases"] == summary[count]).all()
+        assert lines["ms"].to_numpy() == pytest.approx(summary[f"ms_a_{name}"].to_numpy())
+        if median:
+            assert lines[median].to_numpy() == pytest.approx(summary[median].to_numpy())
+
+
+def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
+    lines = again(PUBLISHED / "scenes")
+    assert list(lines["scene"].unique()) == list(SCENES)
+    frames, slides = (lines[lines["scene"] == name] for name in SCENES)
+    assert frames.iloc[0][["source", "outcome"]].to_list() == ["pymunk:naive", "overturned"]
+    assert frames["error"].dropna().abs().is_monotonic_decreasing
+    assert (slides["compare"] == "no option asks for its launch").any()
+    for row in (frames.iloc[0], slides[slides["source"] == "pymunk:naive"].iloc[0]):
+        assert run([*row["compare"].split()[1:], "--json"]) == 0
+        _, found = map(json.loads, capsys.readouterr().out.splitlines())
+        assert found["outcome"] == row["outcome"]
+        assert row["export"].startswith("rocking export --scene ")
+
+
+def test_an_engine_that_holds_one_scene_alone_has_its_report(tmp_path, capsys):
+    asked = ["scenes", "--quick", "--sources", "newton:fixed", "--jobs", "1"]
+    assert run([*asked, "--out", str(tmp_path)]) == 0
+    assert "newton:fixed" in capsys.readouterr().out
+
+
+def test_a_scene_is_drawn_with_all_its_bodies():
+    for told in SCENES.values():
+        bodies = len(layout_of(told.system, 1.0, None, (0.0, 0.0)).bodies)
+        axes = draw_scene(told.system, told.at).axes[0]
+        shapes = [patch for patch in axes.patches if isinstance(patch, Polygon)]
+        assert len(shapes) == 2 * bodies
+        (low, high), (_, top) = axes.get_xlim(), axes.get_ylim()
+        corners = np.concatenate([shape.get_xy() for shape in shapes])
+        assert low < corners[:, 0].min() < corners[:, 0].max() < high
+        assert corners[:, 1].max() < top
+
+
+def test_errors_are_drawn_at_their_times_where_there_are_some():
+    lines = lines_of(PUBLISHED / "scenes" / "frame.csv", "frame")
+    axes = draw_times(lines, "title", "error").axes[0]
+    points = {tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "o"}
+    assert points == {*zip(lines["ms"], lines["median_error"], strict=True)}
 
 
 def test_equal_steps_are_shifted_by_parts_of_a_step():

@@ -107,6 +107,39 @@ def test_quick_asks_a_part_of_every_preset():
     assert len(quick) < len(full) / 10
 
 
+def tables_of(name):
+    return {job.labels["table"] for job in score.score_jobs(name, True)}
+
+
+def test_an_engine_is_asked_about_the_scenes_that_it_declares(alone):
+    """One of which nothing is declared has one body, which slides, too."""
+    pytest.importorskip("pymunk")
+    for place in (MINE, "stacks:ENGINE"):
+        sources.announce(place)
+    assert tables_of("stacks") - tables_of("my_engine") == {"score-frame"}
+    assert "score-slide" in tables_of("my_engine")
+    slides = [
+        job for job in score.score_jobs("my_engine", True) if job.labels["table"] in score.BEYOND
+    ]
+    assert {job.source for job in slides} == {"my_engine:fixed"}  # nothing there to land on
+
+
+def test_the_page_of_an_engine_that_stacks(alone, few, tmp_path, capsys):
+    pytest.importorskip("pymunk")
+    assert run(["score", "stacks:ENGINE", "--quick", "--out", str(tmp_path)]) == 0
+    page = capsys.readouterr().out
+    words = "beyond one body several bodies on one base and bodies that rest on other bodies."
+    assert words in " ".join(page.split())
+    for head, name in (("A rocking frame:", "frame"), ("A sliding block:", "slide")):
+        line = next(text for text in page.partition(head)[2].splitlines() if "stacks:fixed" in text)
+        rows = pd.read_csv(tmp_path / f"score-{name}.csv")
+        assert line.split()[1] == f"{len(rows)}"
+        job = next(job for job in few("stacks", True) if job.labels["table"] == f"score-{name}")
+        again = respond("stacks:fixed", job.block, job.motion, **job.options)
+        assert rows["peak_ratio"].iloc[0] == again.peak_ratio
+        assert rows["outcome"].iloc[0] == ("rocked" if name == "frame" else "slid")
+
+
 def some_of(jobs):
     """Return two jobs of each table and preset: the first, on which all is well, and another."""
     seen = Counter()

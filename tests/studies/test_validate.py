@@ -1,20 +1,29 @@
 """Random cases: the draw, the condition number, the report."""
 
+import json
 import math
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import simulate
-from studies.cases.drawn import LEAST_NORMAL, draw
+from analytic import frame_faults, simulate
+from engines.layouts import BEAM_DEPTH, SPACING
+from studies.__main__ import run
+from studies.cases.drawn import FRICTION, LEAST_NORMAL, SLIDES, TIPS, draw, everything, fate_of
 from studies.kit.journal import FolderError
 from studies.kit.options import EffortOptions, Running
 from studies.kit.plan import fill
-from studies.measures.differences import sensitivity_of, with_conditioning, with_reference
+from studies.measures.differences import (
+    sensitivity_of,
+    with_conditioning,
+    with_reference,
+    with_reference_of_frames,
+)
 from studies.measures.halving import ELSEWHERE, published_trust
-from studies.validate import STUDY
+from studies.validate import STUDY, study
 from studies.validate.bounds import bounded
 from studies.validate.claims import bands, first_claim, quantiles, worst
 from studies.validate.hints import FALSE, KNOWN, leanings
@@ -36,6 +45,76 @@ def test_cases_keep_their_ranges_and_their_reference_valid():
         assert 1.02 <= case.amplitude_g * case.aspect <= 4
         assert 0.3 <= case.omega_over_p <= 12
         assert simulate(case.block, case.motion).min_normal > LEAST_NORMAL
+
+
+def test_random_frames_keep_their_ranges_and_their_reference_valid():
+    kept = list(islice(draw(1, "frame"), 100))
+    assert {case.columns for case in kept} == {2, 3, 4, 5}
+    assert all(0.1 <= case.load <= 10.0 for case in kept)
+    assert [case.case for case in kept] == list(range(100))
+    fates = {}
+    for drawn, exact in islice(everything(1, "frame"), 100):
+        frame, fate = drawn.block, fate_of(drawn, exact)
+        sizes = {"spacing": SPACING * frame.height, "depth": BEAM_DEPTH * frame.height}
+        faults = frame_faults(frame, drawn.motion, friction=FRICTION, **sizes)
+        fates.setdefault(fate, []).append(faults)
+    assert all(not faults for faults in fates["kept"])
+    assert all("would slide" in faults[0] for faults in fates[SLIDES])
+    assert all("the beam would tip" in faults[0] for faults in fates[TIPS])
+
+
+def test_frames_are_held_against_their_own_reference():
+    """Row by row by the exact solution; κ by the peak of a pulse that is a millionth stronger."""
+    cases = list(islice(draw(3, "frame"), 12))
+    table = pd.DataFrame(
+        {name: getattr(case, name) for name in (*PULSED, "columns", "load")} for case in cases
+    )
+    rows = with_reference_of_frames(table.assign(outcome="rocked", peak_ratio=0.5))
+    rocked = rows["exact_outcome"] == "rocked"
+    assert 2 <= rocked.sum() < len(rows)
+    for case, row in zip(cases, rows.to_dict("records"), strict=True):
+        exact = simulate(case.block, case.motion)
+        assert row["exact_outcome"] == exact.outcome.value
+        assert row["agrees"] == (exact.outcome.value == "rocked")
+        if row["agrees"]:
+            assert row["exact_peak"] == pytest.approx(exact.peak_ratio, rel=1e-9)
+            assert row["error"] == pytest.approx(0.5 / exact.peak_ratio - 1.0, rel=1e-9)
+            stronger = replace(case.motion, amplitude=(1.0 + 1e-6) * case.motion.amplitude)
+            moved = simulate(case.block, stronger).peak_ratio / exact.peak_ratio - 1.0
+            assert 1e6 * moved == pytest.approx(row["kappa"], rel=1e-3)
+        else:
+            assert math.isnan(row["error"])
+
+
+PULSED = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
+
+
+def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
+    asked = ["validate", "--scene", "frame", "--cases", "5", "--sources", "mujoco:landing"]
+    assert run([*asked, "--out", str(tmp_path), "--jobs", "1"]) == 0
+    assert "2 to 5 columns" in capsys.readouterr().out
+    errors = pd.read_csv(tmp_path / "errors.csv")
+    assert errors["agrees"].all()
+    judged = errors["error"].abs() / sensitivity_of(errors)
+    assert judged.max() < 1e-5
+    drawn = pd.read_csv(tmp_path / "drawn.csv").set_index("set")["cases"]
+    assert drawn["kept"] == 5
+    assert drawn["drawn"] == drawn[["kept", "near", "lifted", SLIDES, TIPS]].sum()
+    again = study.again(tmp_path)
+    worst = errors[errors["error"].notna()].iloc[0]
+    words = again.set_index("case").loc[worst["case"], "compare"].split()
+    assert run([*words[1:], "--json"]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    found = {line["source"]: line["peak_ratio"] for line in lines}
+    assert found["mujoco:landing"] / found["exact"] - 1.0 == pytest.approx(worst["error"], rel=1e-5)
+
+
+@pytest.mark.parametrize("command", ["validate", "estimate"])
+def test_random_slides_are_refused(command, tmp_path, capsys):
+    assert run([command, "--scene", "slide", "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "--scene is 'slide'; it must be among block, frame" in told
+    assert len(told.strip().splitlines()) == 1
 
 
 def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
