@@ -8,13 +8,15 @@ STUDY = Study(
     help="""One engine on one page, registered or at MODULE:ENGINE or MODULE:build.
 
 The paper's cases with each of its presets, its errors along the step beside the published
-engines, its verdicts on extreme cases, what it is helped by. Writes score-sweep.csv,
-score-steps.csv, score-extremes.csv, score.txt, two figures and provenance.json; resumable.""",
+engines, its verdicts on extreme cases, what it is helped by, and whether its velocities hold at the
+`Moment` that its world declares. Writes score-sweep.csv, score-steps.csv, score-extremes.csv,
+score-moments.csv, score.txt, two figures and provenance.json; resumable.""",
     table="score-sweep.csv",
     products=(
         "score-sweep.csv",
         "score-steps.csv",
         "score-extremes.csv",
+        "score-moments.csv",
         "score.txt",
         "score.png",
         "extremes.png",

@@ -23,7 +23,8 @@ from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
-from studies.score.report import headline, pictures, published, report
+from studies.score.moments import BLOCK, UNFELT, accusation, ask_for_moment, reduced
+from studies.score.report import headline, pictures, published, report, table_of
 from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
@@ -36,6 +37,7 @@ FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11
 """Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
 SWEEP, STEPS, EXTREMES = "score-sweep", "score-steps", "score-extremes"
+MOMENTS = "score-moments"
 """The tables."""
 
 
@@ -53,7 +55,8 @@ def command(
     """Score one engine.
 
     With a requirement or an earlier result, the exit code is 1 where a requirement falls short,
-    and 0 whatever else failed.
+    and 0 whatever else failed; it is 1 where the engine's world declares another `Moment` than the
+    one at which its velocities hold.
 
     Parameters
     ----------
@@ -87,7 +90,9 @@ def command(
     judged = [requirement.judged(result) for requirement in requirements]
     for _, line in judged:
         print(line)
-    return int(not all(holds for holds, _ in judged)) if earlier or judged else code
+    if earlier or judged:
+        code = int(not all(holds for holds, _ in judged))
+    return code or int(bool(accusation(table_of(out, "moments"))))
 
 
 def known(engine: str) -> str:
@@ -114,7 +119,7 @@ def known(engine: str) -> str:
 
 
 def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
-    """Return the plan of the three tables."""
+    """Return the plan of the tables."""
     return Plan(
         jobs=score_jobs(name, quick),
         settings={"engine": name, "quick": quick, "bands": BANDS},
@@ -126,14 +131,20 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
 
 
 def score_jobs(name: str, quick: bool) -> list[Job]:
-    """Return the jobs of the three tables, preset by preset."""
+    """Return the jobs of the tables, preset by preset."""
     uses = [f"{name}:{preset}" for preset in presets_of(SOURCES[name])]
     swept = sweep_jobs(QUICK_FIGURES if quick else FIGURES, uses, DEFAULT_EFFORT)
     if quick:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % QUICK_EVERY == 0]
     along = [job for job in precision.precision_jobs(quick, [name]) if job.source in uses]
     extreme = stability.matrix_jobs(uses, quick)
-    return [*_in(SWEEP, swept), *_in(STEPS, along), *_in(EXTREMES, extreme)]
+    flights = [Job(labels={}, block=BLOCK, motion=UNFELT, source=use) for use in uses]
+    return [
+        *_in(SWEEP, swept),
+        *_in(STEPS, along),
+        *_in(EXTREMES, extreme),
+        *_in(MOMENTS, flights),
+    ]
 
 
 def _in(table: str, jobs: Sequence[Job]) -> list[Job]:
@@ -141,7 +152,9 @@ def _in(table: str, jobs: Sequence[Job]) -> list[Job]:
 
 
 def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
-    """Put a job of any of the three tables to its source."""
+    """Put a job of any of the tables to its source."""
+    if job.labels["table"] == MOMENTS:
+        return ask_for_moment(job, source)
     if job.labels["table"] == STEPS:
         budget_s = precision.QUICK_BUDGET_S if quick else precision.BUDGET_S
         return precision.measure(job, source, budget_s=budget_s)
@@ -152,6 +165,8 @@ def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) 
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the columns that follow the labels of a job's table."""
+    if job.labels["table"] == MOMENTS:
+        return reduced(response)
     if job.labels["table"] == STEPS:
         return precision.reduce(job, response)
     row = summary(job, response)

@@ -168,7 +168,7 @@ def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys
     ]
     assert short.startswith("falls short: naive:max must be at most 1e-09, and is ")
     kept = json.loads(Path("result.json").read_text())
-    assert list(kept) == ["schema", "engine", "versions", "presets", "peaks"]
+    assert list(kept) == ["schema", "engine", "versions", "presets", "peaks", "moments"]
     assert (kept["schema"], kept["engine"]) == (1, "mujoco")
     assert kept["versions"]["mujoco"] == version("mujoco")
 
