@@ -30,7 +30,7 @@ summaries and pictures, and findings.txt; resumable.""",
     chapters=(
         Chapter(
             folder="scenes",
-            question="Does it hold for several bodies, for friction alone, on a moving floor?",
+            question="Does it hold for frames, for friction alone, on moving floors?",
             tables=tuple(f"{kind}-summary.csv" for kind in ("frame", "slide", "floor", "block")),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, two places of the steps.",
