@@ -41,7 +41,7 @@ def report(folder: Path) -> str:
     factors = lines[["name", "width_m", "height_m", "record", "lifts", "margin"]]
     table = factors.reset_index(drop=True).join(pd.DataFrame(beside))
     counts, doubt = counted(rows), doubts(rows)
-    finding = f"{headline(folder)} {capital('; '.join(counts))}. {listed(doubt)}."
+    finding = f"{headline(folder)} {capital('; '.join(counts))}. {capital(listed(doubt))}."
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
     text = tell(folder, pictures(folder), finding, {title: table})
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
@@ -119,7 +119,8 @@ def doubts(rows: pd.DataFrame) -> list[str]:
         "would lift their pivot off, where no answer holds": cases["min_normal"] < 0.0,
         f"are within {100.0 * NEAR:g} % of the factor that first overturns them": near,
     }
-    return [f"{int(where.sum())} of {len(cases)} {what}" for what, where in words.items()]
+    said = [f"{where.sum()} of {len(cases)} {what}" for what, where in words.items() if where.any()]
+    return said or ["none slides, lifts off its pivot or is near the factor that overturns it"]
 
 
 def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:

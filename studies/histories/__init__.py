@@ -13,7 +13,7 @@ Writes for each figure its samples (CSV), its drawing (PNG) and what was found (
     chapters=(
         Chapter(
             folder="histories",
-            question="Do the paper's time histories come out, and what it says about them?",
+            question="Do the paper's time histories come out, and its words on them?",
             quick=(),
             minutes=(0.1, 0.1),
         ),

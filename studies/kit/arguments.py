@@ -137,8 +137,8 @@ def _spaced(values: Iterable[Any]) -> str:
 several = Parameter(consume_multiple=True, show_default=_spaced)
 """Values separated by spaces."""
 
-several_or_none = Parameter(consume_multiple=True)
-"""Values separated by spaces; None where nothing is given."""
+several_or_none = Parameter(consume_multiple=1)
+"""Values separated by spaces, at least one; None where the option is not given."""
 
 
 def check_sources(names: Sequence[str]) -> None:

@@ -47,8 +47,6 @@ MOVING = "0.2.0"
 
 MANY = 15
 """Statements of a chapter up to which they are shown; more are folded."""
-NINTH = Path("tests", "plugin", "my_engine.py")
-"""An engine of another package, in few lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -380,12 +378,6 @@ def lasts(*records: Mapping[str, Any]) -> str:
     times = {run["first"]: f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
     return f"{first} the first time, when its functions are compiled, and for {later} later"
-
-
-def ninth(root: Path) -> str:
-    """Return an engine as a user adds it: the example that a test scores."""
-    text = (root / NINTH).read_text(encoding="utf-8")
-    return text[text.index("import ") :].rstrip()
 
 
 def minutes(full: bool) -> int:

@@ -93,7 +93,6 @@ def pages(root: Path) -> dict[Path, str]:
         "troubles": engine_facts.troubles(),
         "own_tests": engine_facts.own_tests(published),
         "rules": engine_facts.rules_of_engines(published),
-        "ninth": facts.ninth(root),
         "random_fixed": engine_facts.random_fixed(published),
         "minutes": facts.minutes,
     }

@@ -14,7 +14,7 @@ resumable. The full study takes some eight minutes on one core, --quick one and 
     chapters=(
         Chapter(
             folder="precision",
-            question="Which error does which run time buy, and what does a scene not need?",
+            question="Which error does which run time buy, and what is not needed?",
             tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
             minutes=(1.6, 8.2),
             weaker="Fewer cases and settings of each method, one timing of each.",

@@ -17,15 +17,14 @@ findings.txt; a minute.""",
         "corners": (
             "How far the speed upwards of a corner that strikes the base, over that of its "
             "approach, is at most from the coefficient of restitution that was asked for, a row "
-            'for each way: "and" adds to the one before. Below, what comes out of those neither '
-            "kept nor ignored; the band is wherever in a step the impact falls; crosses are "
-            "strikes that broke."
+            'for each way, where "and" adds to the one before, and below what comes out of those '
+            "neither kept nor ignored: a band for wherever in a step the impact falls, crosses "
+            "for strikes that broke."
         ),
         "rates": (
             "The angular rate of a block after an impact of its corner over that before, against "
             "the coefficient of restitution that was asked for; the thin line is 1 - 3/2 (1 + e) "
-            "sin² α, from the moment of momentum about a corner that bounces and does not slide. "
-            "Bands as above."
+            "sin² α, of a corner that bounces and does not slide."
         ),
     },
     chapters=(

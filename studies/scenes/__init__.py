@@ -24,7 +24,7 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
     chapters=(
         Chapter(
             folder="scenes",
-            question="Does it hold for several bodies, for friction alone, on a moving floor?",
+            question="Does it hold for frames, friction alone, floors, carts, a rolling cylinder?",
             tables=(*(f"{kind}-summary.csv" for kind in KINDS), "cart-steps.csv"),
             minutes=(0.5, 12.0),
             weaker="One frame, one slide, one cart, two places of the steps.",

@@ -1,4 +1,4 @@
-"""An engine's page, from its three tables and the published ones."""
+"""An engine's page, from its tables and the published ones."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from studies.measures.words import listed, part, right_but
 from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
 from studies.scenes.told import SCENES, lines_of
+from studies.score.moments import accusation, judged
 from studies.stability.report import failures, verdicts
 
 
@@ -42,8 +43,12 @@ def report(folder: Path) -> str:
         "Of these failures, and the first setting that avoids each": wrong,
         "What each preset is helped by, and misses": helps(engine),
     }
-    finding = f"{introduction(engine)} {headline(folder)}"
+    moments = table_of(folder, "moments")
+    tables["The moment of a step at which its velocities hold, of which 1 is the end"] = judged(
+        moments
+    )
     tables |= beyond(folder)
+    finding = " ".join(filter(None, (accusation(moments), introduction(engine), headline(folder))))
     return tell(folder, pictures(folder), finding, tables, "score.txt")
 
 
@@ -94,7 +99,7 @@ def published() -> pd.DataFrame:
 
 
 def table_of(folder: Path, name: str) -> pd.DataFrame:
-    """Return one of the tables: sweep, steps or extremes."""
+    """Return one of the tables: sweep, steps, extremes or moments."""
     return read_table(folder / f"score-{name}.csv")
 
 

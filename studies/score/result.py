@@ -81,8 +81,9 @@ def result_of(folder: Path, engine: Engine) -> dict[str, Any]:
     Its presets have `MEASURES`, an error being None where no peak survives, and how many cases and
     extremes these are of. Its peaks are, for each preset and case, that of a block which rocked, or
     what became of another; a case is called by its `CASE` with slashes between, or extreme/NAME.
+    Its moments are, for each preset, the one declared and the one measured, in steps.
     """
-    cases, extremes = table_of(folder, "sweep"), table_of(folder, "extremes")
+    cases, extremes, moments = (table_of(folder, name) for name in ("sweep", "extremes", "moments"))
     names = ["/".join(map(str, case)) for case in cases[list(CASE)].itertuples(index=False)]
     named = "extreme/" + extremes["case"]
     rows = pd.concat([cases.assign(case=names), extremes.assign(case=named)])
@@ -91,8 +92,7 @@ def result_of(folder: Path, engine: Engine) -> dict[str, Any]:
     valid = extremes[extremes["verdict"] != Verdict.INVALID.value]
     good = (valid["verdict"] == Verdict.GOOD.value).groupby(valid["source"])
     lines = swept(folder).set_index("source").join(good.agg(extreme="sum", extremes="count"))
-    lines = lines.rename(index=preset_of, columns=LEAST | MOST)
-    numbers = lines[["cases", "extremes", *MEASURES]].astype(object)
+    lines = lines.rename(columns=LEAST | MOST)
     packages = engine.packages or packages_distributions().get(engine.library, ())
     return {
         "schema": SCHEMA,
@@ -102,12 +102,19 @@ def result_of(folder: Path, engine: Engine) -> dict[str, Any]:
             "python": platform.python_version(),
             **{name: provenance.version_of(name) for name in packages},
         },
-        "presets": numbers.where(numbers.notna(), None).to_dict("index"),
+        "presets": by_preset(lines[["cases", "extremes", *MEASURES]]),
         "peaks": {
             preset_of(str(source)): dict(zip(group["case"], group["peak"], strict=True))
             for source, group in rows.groupby("source", sort=False)
         },
+        "moments": by_preset(moments.set_index("source")[["declared", "measured"]]),
     }
+
+
+def by_preset(table: pd.DataFrame) -> dict[Any, dict[Any, Any]]:
+    """Return the lines of a table of sources by their presets, None where a number is missing."""
+    numbers = table.rename(index=preset_of).astype(object)
+    return numbers.where(numbers.notna(), None).to_dict("index")
 
 
 def read(path: Path, engine: Engine) -> dict[str, Any]:

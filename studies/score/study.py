@@ -25,7 +25,8 @@ from studies.scenes import cases as scenes
 from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
-from studies.score.report import headline, pictures, published, report
+from studies.score.moments import BLOCK, UNFELT, accusation, ask_for_moment, reduced
+from studies.score.report import headline, pictures, published, report, table_of
 from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
@@ -38,6 +39,7 @@ FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11
 """Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
 SWEEP, STEPS, EXTREMES = "score-sweep", "score-steps", "score-extremes"
+MOMENTS = "score-moments"
 """The tables of one block."""
 
 BEYOND: dict[str, Callable[[Sequence[str], bool], Iterator[Job]]] = {
@@ -61,7 +63,8 @@ def command(
     """Score one engine.
 
     With a requirement or an earlier result, the exit code is 1 where a requirement falls short,
-    and 0 whatever else failed.
+    and 0 whatever else failed; it is 1 where the engine's world declares another `Moment` than the
+    one at which its velocities hold.
 
     Parameters
     ----------
@@ -95,7 +98,9 @@ def command(
     judged = [requirement.judged(result) for requirement in requirements]
     for _, line in judged:
         print(line)
-    return int(not all(holds for holds, _ in judged)) if earlier or judged else code
+    if earlier or judged:
+        code = int(not all(holds for holds, _ in judged))
+    return code or int(bool(accusation(table_of(out, "moments"))))
 
 
 def known(engine: str) -> str:
@@ -142,7 +147,14 @@ def score_jobs(name: str, quick: bool) -> list[Job]:
     along = [job for job in precision.precision_jobs(quick, [name]) if job.source in uses]
     extreme = stability.matrix_jobs(uses, quick)
     beyond = [job for table, of in BEYOND.items() for job in _in(table, held(of(uses, quick)))]
-    return [*_in(SWEEP, swept), *_in(STEPS, along), *_in(EXTREMES, extreme), *beyond]
+    flights = [Job(labels={}, block=BLOCK, motion=UNFELT, source=use) for use in uses]
+    return [
+        *_in(SWEEP, swept),
+        *_in(STEPS, along),
+        *_in(EXTREMES, extreme),
+        *_in(MOMENTS, flights),
+        *beyond,
+    ]
 
 
 def held(jobs: Iterable[Job]) -> list[Job]:
@@ -162,6 +174,8 @@ def _in(table: str, jobs: Iterable[Job]) -> list[Job]:
 
 def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) -> Response:
     """Put a job of any of the tables to its source."""
+    if job.labels["table"] == MOMENTS:
+        return ask_for_moment(job, source)
     if job.labels["table"] == STEPS:
         budget_s = precision.QUICK_BUDGET_S if quick else precision.BUDGET_S
         return precision.measure(job, source, budget_s=budget_s)
@@ -172,6 +186,8 @@ def ask_of_table(job: Job, source: Source, *, quick: bool, time_limit_s: float) 
 
 def reduce(job: Job, response: Response) -> Row:
     """Return the columns that follow the labels of a job's table."""
+    if job.labels["table"] == MOMENTS:
+        return reduced(response)
     if job.labels["table"] == STEPS:
         return precision.reduce(job, response)
     if job.labels["table"] in BEYOND:

@@ -28,7 +28,7 @@ once: a run that was interrupted goes on where it stopped when the same command 
         ),
         Chapter(
             folder="presets",
-            question="And the engines as they come, or with a tuned contact and a fixed step?",
+            question="And engines as they come, or tuned at a fixed step?",
             tables=("summary.csv",),
             quick=("--figure", "8", "--sources", "exact", "core:naive"),
             # a fixed step of DART or Rapier takes longer than all the others together

@@ -23,6 +23,7 @@ PUBLISHED = ROOT / readme.PUBLISHED
 
 
 PAGES = ("README.md", *(f"studies/published/{name}" for name in ("README.md", "engines.md")))
+PROSE = (*PAGES, "studies/GUIDE.md", ".github/CONTRIBUTING.md")
 TABLES = ("studies/published/columns.csv",)
 
 
@@ -37,8 +38,6 @@ def test_the_readme_follows_its_tables(tmp_path):
     """A number and a word change with the table that they come from."""
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
-    (tmp_path / facts.NINTH).parent.mkdir(parents=True)
-    shutil.copy(ROOT / facts.NINTH, tmp_path / facts.NINTH)
     before = said(tmp_path)
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
         lines = pd.read_csv(path)
@@ -177,7 +176,25 @@ def test_the_first_run_and_a_later_one_are_timed_apart():
 
 def test_the_readme_is_short():
     """Two screens of text before its example; the numbers are on the pages that it leads to."""
-    assert len((ROOT / "README.md").read_bytes()) < 11_500
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.encode()) < 8_500
+    assert (
+        len([word for line in text.splitlines() if line[:1] != "|" for word in line.split()]) < 900
+    )
+
+
+@pytest.mark.parametrize("name", PROSE)
+def test_headings_and_paragraphs_are_short(name):
+    """Of paragraphs those that a person wrote: a claim of a table is as long as its presets."""
+    text = re.sub("```.*?```", "", (ROOT / name).read_text(encoding="utf-8"), flags=re.S)
+    heads = re.findall("^#+ (.*)$", text, re.M)
+    assert heads and [head for head in heads if len(head.split()) > 12] == []
+    shown = re.sub(r"\]\([^)]*\)", "]", text)
+    parts = re.split(r"\n\s*\n|\n(?=(?:[-*]|\d+\.) )", shown)
+    written = [
+        part for part in parts if part[:1] != "|" and not re.fullmatch(r"\*\*[^*]*\*\*\s*", part)
+    ]
+    assert [part for part in written if len(part) > 600] == []
 
 
 def test_both_commands_of_ci_are_there_once():
@@ -186,17 +203,17 @@ def test_both_commands_of_ci_are_there_once():
         assert len(re.findall(f"<!-- {name} -->\n```sh\npython3.11 -m venv .*\n```\n", text)) == 1
 
 
-def test_the_engine_of_the_readme_is_the_one_that_is_scored():
-    """In at most 30 lines; tests/studies/test_score.py puts it to the cases."""
+def test_the_engine_of_the_readme_is_as_short_as_it_says():
+    """tests/studies/test_score.py puts it to the cases."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    shown = re.search("`rocking score my_engine:World.*?```python\n(.*?)\n```", text, re.DOTALL)[1]
-    assert len(shown.splitlines()) <= 30
-    assert (ROOT / facts.NINTH).read_text(encoding="utf-8").rstrip().endswith(shown)
+    assert "a class of thirty lines, [my_engine.py](tests/plugin/my_engine.py)" in text
+    code = (ROOT / "tests" / "plugin" / "my_engine.py").read_text(encoding="utf-8")
+    assert len(code[code.index("import ") :].splitlines()) <= 30
 
 
 def test_every_link_of_a_page_leads_somewhere():
-    guides = [ROOT / "README.md", ROOT / "studies" / "GUIDE.md", ROOT / ".github/CONTRIBUTING.md"]
-    for path in (*guides, *PUBLISHED.glob("*.md")):
+    assert {PUBLISHED / "README.md", PUBLISHED / "engines.md"} == set(PUBLISHED.glob("*.md"))
+    for path in (ROOT / name for name in (*PROSE, "analytic/EQUATIONS.md")):
         text = path.read_text(encoding="utf-8")
         targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
         targets += re.findall(r'src="([^"]+)"', text)
@@ -239,17 +256,22 @@ def test_a_folder_without_tables_is_refused(tmp_path, capsys):
     assert "--root" in capsys.readouterr().err
 
 
-def commands():
-    """Return the commands that the README prints, in their order."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
+def commands(name):
+    """Return the commands that a page prints in its blocks, in their order."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S)
     return [line for block in blocks for line in block.splitlines() if line.startswith("rocking ")]
+
+
+def taken(arguments):
+    """Let the command line take arguments, all of them, without running anything."""
+    command, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
+    assert command.__module__.startswith("studies.") and bound.arguments and not ignored
 
 
 QUICK = ("symptoms", "advise", "export", "blocks", "compare")
 
 
-@pytest.mark.parametrize("command", commands())
+@pytest.mark.parametrize("command", commands("README.md"))
 def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch, capsys):
     """What takes a second is run; of the rest every argument is taken."""
     monkeypatch.chdir(tmp_path)
@@ -260,8 +282,25 @@ def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch
         assert run(arguments) == 0
         assert capsys.readouterr().out
     else:
-        taken, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
-        assert taken.__module__.startswith("studies.") and bound.arguments and not ignored
+        taken(arguments)
+
+
+@pytest.mark.parametrize("name", PROSE)
+def test_a_command_within_a_page_is_taken(name):
+    """Whole ones; of a command alone its name."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    known = {command.name for command in COMMANDS}
+    inside = [" ".join(found.split()) for found in re.findall("`(rocking [^`]*)`", text)]
+    for command in (*inside, *(commands(name) if name != "README.md" else ())):
+        _, *arguments = shlex.split(command, comments=True)
+        assert arguments[0] in known | {"COMMAND"}
+        if len(arguments) > 1 and arguments[0] != "COMMAND":
+            taken(arguments)
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"][
+        "optional-dependencies"
+    ]
+    for named in re.findall(r"pip install [^`\n]*'\.\[([\w,]+)\]'", text):
+        assert set(named.split(",")) <= set(extras)
 
 
 def test_the_project_s_files_name_what_there_is():

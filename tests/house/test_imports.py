@@ -13,7 +13,7 @@ import pytest
 from studies.__main__ import COMMANDS
 
 HEAVY = ("numba", "scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PACKAGES = ("analytic", "engines", "studies")
 SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
 

@@ -1,0 +1,130 @@
+"""The moment at which velocities hold: of every engine, and of ones that declare another."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from given import BLOCK
+from test_score import alone, few  # noqa: F401
+
+from engines import installed_engines
+from engines.declaration import Stepping
+from engines.run.drive import build
+from engines.run.look import Look
+from engines.world import Moment
+from studies.__main__ import run
+from studies.score import study as score
+from studies.score.moments import CLOSE, OFF, UNFELT, accusation, judged
+from studies.sources.registry import announce, presets_of, resolve, scene_of
+
+
+def moments_of(name):
+    """Return the table of moments of an engine, of all its presets."""
+    jobs = [job for job in score.score_jobs(name, True) if job.labels["table"] == score.MOMENTS]
+    assert len(jobs) == len(presets_of(resolve(name)))
+    rows = []
+    for job in jobs:
+        response = score.ask_of_table(job, job.asked, quick=True, time_limit_s=1.0)
+        rows.append({"source": job.source, **score.reduce(job, response)})
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize("name", installed_engines())
+def test_no_engine_is_accused(name):
+    table = moments_of(name)
+    lag = (table["measured"] - table["declared"]).to_numpy()
+    own = [resolve(source).used.stepping is Stepping.OWN for source in table["source"]]
+    assert (np.isnan(lag) == own).all()
+    # what takes n steps within a step has its velocity at 1 - 1/2n: Rapier's own settings take 4, 8
+    substeps = {"rapier:naive": 4, "rapier:naive-base-at-rest": 4, "rapier:recommended": 8}
+    expected = [0.5 - 0.5 / substeps.get(source, 1) for source in table["source"]]
+    assert lag[~np.isnan(lag)] == pytest.approx(np.array(expected)[~np.isnan(lag)], abs=CLOSE)
+    assert accusation(table) == ""
+    told = judged(table).set_index("source")["velocity"]
+    for source, count in substeps.items():
+        assert source not in told or told[source].endswith(f"as by {count} steps within a step")
+
+
+WRONG = [
+    ("staggered:Middle", 1.5, "0% moves it within that step, where MIDDLE means 100%", "NEXT"),
+    ("staggered:End", 1.5, "0% moves it within that step, where END means 50%", "NEXT"),
+    ("staggered:Moreau", 1.0, "50% moves it within that step, where MIDDLE means 100%", "END"),
+]
+
+
+@pytest.mark.parametrize(("place", "moment", "evidence", "name"), WRONG)
+def test_a_wrong_moment_is_told(place, moment, evidence, name, alone):  # noqa: F811
+    pytest.importorskip("pymunk")
+    table = moments_of(announce(place))
+    assert table["measured"].to_numpy() == pytest.approx(moment, abs=1e-6)
+    said = accusation(table)
+    assert said.startswith("Wrong moment: staggered:fixed and staggered:landing. ")
+    assert evidence in said
+    assert said.endswith(f"Declare Moment.{name}.")
+
+
+def test_it_is_on_the_page_in_the_result_and_in_the_exit_code(alone, few, tmp_path, capsys):  # noqa: F811
+    pytest.importorskip("pymunk")
+    kept = tmp_path / "kept.json"
+    asked = ("--quick", "--out", str(tmp_path), "--require", "failed=9", "--json", str(kept))
+    assert run(["score", "staggered:End", *asked]) == 1
+    said = capsys.readouterr().out
+    assert said.startswith("Wrong moment: staggered:fixed and staggered:landing.")
+    assert "holds: landing:failed" in said
+    assert "0.5 of a step off: NEXT, not END" in said
+    (moment,) = {tuple(line.values()) for line in json.loads(kept.read_text())["moments"].values()}
+    assert moment == pytest.approx((1.0, 1.5), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("measured", "said"),
+    [
+        (0.5 + OFF, "0.47 of a step off: END, not MIDDLE"),
+        (1.0 - 1.0 / 32.0, "between two moments, as by 16 steps within a step"),
+        (0.6, "between two moments"),
+        (0.5 + CLOSE - 1e-3, "as declared"),
+    ],
+)
+def test_from_half_a_step_on_it_is_another_moment(measured, said):
+    table = pd.DataFrame({"source": ["a"], "declared": [0.5], "measured": [measured]})
+    assert judged(table.assign(message=""))["velocity"].iloc[0] == said
+    assert bool(accusation(table)) == ("off" in said)
+
+
+def test_what_does_not_move_is_not_judged(alone):  # noqa: F811
+    table = moments_of(announce("hostile:Calm"))
+    assert table["measured"].isna().all()
+    assert accusation(table) == ""
+    assert "a pull for one step gave 0 of" in judged(table)["velocity"].iloc[0]
+
+
+@pytest.mark.parametrize("source", ["my_engine:fixed", "mujoco:landing", "moreau:landing"])
+def test_it_is_the_moment_by_which_the_angle_follows_the_rate(source, alone):  # noqa: F811
+    """While a block falls back the rate is the slope of the angle, a part of a step away."""
+    pytest.importorskip("pymunk")
+    if source.startswith("my_engine"):
+        announce("my_engine:World")
+    asked = resolve(source)
+    scene = scene_of(BLOCK, UNFELT, asked.preset, start=(0.5 * BLOCK.alpha, 0.0), frame="base")
+    world = build(asked.declared, scene)
+    look = Look(scene, asked.used.ordinary_step_s(scene), asked.used.stepping, world.moment)
+    look.make_room(64)
+    angles, rates, ends = [], [], []
+    for _ in range(60):
+        step = look.next(world.state())
+        world.step(step)
+        ends.append(step.end_s)
+        angles.append(world.state()[0][2])
+        rates.append(world.state()[0][3])
+    world.close()
+    dt_s = np.diff(ends[5:])
+    assert dt_s == pytest.approx(dt_s[0], rel=1e-6)
+    angle, rate = np.array(angles[5:]), np.array(rates[5:])
+    slope = (angle[2:] - angle[:-2]) / (2.0 * dt_s[0])
+    gained = (angle[2:] - 2.0 * angle[1:-1] + angle[:-2]) / dt_s[0]
+    found = 1.0 + ((rate[1:-1] - slope) @ gained) / (gained @ gained)
+    table = moments_of(source.partition(":")[0]).set_index("source")
+    assert found == pytest.approx(table.loc[source, "measured"], abs=0.02)
+    assert any(math.isclose(found, moment.value, abs_tol=0.02) for moment in Moment)
