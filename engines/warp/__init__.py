@@ -34,6 +34,7 @@ ENGINE = BatchEngine(
     geometries=("box", "corners"),
     spatial=True,
     precision=Precision.SINGLE,
+    scatter=4e-3,
     shortest_step=3e-6,
     factors=FACTORS,
     rules=RULES,
