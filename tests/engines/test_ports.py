@@ -1,4 +1,4 @@
-"""MuJoCo Warp and MJX: what they take of MuJoCo's settings, and MuJoCo's answers in their numbers."""
+"""MuJoCo Warp and MJX: what they take of MuJoCo's settings, and its answers in their numbers."""
 
 import pytest
 from uses import HERE, rocked
