@@ -5,6 +5,7 @@ import importlib.util
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from importlib.metadata import Distribution
 from typing import Any, NamedTuple
 
 from analytic.motion import FloatArray
@@ -312,6 +313,8 @@ class Engine:
     @property
     def installed(self) -> bool:
         """Whether its library is there."""
+        if "." in self.library:  # to look for a part of a package would import the package
+            return next(iter(Distribution.discover(name=self.packages[0])), None) is not None
         return importlib.util.find_spec(self.library) is not None
 
     def used_for(self, scene: Scene) -> Preset:

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -15,9 +16,12 @@ import pytest
 from commanding import CASE, PATIENCE_S, python, refused
 
 from analytic import RigidBlock, SinePulse
-from engines import registry
+from engines import ENGINES, registry
+from engines.declaration import Stepping
+from engines.parts.quiet import imported
+from engines.physx.build import PhysxWorld
 from engines.registry import FURTHER
-from engines.run.drive import simulate_world
+from engines.run.drive import build, simulate_world
 from engines.run.look import compile_look
 from engines.scene import Scene
 from studies.__main__ import run
@@ -119,6 +123,42 @@ def test_what_does_no_harm_to_its_answer_is_a_row_like_any_other(world, rows):
 def test_what_an_engine_started_is_ended_with_its_process(rows):
     assert len(rows[1]) == 5
     assert [process for process in rows[1] if not ended(process)] == []
+
+
+class CrashingPhysx(PhysxWorld):
+    """PhysX, asked in its hundredth step to wake a body that is part of no scene."""
+
+    def __init__(self, *asked):
+        super().__init__(*asked)
+        self._left = 100
+
+    def step(self, step):
+        self._left -= 1
+        if not self._left:
+            imported("sapien").physx.PhysxRigidDynamicComponent().wake_up()
+        super().step(step)
+
+
+def of_physx(block, motion, *, duration, times, world):
+    scene = Scene(system=block, motion=motion, preset="fixed")
+    there = build(replace(ENGINES["physx"], build=world), scene)
+    try:
+        return simulate_world(there, scene, 1e-3, Stepping.FIXED)
+    finally:
+        there.close()
+
+
+@pytest.mark.skipif(not ENGINES["physx"].installed, reason="PhysX is not installed")
+def test_a_crash_inside_a_library_is_a_row_and_the_others_go_on(monkeypatch):
+    worlds = {"before": PhysxWorld, "crash": CrashingPhysx, "after": PhysxWorld}
+    for name, world in worlds.items():
+        monkeypatch.setitem(SOURCES, name, Source("engine", partial(of_physx, world=world)))
+    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source=name) for name in worlds]
+    before, crash, after = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
+    assert (crash["outcome"], crash["message"]) == ("failed", REASONS["Crashes"])
+    sound = of_physx(BLOCK, PULSE, duration=None, times=None, world=PhysxWorld)
+    for row in (before, after):
+        assert (row["outcome"], row["steps"]) == (sound.outcome.value, sound.steps)
 
 
 HARMFUL = """

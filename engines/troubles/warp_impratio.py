@@ -1,0 +1,40 @@
+"""A block that friction holds has a place that is no number, and no exception or warning says so.
+
+The solver's matrix is M + J'DJ, D growing as impratio/(1 - d): near 2^24 float32 loses M beside it.
+
+Kind: single precision
+"""
+
+from importlib.metadata import version
+
+import mujoco
+import mujoco_warp as mjw
+import numpy as np
+import warp as wp
+
+G, DT, D = 9.81, 1e-3, 0.9999
+wp.config.log_level = wp.LOG_ERROR
+SOFT = f'priority="1" friction="10" solref="-1e4 -1e3" solimp="{D} {D} 0.001 0.5 2"'
+AT = ("-.25 -.25", "-.25 .25", ".25 -.25", ".25 .25")
+CORNERS = "".join(f'<geom type="sphere" size="1e-6" pos="{at} -0.75" {SOFT}/>' for at in AT)
+
+
+def end(impratio: float) -> float:
+    """Return where [m] the block is after a second, gravity leaning by 0.2."""
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option cone="elliptic" impratio="{impratio}" timestep="{DT}" gravity="{G / 5} 0'
+        f' -{G}"/><worldbody><geom type="plane" size="9 9 1"/><body pos="0 0 0.75"><freejoint/>'
+        f'<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>{CORNERS}</body></worldbody></mujoco>'
+    )
+    m, d = mjw.put_model(model), mjw.make_data(model)
+    mjw.step(m, d)
+    with wp.ScopedCapture() as step:
+        mjw.step(m, d)
+    for _ in range(round(1.0 / DT)):
+        wp.capture_launch(step.graph)
+    return float(d.qpos.numpy()[0, 0])
+
+
+print(f"mujoco-warp {version('mujoco-warp')}: expected 0 m; at impratio 100 {end(100.0):.0e} m")
+print(f"found    {(found := end(1e4))} m at impratio 1e4\n{__doc__.splitlines()[2]}")
+raise SystemExit(not np.isnan(found))

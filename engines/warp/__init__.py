@@ -1,0 +1,42 @@
+"""MuJoCo Warp: what it can do, how it is used, what its users should know first."""
+
+from functools import partial
+
+from engines.declaration import BatchEngine, Precision, Preset
+from engines.layouts import Ability
+from engines.run.batch import alone
+from engines.warp.build import WarpWorlds
+from engines.warp.settings import DOCUMENTED, FACTORS, RULES, TUNED, WarpSettings
+
+NAIVE = Preset(
+    name="naive",
+    settings=WarpSettings(),
+    step_s=0.002,
+    documented=DOCUMENTED,
+    frame="world",
+    contact_s=0.02,
+)
+
+ENGINE = BatchEngine(
+    name="warp",
+    title="MuJoCo Warp",
+    library="mujoco_warp",
+    packages=("mujoco-warp", "warp-lang", "mujoco"),
+    install="rocking[warp]",
+    build=partial(alone, WarpWorlds),
+    batch=WarpWorlds,
+    abilities=(Ability.SEVERAL,),
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4),
+    ),
+    geometries=("box", "corners"),
+    spatial=True,
+    precision=Precision.SINGLE,
+    scatter=4e-3,
+    shortest_step=3e-6,
+    factors=FACTORS,
+    rules=RULES,
+    compiles=True,
+)
