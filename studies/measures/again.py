@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
+from analytic.cart import CartBlock
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.slide import SlidingBlock
@@ -68,7 +69,8 @@ def commands(
     watched = "" if usual else f" --duration {duration}"
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
-    if not (usual and outcome in ("rocked", "overturned", "slid") and written_out(source)):
+    answered = outcome in ("rocked", "overturned", "slid") and not isinstance(block, CartBlock)
+    if not (usual and answered and written_out(source)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"
 
@@ -130,9 +132,10 @@ def _without_option(block: System, motion: Motion, options: Mapping[str, Any]) -
 def _asked(block: System) -> System:
     """Return what the options of the command line make of a block."""
     options = _scene_of(block)
-    kinds: dict[str, Any] = {"frame": RockingFrame, "slide": SlidingBlock}
+    kinds: dict[str, Any] = {"frame": RockingFrame, "slide": SlidingBlock, "cart": CartBlock}
     kind = kinds.get(options.pop("scene", ""), RigidBlock)
-    asked: System = kind(width=block.width, height=block.height, **options)
+    named = {name.replace("-", "_"): value for name, value in options.items()}
+    asked: System = kind(width=block.width, height=block.height, **named)
     return asked
 
 
@@ -142,6 +145,9 @@ def _scene_of(block: System) -> dict[str, Any]:
         return {"scene": "slide", "friction": block.friction}
     if isinstance(block, RockingFrame):
         return {"scene": "frame", "columns": block.columns, "load": block.load}
+    if isinstance(block, CartBlock):
+        spring = {"stiffness": block.stiffness} if block.stiffness else {}
+        return {"scene": "cart", "mass-ratio": block.mass_ratio, **spring}
     return {}
 
 

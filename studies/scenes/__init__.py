@@ -39,6 +39,10 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
             "A sliding block on its base, to the right of where it began, which is dashed; it "
             "stays flat, and only friction holds it."
         ),
+        "cart-scene": (
+            "A block on a cart that leans to the right about its right corner; dashed, where it is "
+            "at rest. The cart, here the ground, rolls freely or on a spring."
+        ),
         "frame-time": (
             "Frames: for each engine and preset a line from the median to the largest error of the "
             "peak, against the run time of a case, both on logarithmic scales."
@@ -47,14 +51,9 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
             "Slides: for each engine and preset a line from the median to the largest error of a "
             "slip, against the run time of a case, both on logarithmic scales."
         ),
-        "frame": (
-            "Error of the peak of a rocking frame for each engine, a bar from the median to the "
-            "largest for its defaults, its tuned contact at equal steps and steps that land on "
-            "impacts, on a logarithmic scale."
-        ),
-        "slide": (
-            "Largest error of a slip of a sliding block, in millimetres, for each engine by its "
-            "defaults and with its tuned contact at equal steps, on a logarithmic scale."
+        "cart-time": (
+            "Carts: for each engine and preset a line from the median to the largest error of the "
+            "peak, against the run time of a case, both on logarithmic scales."
         ),
         "floor": (
             "How far a floor carries a block of what it should, for each engine and each way of "

@@ -262,10 +262,8 @@ def headline(folder: Path) -> str:
 
 
 def pictures(folder: Path) -> Pictures:
-    """Draw the scenes, and what there is of frames, slides and floors, from the tables alone."""
-    from studies.scenes.figure import draw_floors, draw_frames, draw_slides
+    """Draw the scenes, and what there is of floors, from the tables alone."""
+    from studies.scenes.figure import draw_floors
 
-    drawn = zip(("frame", "slide", "floor"), (draw_frames, draw_slides, draw_floors), strict=True)
-    found = zip(drawn, engines_in(folder), strict=False)
-    bars = {name: draw(lines) for (name, draw), lines in found if not lines.empty}
-    return {**drawings(folder), **bars}
+    floors = found_in(folder / "floor-summary.csv")
+    return drawings(folder) | ({} if floors.empty else {"floor": draw_floors(floors)})

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from analytic import RockingFrame, SlidingBlock
+from analytic import CartBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome
 from engines.layouts import System
 from studies.drawing.kept import Pictures
@@ -19,6 +19,7 @@ from studies.measures.again import commands, with_commands
 from studies.measures.presets import is_engine
 from studies.measures.words import part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
+from studies.scenes.carts import carts
 from studies.scenes.cases import jobs
 
 
@@ -57,6 +58,14 @@ SCENES = {
         error="slip_error_m",
         words=millimetres,
         along="error of a slip  [m]",
+    ),
+    "cart": Told(
+        title="a block on a cart",
+        system=CartBlock(width=0.5, height=1.5, mass_ratio=0.5),
+        at=0.12,
+        error="error",
+        words=part,
+        along="error of the largest rotation, relative  [–]",
     ),
 }
 """Scenes that have a section of their own, by name."""
@@ -105,7 +114,8 @@ def asked(path: Path, name: str) -> pd.DataFrame:
     rows = found_in(path)
     if rows.empty:
         return pd.DataFrame(columns=["source", SCENES[name].error, "wall_s"])
-    return rows[rows["source"].map(is_engine) & (rows["reason"] != "UNAVAILABLE")]
+    kept = rows["source"].map(is_engine) & (rows["reason"] != "UNAVAILABLE")
+    return rows[kept & (rows["refined"] == 1.0) if "refined" in rows else kept]
 
 
 def found_in(path: Path) -> pd.DataFrame:
@@ -152,7 +162,8 @@ def again(folder: Path) -> pd.DataFrame:
             worst[name, place] = {"scene": name, **rows.loc[place].dropna().to_dict()}
     quick = bool(provenance.record_of(folder)["settings"]["quick"])
     sources = list(dict.fromkeys(row["source"] for row in worst.values()))
-    known = {_called({**job.labels, "source": job.source}): job for job in jobs(sources, quick)}
+    every = [*jobs(sources, quick), *carts(sources, quick)]
+    known = {_called({**job.labels, "source": job.source}): job for job in every}
     found = []
     for row in worst.values():
         job = next(job for names, job in known.items() if names <= _called(row))

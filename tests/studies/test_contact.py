@@ -275,7 +275,7 @@ def test_what_helps_has_a_price_and_a_rule_its_worth():
         ]
     )
     assert prices(lines, "rapier") == {
-        "": "1.0e-05",
+        "": "10⁻⁵",
         "REFLECTION": "2 %, 1 of 12 wrong",
         "STEPS": "3 %",
     }
