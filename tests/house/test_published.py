@@ -15,7 +15,7 @@ from studies.cases.paper import Case
 from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
 
-PUBLISHED = Path(__file__).parent.parent / "studies" / "published"
+PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
 
 def is_here(source):
