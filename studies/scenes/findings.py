@@ -24,7 +24,7 @@ def frame_sentence(lines: pd.DataFrame) -> str:
 def cart_sentence(lines: pd.DataFrame) -> str:
     """Say for each preset how far off the peaks on carts are; empty without any."""
     said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
-    return f"That of a block on a cart which feels it is off by up to {listed(said)}." * bool(said)
+    return f"The peak of a block on a cart is off by up to {listed(said)}." * bool(said)
 
 
 def slide_sentence(lines: pd.DataFrame) -> str:
