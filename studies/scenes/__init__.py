@@ -41,7 +41,7 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
         ),
         "cart-scene": (
             "A block on a cart that leans to the right about its right corner; dashed, where it is "
-            "at rest. The cart, here the ground, rolls freely or on a spring."
+            "at rest. The cart rolls freely, or on a spring."
         ),
         "frame-time": (
             "Frames: for each engine and preset a line from the median to the largest error of the "
