@@ -73,6 +73,6 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
         names.append(Name(named, row["ms"], ends[0], colour))
     axes.grid(alpha=0.25)
     key(figure, preset_dots(in_order(map(preset_of, lines["source"]))), 4, fontsize=10)
-    axes.set_title(title, fontsize=12)
+    axes.set_title(title, fontsize=11)
     around(axes, names)
     return figure

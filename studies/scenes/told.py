@@ -13,6 +13,7 @@ from analytic import CartBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome
 from engines.layouts import System
 from studies.drawing.kept import Pictures
+from studies.drawing.styles import name_of
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
@@ -189,6 +190,15 @@ def drawings(folder: Path) -> Pictures:
     drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
     for name, told in SCENES.items():
         if len(lines := lines_of(folder / f"{name}.csv", name)):
-            title = f"{told.title.capitalize()}: error against run time, median to largest"
-            drawn[f"{name}-time"] = draw_times(lines, title, told.along)
+            drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
     return drawn
+
+
+def _finding(told: Told, lines: pd.DataFrame) -> str:
+    """Say between which median errors the engines of a scene lie, and whose these are."""
+    ranked = lines.dropna(subset="median_error").sort_values("median_error")
+    low, high = (
+        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
+        for end in (0, -1)
+    )
+    return f"{told.title.capitalize()}: median errors from {low} to {high}"
