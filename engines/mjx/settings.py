@@ -1,12 +1,21 @@
 """What MJX can be set to: MuJoCo's settings, but for what it refuses or does not heed."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from engines.declaration import Source
 from engines.mujoco.port import refuse_step_by_step
 from engines.mujoco.settings import TUNED as MUJOCO_TUNED
 from engines.mujoco.settings import MujocoSettings
-from engines.parts.factors import UNMOVED_BASE, Factor, Rule, factor, level, moving_base
+from engines.parts.factors import (
+    BY_POSITION,
+    DEFAULT,
+    MOVING_BASE,
+    Factor,
+    Rule,
+    factor,
+    level,
+    moving_base,
+)
 from engines.parts.settings import setting
 
 
@@ -51,7 +60,13 @@ FACTORS = (
         (level("single, impratio 100", trap=LOST, precision="single", impratio=100.0),),
     ),
     factor("impratio", level("100", trap=LOST_SLIP, impratio=100.0)),
-    moving_base("weld", "position"),
+    Factor(
+        MOVING_BASE,
+        ("floor",),
+        # the best contact holds no base that moves
+        tuple(replace(it, presets=(DEFAULT,)) for it in moving_base("position").levels),
+        by_default=False,
+    ),
 )
 """What its contact can be set to."""
 
@@ -59,7 +74,7 @@ RULES = (
     Rule("Keep `impratio` at 1: above, places become no numbers", *("fixed", "impratio", "100")),
     Rule(
         "Give a base that is moved a body of its own, welded: friction does not feel a mocap move",
-        *UNMOVED_BASE,
+        *(DEFAULT, MOVING_BASE, BY_POSITION),
     ),
 )
 """What its users should know first."""

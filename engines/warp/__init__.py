@@ -34,7 +34,10 @@ ENGINE = BatchEngine(
     geometries=("box", "corners"),
     spatial=True,
     precision=Precision.SINGLE,
-    scatter=4e-3,
+    # sizes and shaking changed by a rounding of 6e-8, in 8 histories, frame "base" and "world": its
+    # peaks moved by up to 2.0e-3 and 2.2e-3, of which 4e-4 where the impact stayed in its step; that
+    # the next one takes it is worth 2.0e-3, as in double precision, too, where 1e-5 does it
+    scatter=2.2e-3,
     shortest_step=3e-6,
     factors=FACTORS,
     rules=RULES,
