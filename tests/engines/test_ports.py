@@ -1,12 +1,18 @@
 """MuJoCo Warp and MJX: what they take of MuJoCo's settings, and its answers in their numbers."""
 
+import numpy as np
 import pytest
-from uses import HERE, rocked
+from declared import equal_to
+from uses import HERE, pulse, rocked, scene
 
+from analytic import RigidBlock
 from analytic.response import Outcome, Reason
 from engines import ENGINES
+from engines.run.batch import run_together
+from engines.run.drive import build, run
 
 PORTS = ("warp", "mjx")
+every_port = pytest.mark.parametrize("name", [name for name in PORTS if name in HERE])
 
 
 @pytest.mark.parametrize("name", PORTS)
@@ -29,8 +35,38 @@ def test_a_tolerance_that_warp_raises_is_bad_input():
     assert not ENGINES["warp"].best.takes(tolerance=1e-7)
 
 
+def test_mjx_s_stiff_contact_is_not_built_for_a_base_that_moves():
+    moved, mjx = scene(frame="world"), ENGINES["mjx"]
+    words = "mjx:fixed is not built here for a base that moves in the world"
+    assert mjx.lacks(moved, mjx.preset("fixed")) == words
+    assert not mjx.lacks(moved, mjx.preset("naive"))
+    assert not mjx.lacks(scene(frame="base"), mjx.preset("fixed"))
+
+
+@pytest.mark.skipif("warp" not in HERE, reason="it is not installed")
+def test_what_warp_has_no_room_for_is_a_fault_and_its_last_iteration_is_none():
+    world = build(HERE["warp"], scene(preset="naive"))
+    kinds = world._worlds._mjw.OverflowType
+    said = []
+    for lost in (kinds.ITERATIONS, kinds.ITERATIONS | kinds.NARROWPHASE):
+        world._worlds._overflow = np.array([int(lost)])
+        said.append(world.fault())
+    assert said == ["", "MuJoCo Warp had no room: NARROWPHASE"]
+
+
+@every_port
+def test_side_by_side_blocks_of_other_sizes_answer_as_each_alone(name):
+    tall = RigidBlock(width=0.4, height=2.0)
+    asked = [scene(pulse(1.3, 3.0, 1, it), system=it) for it in (scene().system, tall)]
+    asked.append(scene(pulse(0.5, 3.0)))
+    each = [run(name, it) for it in asked]
+    for together, alone in zip(run_together(name, asked), each, strict=True):
+        assert (together.outcome, together.steps) == (alone.outcome, alone.steps)
+        assert together.peak_ratio == pytest.approx(alone.peak_ratio, rel=equal_to(name))
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in PORTS if name in HERE])
+@every_port
 def test_the_defaults_are_mujoco_s_in_other_numbers(name):
     port, mujoco = (rocked(engine, preset="naive") for engine in (name, "mujoco"))
     assert port.outcome is mujoco.outcome
