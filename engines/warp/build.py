@@ -5,6 +5,7 @@ them when they are first used on a machine, for a minute, and keeps them there. 
 own choice: a GPU where there is one, or else the CPU, whose memory is shared.
 """
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -26,7 +27,9 @@ class WarpWorlds(Port):
         self._warp, self._mjw = imported("warp"), imported("mujoco_warp")
         self._warp.config.log_level = self._warp.LOG_ERROR
         super().__init__(scenes, settings, dt_s)
-        with silence():
+        self._overflow = np.zeros(len(scenes), dtype=int)
+        with silence(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it raises too small a friction, as MuJoCo does
             self._put(dt_s)
         self.driver = f"a recorded step of Warp's, on {self._warp.get_device()}"
 
@@ -41,6 +44,7 @@ class WarpWorlds(Port):
             rows = rows.reshape(seen.shape)
             # what the library makes of a model it keeps, but for what differs
             there.assign(np.where(rows == rows[0], seen, rows).astype(np.float32))
+        model.opt.warn_overflow = 0  # it would print to the output; `fault` reads it
         weight = np.tile(self.models[0].opt.gravity.astype(np.float32), (count, 1))
         model.opt.timestep = self._warp.array(dt_s.astype(np.float32))
         model.opt.gravity = self._warp.array(weight, dtype=self._warp.vec3)
@@ -52,7 +56,7 @@ class WarpWorlds(Port):
             mjw.step(model, data)
         self._graph = recorded.graph
         given = model.opt.gravity, data.mocap_pos, model.geom_surfacevel
-        self._shared = [_Shared(array) for array in (*given, data.qpos, data.qvel)]
+        self._shared = [_Shared(array) for array in (*given, data.qpos, data.qvel, data.overflow)]
         read = {name: getattr(model, name).numpy() for name in READ}
         read["tolerance"] = model.opt.tolerance.numpy()
         self.read_back(Precision.SINGLE.value, read)
@@ -63,7 +67,7 @@ class WarpWorlds(Port):
     def advance(self, steps: Step, going: Any) -> FloatArray:
         """Take some steps; see `engines.world.Worlds`."""
         loads = self.loads(steps)
-        gravity, place, surface, q, v = self._shared
+        gravity, place, surface, q, v, overflow = self._shared
         count, length = loads.surface.shape
         places = np.empty((count, length, q.seen.shape[-1]))
         velocities = np.empty((count, length, v.seen.shape[-1]))
@@ -77,7 +81,16 @@ class WarpWorlds(Port):
                 surface.give(surface.seen)
             self._warp.capture_launch(self._graph)
             places[:, i], velocities[:, i] = q.taken(), v.taken()
+        self._overflow = overflow.taken()
         return self.poses(steps, places, velocities)
+
+    def fault(self, world: int) -> str:
+        """Say which setting a world has not taken, or what it had no room for."""
+        kinds = self._mjw.OverflowType
+        # a solver that ends at its last iteration is no fault of MuJoCo's, either
+        lost = kinds(int(self._overflow[world])) & ~(kinds.ITERATIONS | kinds.LS_ITERATIONS)
+        said = f"MuJoCo Warp had no room: {lost.name}" if lost else ""
+        return Port.fault(self, world) or said
 
 
 class _Shared:

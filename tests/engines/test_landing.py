@@ -34,6 +34,8 @@ def within(engine):
         "newton": (118, 3e-3, 2e-2),  # of first order in the step
         "physx": (48, 1e-3, 6e-3),  # by the noise of a contact, a rounding of its place
         "rapier": (96, roundings / 6.0, 10.0 * roundings),  # by one at an impact
+        # by where in an equal step an impact falls, at most 2e-3, and by roundings
+        "warp": (96, 0.5 * roundings, 4.0 * roundings),
         "moreau": (96, 1e-4, 1e-3),
         **dict.fromkeys(core_engines(), (31, 1e-5, 2e-4)),
     }.get(engine, (96, 1e-5, 1e-4))
