@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection
 from PIL import Image
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
+from engines import ENGINES
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
@@ -115,6 +116,7 @@ def test_a_slide_is_drawn_where_it_is_and_told_where_it_lies():
     assert said == ["lies at +100.0 mm", "−20 mm off"]
 
 
+@pytest.mark.skipif(not ENGINES["newton"].installed, reason="Newton is not installed")
 @pytest.mark.parametrize(
     "options",
     [["--scene", "frame", "--load", "2"], ["--scene", "slide", "--friction", "0.2"]],

@@ -335,7 +335,7 @@ def test_the_help_names_no_empty_default(capsys):
         (["--records", "FILE", "FILE"], "twice"),
         (["--records", "FILE"], "it is zero throughout"),
         (["--records", "/nowhere"], "--records is '/nowhere'; it must be a file"),
-        (["--records"], "--records is empty; it must have at least one value"),
+        (["--records"], "--records requires at least 1 element"),
         (["--units", "g"], "--units is g; it may be given only with --records"),
         (["--baseline", "linear"], "--baseline is linear; it may be given only with --records"),
         (["--family", "wind"], "--family"),

@@ -240,7 +240,7 @@ def test_frames_are_asked_at_half_their_steps_too(tmp_path, capsys):
 
 def test_a_slide_s_estimate_is_of_its_slips(capsys):
     asked = ["--scene", "slide", "--friction", "0.2", "--width", "1", "--height", "0.5"]
-    pulse = ["--amplitude", "0.4", "--omega", "6.2832", "--sources", "pymunk:fixed", "newton:naive"]
+    pulse = ["--amplitude", "0.4", "--omega", "6.2832", "--sources", "pymunk:fixed", "mujoco:fixed"]
     assert run(["compare", *asked, *pulse, "--estimate", "--json"]) == 0
     for line in map(json.loads, capsys.readouterr().out.splitlines()):
         assert line["error"] < 2.5 * line["estimate"] < 5.0 * line["error"]

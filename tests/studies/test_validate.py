@@ -167,7 +167,7 @@ def test_the_headline_says_the_largest_errors_as_they_are():
         }
     )
     claim = first_claim(rows)
-    assert "largest errors of the peak 47 % and 95 %, and 1.0e-06 and 2 % where" in claim
+    assert "largest errors of the peak 47 % and 95 %, and 10⁻⁶ and 2 % where" in claim
 
 
 def test_errors_are_shown_as_they_are_in_bands_of_peak_and_kappa():

@@ -86,7 +86,7 @@ def test_another_release_is_asked_in_an_environment_of_its_own(pretender, tmp_pa
     assert run([*words, "--releases", "pretender==2.0"]) == 0
     (change,) = read(out, "changes").to_dict("records")
     assert (change["before"], change["release"], change["presets"]) == ("1.0", "2.0", "naive")
-    assert [path.parent.name for path in out.glob("*/*/made.json")] == ["pretender-2.0"]
+    assert [path.name for path in out.glob("environments/*")] == ["pretender-2.0"]
     assert metadata.version("pretender") == here == "1.0"
 
 
