@@ -146,7 +146,7 @@ NO_ANSWER = {
 @pytest.mark.parametrize(("engine", "preset"), USES)
 def test_a_script_of_another_scene_finds_what_the_run_does(engine, preset, name, tmp_path, request):
     if (engine, preset, name) == ("dart", "fixed", "frame"):
-        # in some steps Dantzig's solver fails, and what answers for it begins with what is there
+        # in some steps Dantzig's solver fails, and what answers then differs at equal contacts
         reason = "DART's forces on a frame depend on what its process did before"
         request.applymarker(pytest.mark.xfail(reason=reason, strict=False))
     system, amplitude_g, start = BEYOND[name]
