@@ -41,6 +41,9 @@ BLOCKS = "\n".join(
 )
 """What `rocking blocks` is asked about."""
 
+AS_INSTALLED = {"PYTHONDONTWRITEBYTECODE": ""}
+"""A user's Python keeps the modules that it has compiled, whatever the one here does."""
+
 REPEATS = 5
 """Of what is warm, of which the median counts."""
 
@@ -93,7 +96,7 @@ def _spent(arguments: tuple[str, ...], variables: dict[str, str]) -> float:
         began = time.perf_counter()
         done = subprocess.run(
             [sys.executable, *arguments],
-            env={**os.environ, "PYTHONPATH": places, **variables},
+            env={**os.environ, "PYTHONPATH": places, **AS_INSTALLED, **variables},
             cwd=folder,
             capture_output=True,
             text=True,
