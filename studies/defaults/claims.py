@@ -11,7 +11,7 @@ import pandas as pd
 from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from studies.cases.paper import PULSES
-from studies.measures.presets import engine_of
+from studies.drawing.styles import engine_title
 from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
 
@@ -134,7 +134,7 @@ def rest_claim(table: pd.DataFrame) -> str:
         close = (found["close"] / found["cases"]).groupby(found["rest_s"] > 0.0).mean()
         if len(close) == 2 and close[False] - close[True] > CLOSE:
             ends = f"from {_whole(close[False])} to {_whole(close[True])}"
-            said.append(f"{engine_of(str(source))} falls {ends}")
+            said.append(f"{engine_title(str(source))} falls {ends}")
     return f"After 1 s of rest {listed(said)}." if said else ""
 
 
@@ -143,7 +143,7 @@ def first_claim(table: pd.DataFrame) -> str:
     sums = table.groupby("source", sort=False)[["close", "cases"]].sum()
     parts = (sums["close"] / sums["cases"]).sort_values()
     ends = dict.fromkeys(
-        f"{_whole(parts[name])} ({engine_of(str(name))})" for name in parts.index[[0, -1]]
+        f"{_whole(parts[name])} ({engine_title(str(name))})" for name in parts.index[[0, -1]]
     )
     return (
         f"As documented, outcome and peak (within {part(CLOSE)}) are right in "

@@ -11,8 +11,7 @@ from matplotlib.patches import Patch
 
 from studies.defaults.claims import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT
 from studies.drawing.facets import key, panels
-from studies.drawing.styles import title_of
-from studies.measures.presets import engine_of
+from studies.drawing.styles import engine_title
 from studies.measures.words import part
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
 
@@ -88,5 +87,5 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
         norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)),
     )
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
-    name = title_of(engine_of(str(rows["source"].iloc[0])))
+    name = engine_title(str(rows["source"].iloc[0]))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)

@@ -13,8 +13,8 @@ from matplotlib.patches import Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from studies.drawing.block import GROUND, INK, SOFT, outline
-from studies.drawing.styles import style_of, title_of
-from studies.measures.presets import engine_of, is_engine, preset_of, told
+from studies.drawing.styles import engine_title, style_of, title_of
+from studies.measures.presets import is_engine, preset_of, told
 from studies.measures.words import power
 
 MAGNIFIED = 2.5
@@ -62,7 +62,7 @@ def _title(line: pd.Series[Any]) -> str:
     source = str(line["source"])
     if not is_engine(source):
         return "Housner's linearization" if source == "housner" else source
-    return f"{title_of(engine_of(source))}, {told(preset_of(source)).short}"
+    return f"{engine_title(source)}, {told(preset_of(source)).short}"
 
 
 def _verdict(line: pd.Series[Any]) -> str:

@@ -89,6 +89,11 @@ def title_of(engine: str) -> str:
     return ENGINES[engine].title if engine in ENGINES else engine
 
 
+def engine_title(source: str) -> str:
+    """Return the title of the engine that a source is a preset of."""
+    return title_of(source.partition(":")[0])
+
+
 def name_of(source: str) -> str:
     """Return how a source is called in a picture: an engine by its title, with its preset."""
     engine, colon, preset = source.partition(":")

@@ -7,8 +7,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.styles import style_of, title_of
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.drawing.styles import engine_title, style_of
+from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import part
 
 LEAST, MOST = 0.1, 1e4
@@ -56,7 +56,7 @@ def _panel(axes: Axes, lines: pd.DataFrame) -> None:
             parts = np.arange(len(over) + 1) / len(over)
             axes.step([LEAST, *np.maximum(over, LEAST)], parts, where="post", color=colour)
             within = float((over <= MARKED).mean())
-            names.append((within, f"{title_of(engine_of(str(source)))} {part(within)}", colour))
+            names.append((within, f"{engine_title(str(source))} {part(within)}", colour))
     # under the lines, which all end above
     for place, (_, name, colour) in enumerate(sorted(names)):
         axes.text(0.96, 0.04 + LINE * place, name, transform=axes.transAxes, ha="right",

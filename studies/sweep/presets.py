@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from engines.declaration import AT_REST
 from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
-from studies.drawing.styles import title_of
-from studies.measures.presets import engine_of, in_order, is_engine, preset_of, told
+from studies.drawing.styles import engine_title, title_of
+from studies.measures.presets import in_order, is_engine, preset_of, told
 from studies.measures.words import out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
@@ -69,7 +69,8 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
     words = [f"by up to {most[name]} {told(name).words}" for name in (presets[0], presets[-1])]
     cases = int(table["cases"].max())
-    drawing.suptitle(f"In {cases} cases peaks are off\n{', '.join(words)}", fontsize=12)
+    head = f"In {cases} cases peaks are off {words[0]},\n{words[1]}"
+    drawing.suptitle(head, fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
 
@@ -100,7 +101,7 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         for axes, aspect in zip(line, aspects, strict=True):
             shown = _strips(axes, group[group["aspect"] == aspect], sources)
             axes.set_yticks([])
-        names = [title_of(engine_of(source)) for source in sources]
+        names = [engine_title(source) for source in sources]
         line[0].set_yticks(range(len(names)), names, fontsize=8.5)
         wrong = out_of((group["wrong"] != "").sum(), len(group))
         line[0].set_title(f"{told(preset).short}: {wrong} outcomes wrong", loc="left",

@@ -11,6 +11,7 @@ import pandas as pd
 
 from studies.cases.paper import Case, sweep_cases
 from studies.drawing.kept import Pictures, tell
+from studies.drawing.styles import engine_title
 from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
 from studies.kit.jobs import Job
 from studies.kit.naming import several_sources
@@ -175,7 +176,7 @@ def first_claim(lines: pd.DataFrame) -> str:
 def _wrong_by_up_to(preset: str, errors: pd.Series[float], lines: pd.DataFrame) -> str:
     """Say of a preset what is wrong, source by source or between which counts, and how far."""
     cases = alike([f"{count:.0f}" for count in lines["cases"]])
-    said = between(lines, lines["source"].map(engine_of))
+    said = between(lines, lines["source"].map(engine_title))
     engines = f"{len(lines)} engines have" if len(lines) > 1 else "one engine has"
     return (
         f"{in_words(preset)}, {engines} {said} of {cases} cases{' each' * (len(lines) > 1)}, and "

@@ -1,17 +1,24 @@
 """The published tables still hold: a sample of their rows is computed again."""
 
 import gzip
+import json
 import math
+import shutil
 from pathlib import Path
 
+import matplotlib
+import numpy as np
 import pandas as pd
 import pytest
 from declared import equal_to
+from PIL import Image
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
 from studies import respond
+from studies.__main__ import run
 from studies.cases.paper import Case
+from studies.catalogue import CHAPTERS
 from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
 
@@ -105,3 +112,22 @@ def test_edges_of_the_overturning_map_are_where_they_were():
             for onsets in (middle * (1 - 1e-9), middle * (1 + 1e-9))
         ]
         assert modes == [row.below, row.above]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted({chapter.folder for _, chapter in CHAPTERS}))
+def test_a_published_picture_is_what_its_tables_draw_today(name, tmp_path):
+    folder = shutil.copytree(PUBLISHED / name, tmp_path / name)
+    drawn = json.loads((folder / "provenance.json").read_text())["tools"]["matplotlib"]
+    if drawn.split(".")[:2] != matplotlib.__version__.split(".")[:2]:
+        pytest.skip("another matplotlib sets the same words elsewhere")
+    then = {path.name: pixels(path) for path in folder.glob("*.png")}
+    assert run(["redraw", str(folder)]) == 0
+    for picture, before in then.items():
+        now = pixels(folder / picture)
+        assert now.shape == before.shape
+        assert (abs(now - before).max(axis=2) > 40).mean() < 1e-4, picture
+
+
+def pixels(path):
+    return np.asarray(Image.open(path).convert("RGB"), dtype=int)

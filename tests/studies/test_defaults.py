@@ -164,7 +164,7 @@ def test_an_engine_that_sleeps_through_a_rest_is_named(exact):
     lost = made_up(exact)
     lost.loc[asleep, ["outcome", "peak_ratio"]] = ["failed", math.nan]
     for engine, said in (
-        (lost, "After 1 s of rest mujoco falls from all to 0 %."),
+        (lost, "After 1 s of rest MuJoCo falls from all to 0 %."),
         (made_up(exact), ""),
     ):
         rows = with_verdicts(pd.concat([exact, engine], ignore_index=True))

@@ -55,7 +55,7 @@ def test_the_readme_follows_its_tables(tmp_path):
         assert words in new.replace("\N{NO-BREAK SPACE}", " ") and words not in old
     assert "max\N{NO-BREAK SPACE}1.2\N{NO-BREAK SPACE}%" in after[0]
     assert "1.2 % |" in after[1]
-    assert "at rest for rocked in up to 2 (mujoco) of 960 cases each" in after[0]
+    assert "at rest for rocked in up to 2 (MuJoCo) of 960 cases each" in after[0]
     assert "960 cases are 480 problems, each in 2 sizes, at 1.1 to 1.5 times" in after[0]
     assert "5760" not in after[0]
 
