@@ -96,7 +96,12 @@ DOCUMENTED = (
         "SolverXPBD, newton 1.8.0",
     ),
     Source("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
-    Source("friction", "mu: float = 1.0", "ModelBuilder.ShapeConfig, newton 1.8.0"),
+    Source(
+        "friction",
+        "mu: float = 1.0, of a pair the mean",
+        "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
+    ),
+    Source("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
     Source(
         "floor",
         "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
