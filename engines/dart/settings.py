@@ -130,7 +130,7 @@ DOCUMENTED = (
     Source(
         "solver",
         "where it fails PGS, 30 iterations, from the last step's impulses",
-        "ConstraintSolver.getSecondaryBoxedLcpSolver; ContactWarmStartCache.hpp",
+        "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
     ),
     Source("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
     Source(

@@ -198,7 +198,7 @@ DOCUMENTED = (
 """Where the library's documentation, or the library itself, says what its defaults decide."""
 
 RECOMMENDED = (
-    Source("iterations", "more, for accuracy", "bullet3 issue 3081, by its author"),
+    Source("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
     Source("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
     Source("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
 )
