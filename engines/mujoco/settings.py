@@ -160,7 +160,6 @@ ZERO = "one zero makes it the default, 0.02 s 1"
 ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness": None}
 """The direct form of the reference given up."""
 
-HEADER = "mujoco/mjtype.h of MuJoCo 4.0.0"
 REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
 
 DOCUMENTED = (
@@ -176,12 +175,12 @@ DOCUMENTED = (
     Source(
         "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
     ),
-    Source("contact", "its inertia by an estimate: diagexact off", f"{HEADER}, mjtEnableBit"),
+    Source("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
     Source(
         "without effect",
         "refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm start's "
         "is below 1e-3",
-        f"{HEADER}, mjtDisableBit; mjOption",
+        f"{REFERENCE}, option, option/flag",
     ),
     Source(
         "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"
