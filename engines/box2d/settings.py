@@ -110,7 +110,21 @@ LANDING = replace(TUNED, reflection=True)
 DOCUMENTED = (
     Source("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
     Source("sleeping", "on, the default", "b2BodyDef.allowSleep"),
-    Source("friction", "0.2, the default; here 1", "b2FixtureDef.friction"),
+    Source(
+        "friction",
+        "0.2, of a pair the root of the product; here 1",
+        "b2FixtureDef.friction, b2Contact.h",
+    ),
+    Source(
+        "skin", "0.01 of a polygon, of which 0.005 is left alone", "b2_polygonRadius, b2_linearSlop"
+    ),
+    Source("warm starting", "on, the default", "b2World.warmStarting"),
+    Source(
+        "without effect",
+        "continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no damping; "
+        "speeds up to b2_maxTranslation 2 a step",
+        "b2World, b2BodyDef, b2Settings.h",
+    ),
     Source("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
 )
 """What its documentation sets, in pybox2d 2.3.10."""

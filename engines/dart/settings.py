@@ -49,13 +49,14 @@ class DartSettings:
     aside : bool
         Let the base slide out of the plane. Else nothing moves a block in the plane that way, its
         friction there has no mass, the Dantzig solver fails on it, and the library takes what its
-        other solver makes of the contact in a few iterations, without a word.
+        other solver makes of the last step's impulses in a few iterations, without a word.
     friction : float
         Coefficient between block and base, of which the library takes the smaller; its own is 1.
     exact_inertia : bool
         Set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
     collision : str or None
-        Collision detector, one of `DETECTORS`; by default FCL.
+        Collision detector, one of `DETECTORS`; by default FCL. By "DART" contacts are known again
+        by where bodies are in memory: where Dantzig's solver fails, answers depend on that.
     solver : str or None
         Of contact forces, one of `SOLVERS`; by default Dantzig's, which bounds friction by normal
         forces that it solves for without it: while a block turns about a corner that bound is up to
@@ -126,8 +127,24 @@ UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 DOCUMENTED = (
     Source("step", "0.001 s, the default", "World.getTimeStep"),
     Source("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
+    Source(
+        "solver",
+        "where it fails PGS, 30 iterations, from the last step's impulses",
+        "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
+    ),
+    Source("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
+    Source(
+        "contact",
+        "of a depth 0.01 a step is corrected, by at most 0.001 a second",
+        "ContactConstraint.cpp; split impulse is off",
+    ),
     Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
-    Source("friction", "1, the default", "DynamicsAspect.getFrictionCoeff"),
+    Source(
+        "sleeping",
+        "after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake",
+        "DeactivationOptions.hpp, dart pull request 2920",
+    ),
+    Source("friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"),
     Source(
         "floor",
         "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",

@@ -115,8 +115,14 @@ DOCUMENTED = (
     ),
     Source(
         "friction",
-        "dynamic_friction = static_friction = 0.5; 1.0 is used",
+        "dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used",
         "DefaultProximityProperties, drake 1.51.1",
+    ),
+    Source(
+        "without effect",
+        "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
+        "contact_surface_representation = 'polygon'",
+        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
     ),
     Source(
         "floor",

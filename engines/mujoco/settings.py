@@ -169,10 +169,18 @@ DOCUMENTED = (
     Source("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
     Source("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
     Source("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
-    Source("friction", "1 0.005 0.0001, as here", f"{REFERENCE}, body/geom"),
+    Source("friction", "1 0.005 0.0001, as here, of a pair the larger", f"{REFERENCE}, body/geom"),
+    Source("friction", "condim 3: sliding alone, neither spin nor roll", f"{REFERENCE}, body/geom"),
     Source("margin", "0", f"{REFERENCE}, body/geom"),
     Source(
         "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
+    ),
+    Source("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
+    Source(
+        "without effect",
+        "refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm start's "
+        "is below 1e-3",
+        f"{REFERENCE}, option, option/flag",
     ),
     Source(
         "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"

@@ -84,6 +84,7 @@ class NewtonSettings:
         )
 
 
+DOMINOES = "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0"
 BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
 
 DOCUMENTED = (
@@ -96,7 +97,12 @@ DOCUMENTED = (
         "SolverXPBD, newton 1.8.0",
     ),
     Source("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
-    Source("friction", "mu: float = 1.0", "ModelBuilder.ShapeConfig, newton 1.8.0"),
+    Source(
+        "friction",
+        "mu: float = 1.0, of a pair the mean",
+        "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
+    ),
+    Source("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
     Source(
         "floor",
         "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
@@ -108,12 +114,9 @@ DOCUMENTED = (
 """What the preset "naive" is documented by: the example in which a floor moves."""
 
 RECOMMENDED = (
-    Source("step", "60 fps of 10 substeps; a smaller dt first", "simulation_tuning.rst"),
-    Source(
-        "iterations",
-        "20, free dominoes",
-        "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0",
-    ),
+    Source("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
+    Source("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
+    Source("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
 )
 """What it recommends for less penetration: a smaller step, then more iterations."""
 

@@ -128,14 +128,23 @@ DOCUMENTED = (
     Source("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
     Source("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
     Source("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
+    Source("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
+    Source("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
+    Source("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
     Source("restitution", "0.1, the default", "physx.get_default_material()"),
-    Source("friction", "0.3, the default; here 1", "physx.get_default_material()"),
+    Source("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
+    Source(
+        "without effect",
+        "enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100, "
+        "max_depenetration_velocity 1e32",
+        f"{SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent",
+    ),
     Source("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
 )
 """What its documentation sets."""
 
 RECOMMENDED = (
-    Source("step", "dt = 1/120 s, where to start with much contact", TUNING),
+    Source("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
     Source("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
     Source("solver", "TGS, the first candidate", TUNING),
     Source("bounce_threshold", "0.2 m/s", TUNING),

@@ -166,6 +166,7 @@ STACKED: dict[str, Any] = {"geometry": "box", "base_geometry": "box", "iteration
 
 GUIDE = "PyBullet Quickstart Guide, 2016-2022"
 READ = "of pybullet 3.2.7"
+SERVER = "PhysicsServerCommandProcessor.cpp"
 EXAMPLE = "pybullet_examples/constraint.py, pybullet_data/cube_small.urdf"
 
 DOCUMENTED = (
@@ -176,16 +177,28 @@ DOCUMENTED = (
     Source("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
     Source("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
     Source("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
-    Source("friction", "0.5; here 1.0", f"getDynamicsInfo {READ}"),
+    Source(
+        "friction",
+        "0.5, of a pair the product: 0.5 on an example's floor of 1, 0.25 on another; here 1.0",
+        f"getDynamicsInfo, btManifoldResult.cpp {READ}",
+    ),
+    Source("contact", "contactERP 0.08, contactSlop 1e-5", f"{SERVER} {READ}"),
     Source("restitution", "0.0", f"getDynamicsInfo {READ}"),
     Source("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
     Source("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
     Source("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
+    Source("floor", "of what it is off, erp 0.2 a step", f"btContactSolverInfo.h {READ}"),
+    Source(
+        "without effect",
+        "frictionERP 0.2, warmStartingFactor 0.1, restitutionVelocityThreshold 0.2, "
+        "collisionMargin 0.001, speeds up to 100",
+        f"{SERVER}, btContactSolverInfo.h, btMultiBody.cpp {READ}",
+    ),
 )
 """Where the library's documentation, or the library itself, says what its defaults decide."""
 
 RECOMMENDED = (
-    Source("iterations", "more, for accuracy", "bullet3 issue 3081, by its author"),
+    Source("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
     Source("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
     Source("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
 )

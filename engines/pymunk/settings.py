@@ -102,7 +102,18 @@ DOCUMENTED = (
     Source("iterations", "10, the default", "Space.iterations"),
     Source("collision_slop", "0.1, the default", "Space.collision_slop"),
     Source("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
-    Source("friction", "0, the default; here 1", "Shape.friction"),
+    Source("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
+    Source("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
+    Source(
+        "collision_persistence",
+        "3 steps; with 0 nothing is left to start from, and a block slides",
+        "cpSpace.c",
+    ),
+    Source(
+        "without effect",
+        "collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0",
+        "cpSpace.c, cpShape.c",
+    ),
     Source("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
 )
 """What its documentation sets, in pymunk 7.3.1."""

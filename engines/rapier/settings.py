@@ -163,7 +163,33 @@ DOCUMENTED = (
     Source("step", "1/60 s, the default", "IntegrationParameters.dt"),
     Source("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
     Source("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
-    Source("friction", "0.5, the default; here 1", "ColliderBuilder.friction"),
+    Source("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
+    Source(
+        "friction",
+        "simplified, one for all points; not solved where depths are corrected",
+        "IntegrationParameters.friction_model, friction_in_bias_pass",
+    ),
+    Source(
+        "contact",
+        "a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move",
+        "IntegrationParameters.contact_softness, static_contact_softness",
+    ),
+    Source(
+        "contact",
+        "from 0.02 away, and kept while bodies move by less than 0.05",
+        "IntegrationParameters.normalized_prediction_distance, contact_recycling",
+    ),
+    Source(
+        "iterations",
+        "1 a substep and 1 of stabilization, from all of the last impulses",
+        "IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient",
+    ),
+    Source(
+        "without effect",
+        "allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400, "
+        "max_ccd_substeps 1, contact_clustering; no damping",
+        "IntegrationParameters, RigidBodyBuilder",
+    ),
     Source(
         "floor",
         "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "

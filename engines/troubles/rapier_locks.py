@@ -1,6 +1,6 @@
 """A block that may not leave its plane has no friction.
 
-Locked in y, and not to turn about x and z, it gets none in any direction, and nobody says so.
+Where nothing moves a contact along one direction of friction, it gets none along the other.
 
 Kind: friction model
 """
