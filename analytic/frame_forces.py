@@ -3,7 +3,7 @@
 The motion of a frame takes for granted that nothing slides, that every contact presses, and that
 the beam stays on all columns. With z = alpha - abs(theta) and s = sgn(theta) the beam moves with
 the corners that it rests on, 2R from the pivots, and a column's centre R from its pivot. Along
-gravity's direction and the base's they need, over weight,
+gravity's direction and the base's they need, over weight (EQUATIONS.md, "The rocking frame"),
 
     V = 1 + (l/g) [abs(theta)'' sin z - theta'^2 cos z],
     U = u''/g + s (l/g) [abs(theta)'' cos z + theta'^2 sin z],     l = 2R (beam), R (column).

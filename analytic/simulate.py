@@ -300,7 +300,17 @@ def solve_pulses(
 
 
 def scaled_segments(block: Rocker, motion: Motion) -> FloatArray:
-    """Return the segments of a motion in units of 1/p and g; not finite where they overflow."""
+    """Return the segments of a motion in units of 1/p and g; not finite where they overflow.
+
+    Parameters
+    ----------
+    block : Rocker, of which p and the gravity are used
+    motion : Motion
+
+    Returns
+    -------
+    ndarray (m, 7), in the columns of `motion.SEGMENT_COLUMNS`
+    """
     p, g = np.float64(block.p), np.float64(block.gravity)
     with np.errstate(all="ignore"):
         return motion.segments() * np.array(
@@ -311,7 +321,19 @@ def scaled_segments(block: Rocker, motion: Motion) -> FloatArray:
 def check_window(
     motion: Motion, duration: float | None, times: ArrayLike | None
 ) -> tuple[float, FloatArray]:
-    """Return the time to follow a response to [s] and its sample times, checked."""
+    """Return the time to follow a response to [s] and its sample times [s], checked.
+
+    Parameters
+    ----------
+    motion : Motion
+    duration, times
+        As for `simulate`.
+
+    Raises
+    ------
+    ValueError
+        If the duration is shorter than the motion, or the times are not increasing or not finite.
+    """
     until = motion.duration if duration is None else finite("duration", duration)
     if until < motion.duration:
         raise ValueError(

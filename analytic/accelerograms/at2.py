@@ -28,6 +28,11 @@ def read(lines: Sequence[str], units: str | None) -> Sampled | None:
     Its header says the number of samples and their step, in any of the forms above. One that says
     the step alone must be closed by a line "*** End Data ***": it is whole then.
 
+    Parameters
+    ----------
+    lines, units
+        As for `analytic.accelerograms.asc.read`.
+
     Raises
     ------
     ValueError
