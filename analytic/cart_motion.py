@@ -150,7 +150,6 @@ class Ride:
             self.rests.append(self.tau)
 
     def _felt(self, wait: float) -> float:
-        """Return the acceleration that push and spring give all in a while."""
         push = ground(self.segments, self.segment, self.tau + wait)
         return float(push - self.cart.stiffness * (self.x + wait * self.u))
 

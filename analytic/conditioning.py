@@ -217,7 +217,11 @@ def condition_pulses(
     by_amplitude: FloatArray,
     by_eta: FloatArray,
 ) -> None:
-    """Write the condition numbers of each case, one a column."""
+    """Write the condition numbers of each case, one a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held, work = listed(cases), listed(constants), workspace()
     segments = np.zeros((1, 7))
     for i in range(len(given[0])):

@@ -189,7 +189,11 @@ def solve_modes(
     margins: FloatArray,
     steps: NDArray[np.int32],
 ) -> None:
-    """Solve a part of `overturning_modes`, one case a column."""
+    """Solve a part of `overturning_modes`, one case a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held = listed(cases), listed(constants)
     work, segment = listed(np.empty((5, MAP_ORDER + 1))), listed(np.zeros(7))
     for i in range(len(given[0])):

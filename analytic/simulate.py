@@ -147,7 +147,7 @@ def _other(
     duration: float | None,
     times: ArrayLike | None,
 ) -> Response:
-    """Solve what is no rocking block on a base that moves as it is told to; as `simulate`."""
+    """Solve a sliding block, or a block on a cart; as `simulate`."""
     until, sampled = check_window(motion, duration, times)
     kept = None if times is None else sampled
     if isinstance(body, SlidingBlock):
@@ -283,7 +283,11 @@ def solve_pulses(
     peaks: FloatArray,
     codes: NDArray[np.int8],
 ) -> None:
-    """Solve a part of `peak_ratios`, one case a column."""
+    """Solve a part of `peak_ratios`, one case a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held, work = listed(cases), listed(constants), listed(workspace())
     segments = listed(np.zeros((1, 7)))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))

@@ -73,7 +73,6 @@ def _header(lines: Sequence[str]) -> tuple[int, list[int], list[float]]:
 
 
 def _only(name: str, values: Iterable[float]) -> float:
-    """Return the one value that is said, once or more often."""
     if len(found := list(dict.fromkeys(values))) > 1:
         words = " and ".join(f"{value:g}" for value in found)
         raise ValueError(f"its header says {words} as {name}; it must say one")

@@ -1,8 +1,8 @@
 """The derivatives of a response by ln(a_p) and by ln(eta), beside the response itself.
 
 They obey the equation of motion linearized about it (EQUATIONS.md, "Condition numbers"). They start
-from zero, and again at each uplift, where the block is at rest, jump with the velocity at each
-impact, whose time moves too, and end in the derivative of the peak. Units are those of
+from zero, as they do again at each uplift, where the block is at rest. At an impact, whose time
+moves too, they jump with the velocity. They end in the derivative of the peak. Units are those of
 `analytic.kernels.law`.
 """
 

@@ -181,7 +181,7 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
 
 @inner
 def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
-    """Return when, about h after a state, the closed form reaches zero."""
+    """Return the time [1/p] after a state, about h, at which the closed form reaches zero."""
     x = h
     for _ in range(4):
         end, rate = linear_state(law, segment, begin, x)
@@ -202,6 +202,14 @@ def take_step(
 
     Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
     work[4].
+
+    Parameters
+    ----------
+    law, accuracy, work
+        As for `march`.
+    segment : ndarray (7,), ground motion at the time of the state
+    begin : State
+    peak : float, largest rotation so far [rad]
     """
     series, d, spare = work[0], work[4], work[5:]
     order, lead, end = accuracy.order, begin.lead, segment[1]
@@ -255,7 +263,19 @@ def sample_step(
     notes: Notes,
     n: int,
 ) -> int:
-    """Sample a step, whose series on [0, 1] is d; return the number of samples so far."""
+    """Sample a step; return the number of samples so far.
+
+    Parameters
+    ----------
+    law : Law
+    segment : ndarray (7,), ground motion
+    begin : State, at the begin of the step
+    d : ndarray (>= order + 1,), series of y on [0, 1]
+    order : int, its degree
+    step : Step, as it was taken
+    notes : Notes, whose samples are written
+    n : int, number of samples before
+    """
     h = step.h
     while n < len(notes.times) and notes.times[n] <= begin.tau + step.x * h:
         at = notes.times[n] - begin.tau

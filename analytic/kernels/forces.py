@@ -181,10 +181,15 @@ def expand_forces(
     tangential: FloatArray,
     square: FloatArray,
 ) -> None:
-    """Write the series of the contact forces over weight, on [0, 1] for a step of length h.
+    """Write the series of the contact forces over weight, on [0, 1] for a step.
 
-    From those of y, side x ground acceleration, sin(z) and cos(z), rows of `series`; `square` is
-    that of y'^2. The tangential force is folded, as y is.
+    Parameters
+    ----------
+    degree : int, of the series that are written
+    h : float, length of the step [1/p]
+    series : ndarray (4, >= degree + 3), series of y, f, sin z and cos z
+    normal, tangential : ndarray (>= degree + 1,), to be written; the latter is folded, as y is
+    square : ndarray (>= degree + 1,), to be written: the series of y'^2
     """
     y, f, sine, cosine = series[0], series[1], series[2], series[3]
     scale = 1.0

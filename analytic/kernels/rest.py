@@ -158,8 +158,9 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
-    What exceeds it by no more than a part EQUAL does not, nor what does so for no more than the
-    part MOMENT of the segment, falling at its begin or rising at its end: there the next one tells.
+    Two excesses count as rounding: one of a part EQUAL of the onset or less, and one that lasts for
+    a part MOMENT of the segment or less. The latter falls at the segment's begin, or rises at its
+    end, where the next segment tells.
     """
     start, end, _, _, _, offset, rate = segment
     now, moment = offset + rate * (tau - start), MOMENT * (end - start)
@@ -237,8 +238,8 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
 def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) -> bool:
     """Tell whether a train of impacts may be summed.
 
-    It must be shorter than ZENO, and the ground acceleration, `now` at its begin and `later` at
-    its end, must change the restoring accelerations by less than a part ZENO in it.
+    It must be shorter than ZENO, and the restoring accelerations must change by less than a part
+    ZENO in it, as the ground acceleration goes from `now` to `later`.
     """
     if not wait < ZENO:
         return False

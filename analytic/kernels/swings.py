@@ -129,9 +129,18 @@ def arc_at(
     half_cycles: int,
     angle: float,
 ) -> tuple[float, float, float]:
-    """Return rotation, velocity and rounding error at the time t of a swing.
+    """Return rotation [rad], velocity [rad p] and rounding error [rad] in a swing.
 
     Where the terms of the closed form would cancel, in short swings, by `linear_state`.
+
+    Parameters
+    ----------
+    law, pulse, segment
+        As for `swing_linear`.
+    arc : Arc
+    t : float, time since the begin of the swing [1/p]
+    half_cycles, angle : int, float, the same time as half cycles since, and the angle [rad] in the
+        last one
     """
     k, omega = law.k, pulse.omega
     if t * max(k, omega) < SHORT:
@@ -262,7 +271,12 @@ def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None
 def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple[float, bool]:
     """Return where on [x, end] the series first reaches zero, and whether it does.
 
-    `top` is how high the swing has been.
+    Parameters
+    ----------
+    y : ndarray (MAP_ORDER + 1,), series of the rotation
+    x, end : float, times since its begin [1/p]
+    most : float, a bound of -y'' there [rad p^2]
+    top : float, how high the swing has been [rad]
     """
     for _ in range(1000):
         now, rate = value(y, MAP_ORDER, x), slope(y, MAP_ORDER, x)
