@@ -44,9 +44,7 @@ def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
 
 
 def mean_velocity_over(rows: Ground, begin: float, finish: float) -> float:
-    """Return the base's mean velocity [m/s] between two times.
-
-    The integral of the acceleration in closed form (EQUATIONS.md, "A record", for straight lines).
+    """Return the base's mean velocity [m/s] between two times, by exact integration.
 
     Parameters
     ----------
