@@ -128,10 +128,15 @@ class RigidBlock(Upright):
 def restitution_or(given: float, usual: float) -> float:
     """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for nan.
 
+    Parameters
+    ----------
+    given : float, a user's, or nan
+    usual : float, that of an ideally inelastic impact
+
     Raises
     ------
     ValueError
-        If it is outside [0, 1].
+        If the given one is outside [0, 1].
     """
     if math.isnan(given):
         return max(usual, 0.0)
@@ -143,7 +148,8 @@ def restitution_or(given: float, usual: float) -> float:
 def housner_restitution(alpha: float) -> float:
     """Velocity ratio of an ideally inelastic impact, 1 - 3/2 sin(alpha)^2 (Housner 1963).
 
-    Not clipped: it is negative where sin(alpha)^2 > 2/3.
+    Angular momentum about the new corner is conserved (EQUATIONS.md, "Impact"). Not clipped: it is
+    negative where sin(alpha)^2 > 2/3.
 
     Examples
     --------

@@ -55,7 +55,8 @@ class CartBlock(Upright):
     def restitution(self) -> float:
         """Ratio of the angular velocities after and before an impact, 0 where it is negative.
 
-        (1/3 + cos(2 alpha) - m~ cos(alpha)^2)/(4/3 - m~ cos(alpha)^2), ideally inelastic.
+        (1/3 + cos(2 alpha) - m~ cos(alpha)^2)/(4/3 - m~ cos(alpha)^2), ideally inelastic
+        (EQUATIONS.md, "The block on a cart").
         """
         given = self.mass_ratio * math.cos(self.alpha) ** 2
         kept = 1.0 / 3.0 + math.cos(2.0 * self.alpha) - given

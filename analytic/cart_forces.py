@@ -63,7 +63,7 @@ def cart_demands(
 def _accelerations(
     cart: CartBlock, motion: Motion, history: History, place: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return of the block's centre that along x, and the one up plus gravity [m/s2]."""
+    """Return accelerations of the block's centre [m/s2]: along x, and upwards plus gravity."""
     g, part, r, rate = cart.gravity, cart.mass_ratio, cart.R, history.velocity
     side, z = np.sign(history.theta), cart.alpha - np.abs(history.theta)
     sine, cosine = np.sin(z), np.cos(z)

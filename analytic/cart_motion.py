@@ -1,6 +1,7 @@
 """The response of a block on a cart: Taylor steps between impacts, as for a block.
 
-The state is folded to one side, y = s theta; time is in units of 1/p, places in g/p^2.
+Symbols and units are those of `analytic.kernels.cart`; for the impact and for the bounds of what is
+still to come see EQUATIONS.md, "The block on a cart".
 """
 
 import math
@@ -149,7 +150,6 @@ class Ride:
             self.rests.append(self.tau)
 
     def _felt(self, wait: float) -> float:
-        """Return the acceleration that push and spring give all in a while."""
         push = ground(self.segments, self.segment, self.tau + wait)
         return float(push - self.cart.stiffness * (self.x + wait * self.u))
 

@@ -80,6 +80,11 @@ def pose(
 ) -> Cases:
     """Return the cases that the arguments of `peak_ratios` name.
 
+    Parameters
+    ----------
+    alpha, amplitude_g, omega_over_p, half_cycles, model, restitution
+        As for `analytic.simulate.peak_ratios`.
+
     Raises
     ------
     ValueError
@@ -111,14 +116,29 @@ def housner_restitutions(alpha: ArrayLike) -> FloatArray:
 
 @inner
 def law_of(linear: bool, constants: FloatArray, cases: FloatArray, i: int) -> Law:
-    """Return the law of a case, from its column of the constants and of the cases."""
+    """Return the law of a case.
+
+    Parameters
+    ----------
+    linear : bool, whether the model is
+    constants : ndarray (5, n), of `Model.constants`
+    cases : ndarray (5, n), alpha [rad], amplitude [g], omega/p, half cycles, restitution
+    i : int, column of the case
+    """
     k, saddle, factor = constants[0][i], constants[1][i], constants[2][i]
     return Law(linear, k, saddle, factor, constants[3][i], constants[4][i], cases[4][i])
 
 
 @inner
 def write_pulse(cases: FloatArray, i: int, segment: FloatArray) -> None:
-    """Write the pulse of a case into a row of `motion.SEGMENT_COLUMNS` that is zero elsewhere."""
+    """Write the pulse of a case into a segment, in units of 1/p and g.
+
+    Parameters
+    ----------
+    cases : ndarray (5, n), as for `law_of`
+    i : int, column of the case
+    segment : ndarray (7,), a row of `motion.SEGMENT_COLUMNS`; zero but for what is written
+    """
     omega = cases[2][i]
     segment[1] = cases[3][i] * math.pi / omega
     segment[2] = cases[1][i]

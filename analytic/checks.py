@@ -46,6 +46,13 @@ def whole_half_cycles(value: float) -> int:
 
 
 def finite_result(what: str, value: float, cause: str) -> None:
-    """Raise ValueError unless a value that follows from the arguments in `cause` is finite."""
+    """Raise ValueError unless a value that follows from arguments is finite.
+
+    Parameters
+    ----------
+    what : str, name of the value
+    value : float
+    cause : str, the arguments that it follows from, with their values
+    """
     if not math.isfinite(value):
         raise ValueError(f"{cause}; {what}, which follows as {value!r}, must be finite")

@@ -77,7 +77,17 @@ def conditioning(
 ) -> tuple[float, float]:
     """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta.
 
-    The start, as for `simulate`, is the same for all scales.
+    See EQUATIONS.md, "Condition numbers".
+
+    Parameters
+    ----------
+    block, motion, model, start
+        As for `simulate`, with its errors; the start is the same for all scales.
+
+    Returns
+    -------
+    by_amplitude, by_eta : float
+        nan where the block does not rock and survive.
 
     Examples
     --------
@@ -133,7 +143,12 @@ def sensitivity(
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
 ) -> float:
-    """Return what `sensitivities` does, of one peak; the start is the same for all moves.
+    """Return what `sensitivities` does, of one peak.
+
+    Parameters
+    ----------
+    block, motion, model, start
+        As for `simulate`, with its errors; the start is the same for all moves.
 
     Examples
     --------
@@ -151,10 +166,18 @@ def scaled(
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
 ) -> Callable[[float, float], tuple[float, Outcome]]:
-    """Return what solves one response with its motion and eta multiplied, eta to at most 1.
+    """Return what solves one response with its motion and eta multiplied.
 
-    It takes both factors, returns the largest rotation [rad] and the outcome, writes nothing else
-    down and may be called from several threads.
+    Parameters
+    ----------
+    block, motion, model, start
+        As for `simulate`, with its errors; the start is the same for all scales.
+
+    Returns
+    -------
+    callable
+        Given both factors, it returns the largest rotation [rad] and the outcome; eta stays at most
+        1. It writes nothing else down and may be called from several threads.
     """
     law = find_model(model).law(block.alpha, block.restitution)
     begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
@@ -194,7 +217,11 @@ def condition_pulses(
     by_amplitude: FloatArray,
     by_eta: FloatArray,
 ) -> None:
-    """Write the condition numbers of each case, one a column."""
+    """Write the condition numbers of each case, one a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held, work = listed(cases), listed(constants), workspace()
     segments = np.zeros((1, 7))
     for i in range(len(given[0])):

@@ -1,4 +1,7 @@
-"""The rolling cylinder: steady rolling on a rim, the centre at rest (Euler's disk and its kin)."""
+"""The rolling cylinder: steady rolling on a rim, the centre at rest (Euler's disk and its kin).
+
+The equations are in EQUATIONS.md, "The rolling cylinder".
+"""
 
 import math
 from dataclasses import dataclass

@@ -18,7 +18,7 @@ def rocking_friction(amplitude_g: float, aspect: float) -> float:
     """Return the friction with which a block rocks without sliding from its first instant.
 
     [a (4 + lambda^2) + 3 lambda]/[1 + 4 lambda^2 + 3 a lambda]: horizontal over normal force at the
-    corner of a block that lifts under the acceleration a.
+    corner of a block that lifts under the acceleration a (EQUATIONS.md, "The first mode").
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ class RockingFrame(Upright):
         Full dimensions B and H of a column [m].
     columns : int, optional
         N, 2 or more. The motion does not depend on it; of 3 or more columns other motions are
-        possible too, in which one runs ahead of the beam (EQUATIONS.md).
+        possible too, in which one runs ahead of the beam.
     load : float
         gamma, the mass of the beam over that of all columns.
     gravity : float, optional
@@ -37,7 +37,8 @@ class RockingFrame(Upright):
 
     References
     ----------
-    Makris and Vassiliou (2013), Earthquake Engineering and Structural Dynamics 42; EQUATIONS.md.
+    Makris and Vassiliou (2013), Earthquake Engineering and Structural Dynamics 42; EQUATIONS.md,
+    "The rocking frame".
 
     Examples
     --------
@@ -84,7 +85,13 @@ class RockingFrame(Upright):
 def frame_restitution(alpha: float, load: float) -> float:
     """Velocity ratio of an ideally inelastic impact of a frame, at the bases and tops at once.
 
-    [1 - 3/2 sin(alpha)^2 + 3 gamma cos(2 alpha)]/(1 + 3 gamma); not clipped, as Housner's.
+    [1 - 3/2 sin(alpha)^2 + 3 gamma cos(2 alpha)]/(1 + 3 gamma); not clipped, as Housner's
+    (EQUATIONS.md, "The rocking frame").
+
+    Parameters
+    ----------
+    alpha : float, slenderness of a column [rad]
+    load : float, gamma, the mass of the beam over that of all columns
 
     Examples
     --------

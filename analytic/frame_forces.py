@@ -3,14 +3,14 @@
 The motion of a frame takes for granted that nothing slides, that every contact presses, and that
 the beam stays on all columns. With z = alpha - abs(theta) and s = sgn(theta) the beam moves with
 the corners that it rests on, 2R from the pivots, and a column's centre R from its pivot. Along
-gravity's direction and the base's they need, over weight,
+gravity's direction and the base's they need, over weight (EQUATIONS.md, "The rocking frame"),
 
     V = 1 + (l/g) [abs(theta)'' sin z - theta'^2 cos z],
     U = u''/g + s (l/g) [abs(theta)'' cos z + theta'^2 sin z],     l = 2R (beam), R (column).
 
-The moment of V and U about the beam's centre is balanced by the columns, at x_i from the middle,
-each with a force c x_i along its diagonal, which does not turn it, beside an equal share. For N = 2
-there is no other balance; for more columns it is the one that spreads least. At rest, on two
+The columns, at x_i from the middle, balance the moment of V and U about the beam's centre. Beside
+an equal share each bears a force c x_i along its diagonal, which does not turn it. For N = 2 there
+is no other balance; for more columns it is the one that spreads least. At rest, on two
 corners each, equal shares will do.
 At an impact the same holds of impulses, whose U/V is cot(alpha) (1 - eta)/(1 + eta), at the bases
 and at the tops.
@@ -160,10 +160,7 @@ class Push(NamedTuple):
 
 
 def _pushes(frame: RockingFrame, motion: Motion, response: Response) -> Iterator[tuple[Push, bool]]:
-    """Yield the forces of a response and, where it has impacts, the impulses; and whether they are.
-
-    Impulses are not weighed against the weight.
-    """
+    """Yield the forces of a response and False; where it has impacts, their impulses and True."""
     if response.outcome is Outcome.FAILED or response.history is None:
         raise ValueError(f"the response of the frame failed: {response.message}")
     time, theta, rate = (
@@ -206,7 +203,7 @@ def _forces(frame: RockingFrame, states: States) -> Push:
 
 
 def _impulses(frame: RockingFrame, side: FloatArray) -> Push:
-    """Return the impulses at the corners that an impact of unit rate makes the pivots of a side."""
+    """Return the impulses, at its new pivots, of an impact of unit rate onto a side."""
     alpha, eta = frame.alpha, frame.restitution
     vertical = np.full(1, math.sin(alpha) * (1.0 + eta))
     across = -side * math.cos(alpha) * (1.0 - eta)
@@ -217,7 +214,6 @@ def _impulses(frame: RockingFrame, side: FloatArray) -> Push:
 def _demands(
     frame: RockingFrame, push: Push, impulses: bool, spacing: float, depth: float
 ) -> Demands:
-    """Return what forces or impulses ask for, each an array over states."""
     n, half = frame.columns, 0.5 * (frame.columns - 1)
     places = (np.arange(n)[:, None] - half) * spacing
     overhang = -0.5 * push.side * frame.width

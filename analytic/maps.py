@@ -59,7 +59,10 @@ class Modes(NamedTuple):
 def next_lift(angle: float, level: float) -> tuple[int, float]:
     """Return how many half cycles on, and at which angle, the ground lifts a block at rest.
 
-    `level` is the angle at which a half cycle reaches the onset.
+    Parameters
+    ----------
+    angle : float, place in the present half cycle [rad], in [0, pi]
+    level : float, angle at which a half cycle reaches the onset [rad]
     """
     if angle > math.pi - level - ANGLE_TOLERANCE:
         return 1, level
@@ -79,7 +82,16 @@ def is_quiet(law: Law, v: float, left: float) -> bool:
 
 @inner
 def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
-    """Return mode and margin of a block at (y, v) when the pulse ends."""
+    """Return mode and margin, as in `Modes`, of a block when the pulse ends.
+
+    The separatrix is v = k (c - y) of a linear model, v = 2 sin((alpha - y)/2) of the exact one.
+
+    Parameters
+    ----------
+    law : Law
+    y, v : float, its state [rad, rad p]
+    impacts : int, how many there were
+    """
     barrier = math.sqrt(2.0 * work_to(law, law.saddle))
     excess = y - law.saddle
     here = v + (law.k * excess if law.linear else 2.0 * math.sin(0.5 * excess))
@@ -94,13 +106,26 @@ def decide(law: Law, y: float, v: float, impacts: int) -> tuple[int, float]:
 
 @inner
 def later(pulse: Pulse, half_cycles: int) -> Pulse:
-    """Return what is left of a pulse so many half cycles later."""
+    """Return what is left of a pulse some half cycles later.
+
+    Parameters
+    ----------
+    pulse : Pulse
+    half_cycles : int
+    """
     return Pulse(pulse.amplitude, pulse.omega, pulse.half_cycles - half_cycles)
 
 
 @inner
 def ground_after(pulse: Pulse, angle: float, wait: float) -> float:
-    """Return the ground acceleration [g] a time after an angle; zero after the pulse."""
+    """Return the ground acceleration [g] a time after an angle; zero after the pulse.
+
+    Parameters
+    ----------
+    pulse : Pulse, of which the present half cycle counts as positive
+    angle : float, place in it [rad]
+    wait : float, [1/p]
+    """
     phase = angle + pulse.omega * wait
     if not phase < pulse.half_cycles * math.pi:
         return 0.0
@@ -164,7 +189,11 @@ def solve_modes(
     margins: FloatArray,
     steps: NDArray[np.int32],
 ) -> None:
-    """Solve a part of `overturning_modes`, one case a column."""
+    """Solve a part of `overturning_modes`, one case a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held = listed(cases), listed(constants)
     work, segment = listed(np.empty((5, MAP_ORDER + 1))), listed(np.zeros(7))
     for i in range(len(given[0])):

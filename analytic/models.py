@@ -10,7 +10,8 @@ and each linear model is
     y'' = -k^2 [c - y + s q a]
 
 with its frequency k, saddle c and forcing factor q. A block at rest lifts off when abs(a) exceeds
-the onset, which is c/q for the linear models.
+the onset, which is c/q for the linear models. They are derived in EQUATIONS.md,
+"From (1) and (2)".
 """
 
 from collections.abc import Callable

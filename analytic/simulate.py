@@ -147,7 +147,7 @@ def _other(
     duration: float | None,
     times: ArrayLike | None,
 ) -> Response:
-    """Solve what is no rocking block on a base that moves as it is told to; as `simulate`."""
+    """Solve a sliding block, or a block on a cart; as `simulate`."""
     until, sampled = check_window(motion, duration, times)
     kept = None if times is None else sampled
     if isinstance(body, SlidingBlock):
@@ -283,7 +283,11 @@ def solve_pulses(
     peaks: FloatArray,
     codes: NDArray[np.int8],
 ) -> None:
-    """Solve a part of `peak_ratios`, one case a column."""
+    """Solve a part of `peak_ratios`, one case a column.
+
+    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
+    written.
+    """
     given, held, work = listed(cases), listed(constants), listed(workspace())
     segments = listed(np.zeros((1, 7)))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
@@ -300,7 +304,17 @@ def solve_pulses(
 
 
 def scaled_segments(block: Rocker, motion: Motion) -> FloatArray:
-    """Return the segments of a motion in units of 1/p and g; not finite where they overflow."""
+    """Return the segments of a motion in units of 1/p and g; not finite where they overflow.
+
+    Parameters
+    ----------
+    block : Rocker, of which p and the gravity are used
+    motion : Motion
+
+    Returns
+    -------
+    ndarray (m, 7), in the columns of `motion.SEGMENT_COLUMNS`
+    """
     p, g = np.float64(block.p), np.float64(block.gravity)
     with np.errstate(all="ignore"):
         return motion.segments() * np.array(
@@ -311,7 +325,19 @@ def scaled_segments(block: Rocker, motion: Motion) -> FloatArray:
 def check_window(
     motion: Motion, duration: float | None, times: ArrayLike | None
 ) -> tuple[float, FloatArray]:
-    """Return the time to follow a response to [s] and its sample times, checked."""
+    """Return the time to follow a response to [s] and its sample times [s], checked.
+
+    Parameters
+    ----------
+    motion : Motion
+    duration, times
+        As for `simulate`.
+
+    Raises
+    ------
+    ValueError
+        If the duration is shorter than the motion, or the times are not increasing or not finite.
+    """
     until = motion.duration if duration is None else finite("duration", duration)
     if until < motion.duration:
         raise ValueError(

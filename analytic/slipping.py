@@ -1,9 +1,9 @@
 """The slips of a block on a base that moves, in closed form leg by leg (Newmark 1965).
 
-Relative to the base x'' = -u'' - mu g sgn x' while the block slides. It starts where abs(u'')
-exceeds mu g, and a slip ends where x' vanishes. On a segment of the motion x and x' are elementary;
-between two crests of u'' the rate x' has one stationary point at most, so that every root is
-bracketed.
+Relative to the base x'' = -u'' - mu g sgn x' while the block slides (EQUATIONS.md, "The sliding
+block"). It starts where abs(u'') exceeds mu g, and a slip ends where x' vanishes. On a segment of
+the motion x and x' are elementary; between two crests of u'' the rate x' has one stationary point
+at most, so that every root is bracketed.
 """
 
 import math

@@ -20,15 +20,22 @@ def folded(
     start: tuple[float, float],
     times: Sequence[float] | FloatArray = (),
 ) -> Start:
-    """Return the start (theta [rad], theta' [rad/s]) of a block, checked and folded to one side.
+    """Return the start of a block, checked and folded to one side, in units of 1/p.
+
+    Parameters
+    ----------
+    block : Rocker, of which p is used
+    law : Law, of the model
+    motion : Motion
+    start : (float, float), theta [rad] and theta' [rad/s]
+    times : sequence of float, optional, where the response is to be sampled [s]
 
     Raises
     ------
     ValueError
         If they are not two finite numbers, abs(theta) is pi/2 or more, where the side of the block
         lies on the ground, or the block would balance for ever: at rest at the saddle of the
-        model, and no motion to disturb it; or if the first of the `times` [s] to sample is before a
-        start off rest.
+        model, and no motion to disturb it; or if the first of the times is before a start off rest.
     """
     try:
         theta, rate = start

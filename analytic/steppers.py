@@ -1,7 +1,8 @@
 """The paper's own solvers (section 4): RK4 and average acceleration, with fractional time stepping.
 
 They march with a fixed step. A step that passes through theta = 0 is taken back and
-repeated in tenths, and so on, until abs(theta) is below the event tolerance at the impact.
+repeated in tenths, and so on, until abs(theta) is below the event tolerance at the impact. Symbols
+and units of the kernels are those of `analytic.kernels.law`.
 """
 
 import math

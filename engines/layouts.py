@@ -207,7 +207,13 @@ def _standing(system: Any, density: float, depth: float | None, start: Start, ho
 
 
 def one_block(system: RigidBlock, density: float, depth: float | None, start: Start) -> Layout:
-    """Return one block on the base."""
+    """Return one block on the base.
+
+    Parameters
+    ----------
+    system, density, depth, start
+        As for `layout_of`.
+    """
     block = _standing(system, density, depth, start, 0.0)
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
 
@@ -222,7 +228,11 @@ def side_by_side(system: SideBySide, density: float, depth: float | None, start:
 
 
 def frame(system: RockingFrame, density: float, depth: float | None, start: Start) -> Layout:
-    """Return columns on the base and a beam on their tops, in all of them the middle at 0."""
+    """Return columns on the base and a beam on their tops, all of them about x = 0.
+
+    The beam moves with the heads of the columns and does not turn (EQUATIONS.md, "The rocking
+    frame"). The parameters are those of `layout_of`.
+    """
     count, apart = system.columns, SPACING * system.height
     homes = [(number - 0.5 * (count - 1)) * apart for number in range(count)]
     columns = [_standing(system, density, depth, start, home) for home in homes]
@@ -265,6 +275,14 @@ LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
 
 def layout_of(system: Any, density: float, depth: float | None, start: Start) -> Layout:
     """Return the layout of a system.
+
+    Parameters
+    ----------
+    system : RigidBlock, or another of LAYOUTS
+    density : float, [kg/m3]
+    depth : float or None, size out of the plane [m]; None is the width
+    start : (float, float), theta [rad] and theta' [rad/s]; of a box that slides, place [m] and
+        velocity [m/s]
 
     Raises
     ------

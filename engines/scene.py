@@ -200,7 +200,6 @@ def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
 
 
 def _moves(motion: Motion) -> bool:
-    """Return whether the base is accelerated at any time."""
     accelerating = [SEGMENT_COLUMNS.index(name) for name in ("amplitude", "offset", "slope")]
     return bool(motion.segments()[:, accelerating].any())
 

@@ -215,6 +215,11 @@ def place_of(engine: Engine) -> str:
 def roll(name: str, scene: SpaceScene) -> Track:
     """Simulate a cylinder with an engine, in equal steps.
 
+    Parameters
+    ----------
+    name : str, of the engine
+    scene : SpaceScene
+
     Raises
     ------
     NotAvailableError
@@ -279,7 +284,6 @@ def _row(world: SpaceWorld) -> FloatArray:
 
 
 def _wrong(world: SpaceWorld, row: FloatArray, it: Cylinder) -> Problem | None:
-    """Return what is wrong with a state, if anything is."""
     if not np.isfinite(row).all():
         return Problem(Reason.DIVERGED, "the state is not finite")
     low = lowest(row[None], it)[0]
@@ -296,14 +300,29 @@ def axes(states: FloatArray) -> FloatArray:
 
 
 def lowest(states: FloatArray, it: Cylinder) -> FloatArray:
-    """Return the height [m] of a cylinder's lowest point above the plane, (n,)."""
+    """Return the height [m] of a cylinder's lowest point above the plane, (n,).
+
+    Parameters
+    ----------
+    states : ndarray (n, 13), as of `Track`
+    it : Cylinder
+    """
     up = axes(states)[:, 2]
     rim = it.radius * np.sqrt(np.maximum(1.0 - up * up, 0.0))
     return np.asarray(states[:, 2] - 0.5 * it.height * np.abs(up) - rim)
 
 
 def energies(states: FloatArray, it: Cylinder, gravity: float) -> FloatArray:
-    """Return the energy [J] of height, velocity and spin, (n,)."""
+    """Return the energy [J] of height, velocity and spin, (n,).
+
+    With the moments of inertia A and C of EQUATIONS.md, "The rolling cylinder".
+
+    Parameters
+    ----------
+    states : ndarray (n, 13), as of `Track`
+    it : Cylinder
+    gravity : float, [m/s2]
+    """
     velocity, spin = states[:, 7:10], states[:, 10:13]
     along = np.einsum("ij,ij->i", spin, axes(states))
     across, _, axial = it.inertia
@@ -313,7 +332,14 @@ def energies(states: FloatArray, it: Cylinder, gravity: float) -> FloatArray:
 
 
 def rotated(turn: Any, vector: Any, *, back: bool = False) -> FloatArray:
-    """Return a vector of a body, turned by a quaternion (w, x, y, z); or of space, turned back."""
+    """Return a vector of a body in the axes of space, or one of space in those of the body.
+
+    Parameters
+    ----------
+    turn : array_like (4,), rotation of the body, a unit quaternion (w, x, y, z)
+    vector : array_like (3,)
+    back : bool, whether the vector is one of space
+    """
     axis = -np.asarray(turn[1:]) if back else np.asarray(turn[1:])
     across = 2.0 * np.cross(axis, vector)
     return np.asarray(vector + turn[0] * across + np.cross(axis, across))

@@ -25,17 +25,17 @@ class Moment(enum.Enum):
 
 
 ROUNDINGS = 16.0
-"""Roundings of the block's height from which the height of a corner above the base is made."""
+"""Error of the height of a corner above the base, in roundings of the block's height."""
 
 
 CALMEST = 8.0
-"""Up to so many ordinary steps long are those of a block at rest that nothing can lift yet."""
+"""Longest step of a block at rest that nothing can lift yet, in ordinary steps."""
 
 
 class Resolution(NamedTuple):
     """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part.
 
-    calmest is up to how many ordinary steps long one may be that leaves a block at rest as it lies.
+    calmest is the longest step of a block at rest that nothing can lift yet, in ordinary steps.
     """
 
     length_m: float = 0.0
@@ -123,9 +123,9 @@ class Pose(NamedTuple):
 class World(Protocol):
     """A built scene, its bodies where and as fast as `Scene.bodies` says.
 
-    One whose base moves may have attributes ``lag_m``, how far [m] the base was at most, at the end
-    of a step, from where it should have been, and ``base_x_m``, where it is [m] as the state was
-    read, which is relative to that.
+    One whose base moves may have two attributes more. ``lag_m`` is the largest distance [m] of the
+    base, at the end of a step, from where it should have been. ``base_x_m`` is where the base is
+    [m] as the state is read: poses are relative to it.
     """
 
     @property
@@ -184,8 +184,8 @@ class SelfSteppingWorld(World, Protocol):
 class Worlds(Protocol):
     """Built scenes that take equal steps side by side; each is as a `World` says.
 
-    An attribute ``lag_m``, an array (worlds, steps), says how far [m] at the end of each of the
-    last steps a base that moves was from where it should have been.
+    An attribute ``lag_m``, where there is one, is an array (worlds, steps): the distance [m] of a
+    base that moves from where it should have been, at the end of each of the last steps.
     """
 
     @property

@@ -24,10 +24,15 @@ FOREIGN = {
 def read(path: Path, units: str | None) -> Sampled:
     """Read a file; `analytic.Record.read` says which.
 
+    Parameters
+    ----------
+    path : Path
+    units : str or None, a unit of UNITS for a file that states none
+
     Raises
     ------
     ValueError
-        As there, without the name of the file.
+        As by `analytic.Record.read`, without the name of the file.
     """
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")

@@ -12,6 +12,11 @@ STEP, COUNT, UNIT, TYPE = KEYS = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA
 def read(lines: Sequence[str], units: str | None) -> Sampled | None:
     """Read an ASC file of ESM or ITACA, or return None if the lines are not of one.
 
+    Parameters
+    ----------
+    lines : sequence of str, those of the file
+    units : str or None, a unit of UNITS for a file that states none
+
     Raises
     ------
     ValueError

@@ -28,6 +28,11 @@ def read(lines: Sequence[str], units: str | None) -> Sampled | None:
     Its header says the number of samples and their step, in any of the forms above. One that says
     the step alone must be closed by a line "*** End Data ***": it is whole then.
 
+    Parameters
+    ----------
+    lines, units
+        As for `analytic.accelerograms.asc.read`.
+
     Raises
     ------
     ValueError
@@ -68,7 +73,6 @@ def _header(lines: Sequence[str]) -> tuple[int, list[int], list[float]]:
 
 
 def _only(name: str, values: Iterable[float]) -> float:
-    """Return the one value that is said, once or more often."""
     if len(found := list(dict.fromkeys(values))) > 1:
         words = " and ".join(f"{value:g}" for value in found)
         raise ValueError(f"its header says {words} as {name}; it must say one")

@@ -25,6 +25,11 @@ SHORTER = re.compile(r"(?<![\w/])(?:ms|msecs?|milliseconds?|[µμ]s)\b", re.IGNO
 def read(lines: Sequence[str], units: str | None) -> Sampled:
     """Read a table of two columns, separated by commas, semicolons or blanks.
 
+    Parameters
+    ----------
+    lines, units
+        As for `analytic.accelerograms.asc.read`.
+
     Raises
     ------
     ValueError

@@ -95,6 +95,11 @@ def is_number(word: str) -> bool:
 def number(word: str, line: int) -> float:
     """Return the number that a word of a line is.
 
+    Parameters
+    ----------
+    word : str
+    line : int, its number in the file, for the message
+
     Raises
     ------
     ValueError
@@ -109,7 +114,19 @@ def number(word: str, line: int) -> float:
 
 
 def whole(name: str, line: int, word: str) -> int:
-    """Return the number of samples that a line of a header says; ValueError if it is none."""
+    """Return the number of samples that a line of a header says.
+
+    Parameters
+    ----------
+    name : str, what the header calls it
+    line : int, number of the line
+    word : str
+
+    Raises
+    ------
+    ValueError
+        If it is no whole number in plain digits, or above MOST_SAMPLES.
+    """
     if not (word.isascii() and word.isdecimal()):
         raise ValueError(f"line {line}: {name} is {shown(word)}; it must be whole")
     count = int(word[:12])

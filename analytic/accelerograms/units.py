@@ -45,7 +45,12 @@ class Sampled(NamedTuple):
 
 
 def unit_of(header: Mapping[int, str], given: str | None) -> float:
-    """Return the unit [m/s2] that lines of a header, each with its number, state, or one given.
+    """Return the unit [m/s2] of a record's samples, which a header states or a user gives.
+
+    Parameters
+    ----------
+    header : mapping of int to str, its lines by their numbers
+    given : str or None, a unit of UNITS
 
     Raises
     ------
@@ -77,7 +82,13 @@ def _units_in(line: str) -> Iterable[str]:
 
 
 def converted(samples: ArrayLike, unit: float, count: int | None = None) -> FloatArray:
-    """Return samples [m/s2] from their unit [m/s2]; what overflows is infinite.
+    """Return samples in m/s2; what overflows is infinite.
+
+    Parameters
+    ----------
+    samples : array_like (n,), as they stand in the file
+    unit : float, their unit [m/s2]
+    count : int, optional, how many the header says there are
 
     Raises
     ------

@@ -1,6 +1,7 @@
-"""Taylor series of a block that rocks on a cart, in units of 1/p and g.
+"""Taylor series of a block that rocks on a cart (EQUATIONS.md, "The block on a cart").
 
-With z = alpha - y, kappa = 3/4 m/(m + M), w^2 the stiffness, f the push, x the place of the cart:
+With z = alpha - y, kappa = 3/4 m/(m + M), w^2 = k/((m + M) p^2), f the push [g] and x the place of
+the cart [g/p^2]; otherwise as in `analytic.kernels.law`:
 
     y'' = -[sin z + s x'' cos z],    x'' = f - w^2 x - kappa s [y'' cos z + y'^2 sin z].
 """
@@ -24,10 +25,17 @@ class Coupling(NamedTuple):
 def expand_cart(
     cart: Coupling, side: float, smooth: bool, order: int, f: FloatArray, work: FloatArray
 ) -> None:
-    """Extend the series of y and x, whose first two coefficients are known, in work[0], work[1].
+    """Extend the series of y and x, whose first two coefficients are known.
 
-    A smooth uplift starts with y'' = 0, whatever the rounding. f is the series of the push;
-    work[2:7] are spare.
+    Parameters
+    ----------
+    cart : Coupling
+    side : float, s
+    smooth : bool, whether y'' starts from zero, as after a smooth uplift, whatever the rounding
+    order : int, degree of the series
+    f : ndarray (>= order - 1,), series of the push
+    work : ndarray (>= 7, >= order + 1), series of y and x; those of sin z, cos z, y'', x'' and y'^2
+        are written below them
     """
     y, x, sine, cosine = work[0], work[1], work[2], work[3]
     turning, moving, square = work[4], work[5], work[6]
@@ -62,7 +70,16 @@ def expand_cart(
 def expand_rest(
     stiffness: float, order: int, f: FloatArray, x: FloatArray, moving: FloatArray
 ) -> None:
-    """Extend the series of x while the block stands, and write that of x''."""
+    """Extend the series of x while the block stands, x'' = f - w^2 x, and write that of x''.
+
+    Parameters
+    ----------
+    stiffness : float, w^2
+    order : int, degree of the series
+    f : ndarray (>= order - 1,), series of the push
+    x : ndarray (>= order + 1,), of which the first two coefficients are known
+    moving : ndarray (>= order - 1,), to be written: the series of x''
+    """
     for n in range(order - 1):
         moving[n] = f[n] - stiffness * x[n]
         x[n + 2] = moving[n] / ((n + 1) * (n + 2))

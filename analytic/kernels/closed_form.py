@@ -1,7 +1,7 @@
-"""Closed forms: the linear models on a segment, free rocking, overturning criteria.
+"""Closed forms of the kernels: the linear models on a segment, and free rocking.
 
-In the kernels the rotation is folded to one side, y = s theta > 0, time is in units of 1/p and
-acceleration in g. The public functions take radians and the units they name.
+Symbols and units are those of `analytic.kernels.law`. Free rocking keeps v^2/2 minus `work_to`, and
+the energy at y = 0 is multiplied by eta^2 at each impact.
 """
 
 import math
@@ -61,17 +61,16 @@ def cosh_minus_cosine(x: float, u: float) -> float:
 def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple[float, float]:
     """Return rotation and rate, h > 0 after a state, of y'' = -k^2 [saddle - y + side factor a].
 
-    The paper's equations (6)-(10) and (17)-(21), corrected, with the terms grouped so that short
-    steps lose no digits. With a lead of 3, after a smooth uplift, y'' starts from zero.
+    The paper's equations (6)-(10) and (17)-(21), corrected (EQUATIONS.md, "From (1) and (2)"; on a
+    straight segment EQUATIONS.md, "A record"), with the terms grouped so that short steps lose no
+    digits. With a lead of 3, after a smooth uplift, y'' starts from zero.
 
     Parameters
     ----------
-    law : Law
-        A linear one.
-    segment : ndarray, shape (7,)
-        The ground motion: a row of `motion.SEGMENT_COLUMNS` in units of 1/p and g.
+    law : Law, a linear one
+    segment : ndarray (7,), the ground motion
     begin : State
-    h : float
+    h : float, time after it [1/p]
     """
     start, _, amplitude, omega, phase, offset, slope = segment
     side, tau, lead, y, v = begin
@@ -95,7 +94,16 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
 
 @inner
 def work_to(law: Law, y: float) -> float:
-    """Return half the squared velocity that a free block loses between rotations 0 and y."""
+    """Return half the squared velocity [p^2] that a free block loses between rotations 0 and y.
+
+    The integral of -y'' without a ground acceleration: k^2 y (2c - y)/2 of a linear model, and
+    cos(alpha - y) - cos(alpha) of the exact one, as a product.
+
+    Parameters
+    ----------
+    law : Law
+    y : float, rotation [rad]
+    """
     if law.linear:
         return 0.5 * law.k * law.k * y * (2.0 * law.saddle - y)
     return 2.0 * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
@@ -103,7 +111,13 @@ def work_to(law: Law, y: float) -> float:
 
 @inner
 def turning_rotation(law: Law, work: float) -> float:
-    """Return the rotation at which a free block has lost `work`; inf if it passes the saddle."""
+    """Return the rotation [rad] at which a free block has lost `work`; inf if it passes the saddle.
+
+    Parameters
+    ----------
+    law : Law
+    work : float, v^2/2 at y = 0 [p^2]: `work_to` is solved for y
+    """
     barrier = work_to(law, law.saddle)
     if work >= barrier:
         return math.inf
@@ -120,9 +134,12 @@ def turning_rotation(law: Law, work: float) -> float:
 
 @inner
 def free_peak(law: Law, y: float, v: float) -> float:
-    """Return the largest rotation still to come of a free block, inf when it overturns.
+    """Return the largest rotation [rad] still to come of a free block, inf when it overturns.
 
-    From (y, v) at the end of the ground motion; an inward motion passes through one impact.
+    Parameters
+    ----------
+    law : Law
+    y, v : float, state at the end of the motion [rad, rad p]; an inward one passes one impact
     """
     if is_lost(law, y, v):
         return math.inf
@@ -134,7 +151,13 @@ def free_peak(law: Law, y: float, v: float) -> float:
 
 @inner
 def is_lost(law: Law, y: float, v: float) -> bool:
-    """Say whether a free block in the state (y, v) has passed the saddle for good."""
+    """Say whether a free block has passed the saddle for good.
+
+    Parameters
+    ----------
+    law : Law
+    y, v : float, its state [rad, rad p]; beyond the saddle one that moves inward may come back
+    """
     if y < law.saddle:
         return False
     return v >= 0.0 or 0.5 * v * v + work_to(law, y) <= work_to(law, law.saddle)

@@ -184,7 +184,13 @@ class Kernel:
 
 
 def form_for(cases: int, kernel: Function) -> Function:
-    """Return the form of a kernel that is called for so many cases."""
+    """Return the form of a kernel that is called for so many cases.
+
+    Parameters
+    ----------
+    cases : int, of which more than FEW are for the compiled form
+    kernel : Kernel
+    """
     known: Any = kernel
     return known.run if cases > FEW else kernel
 
@@ -197,6 +203,12 @@ def keeper(
     Compiled, a kernel is kept on disk, and releases the GIL unless told not to. No operation is
     merged with another: whether it is would depend on what the compiler inlines, and the last digit
     on which process compiled.
+
+    Parameters
+    ----------
+    sources : Path, the folder of the modules that the kernels consist of
+    nogil : bool, whether other threads of Python run while a compiled kernel does
+    purse : Purse or None, see `Kernel`
     """
 
     def decorate(function: Function) -> Function:

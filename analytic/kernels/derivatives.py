@@ -1,8 +1,9 @@
 """The derivatives of a response by ln(a_p) and by ln(eta), beside the response itself.
 
-They obey the equation of motion linearized about it. They start from zero, and again at each
-uplift, where the block is at rest, jump with the velocity at each impact, whose time moves too, and
-end in the derivative of the peak.
+They obey the equation of motion linearized about it (EQUATIONS.md, "Condition numbers"). They start
+from zero, as they do again at each uplift, where the block is at rest. At an impact, whose time
+moves too, they jump with the velocity. They end in the derivative of the peak. Units are those of
+`analytic.kernels.law`.
 """
 
 import math
@@ -36,7 +37,18 @@ RATE = 1
 def condition(
     law: Law, accuracy: Accuracy, segments: FloatArray, start: Start, work: FloatArray
 ) -> tuple[float, float]:
-    """Return both condition numbers of one response; nan unless it rocks and survives."""
+    """Return both condition numbers of one response; nan unless it rocks and survives.
+
+    Parameters
+    ----------
+    law, accuracy, segments, start, work
+        As for `excursions.march`.
+
+    Returns
+    -------
+    by_amplitude, by_eta : float
+        d ln(peak)/d ln(a_p) and d ln(peak)/d ln(eta), in the order of AMPLITUDE and RESTITUTION.
+    """
     log = np.empty((64, 4))
     nothing = np.empty(0)
     while True:
@@ -99,7 +111,16 @@ def follow(
 
 @inner
 def strike(law: Law, side: float, a: float, before: float, now: FloatArray) -> None:
-    """Take `Slopes.now` through an impact, onto `side`; `before` < 0 is the velocity of y."""
+    """Take `Slopes.now` through an impact (EQUATIONS.md, "Condition numbers").
+
+    Parameters
+    ----------
+    law : Law
+    side : float, side after the impact
+    a : float, ground acceleration [g]
+    before : float, velocity of y before the impact [rad p], negative
+    now : ndarray (2, 2), changed
+    """
     here, there = acceleration(law, -side, a, 0.0), acceleration(law, side, a, 0.0)
     for i in range(2):
         later = -now[i][0] / before
@@ -170,9 +191,10 @@ def fly(
 def expand_derivatives(
     law: Law, order: int, work: FloatArray, now: FloatArray, delta: FloatArray
 ) -> None:
-    """Fill delta[:2] with the series of the derivatives, from those `expand` left in `work`.
+    """Fill delta[:2] with the series of the derivatives, from those that `expand` left in `work`.
 
-    Exact: d'' = (cos z - f sin z) d - cos z df, with df = f for the amplitude and 0 for eta.
+    Of the exact model d'' = (cos z - f sin z) d - cos z df, of a linear one d'' = k^2 (d - q df);
+    df is f for the amplitude and 0 for eta (EQUATIONS.md, "Condition numbers").
     """
     f, sine, cosine = work[1], work[2], work[3]
     stiff = delta[2]

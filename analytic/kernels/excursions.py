@@ -1,8 +1,7 @@
 """One response of the reference, excursion by excursion.
 
 The same march serves the exact model (Taylor series) and the linear ones (closed form, its events
-bracketed by its series). The rotation is folded to one side, y = s theta > 0; time is in units of
-1/p, acceleration in g.
+bracketed by its series). Symbols and units are those of `analytic.kernels.law`.
 """
 
 import math
@@ -108,7 +107,16 @@ class Step(NamedTuple):
 
 @inner
 def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
-    """Write an event into the log if it has room; return the number of events so far."""
+    """Write an event into the log if it has room; return the number of events so far.
+
+    Parameters
+    ----------
+    log : ndarray (capacity, 4), columns as in `Notes`
+    n : int, number of events before this one
+    kind : float, UPLIFT, IMPACT, RESTED or START
+    tau : float, its time [1/p]
+    before, after : float, velocities s v [rad p], or what `Notes` says
+    """
     if n < log.shape[0]:
         log[n, 0] = kind
         log[n, 1] = tau
@@ -127,7 +135,17 @@ def workspace() -> FloatArray:
 def expand(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
 ) -> float:
-    """Fill work[0] with the series of y from a state; return the step it allows."""
+    """Fill work[0] with the series of y from a state; return the step [1/p] it allows.
+
+    Parameters
+    ----------
+    law : Law
+    accuracy : Accuracy, degree of the series, and tolerance of the step
+    segment : ndarray (7,), ground motion
+    begin : State
+    work : ndarray (>= 5, >= order + 1), left with the series of y and f, of the exact model also of
+        sin z and cos z
+    """
     y, f = work[0], work[1]
     y[0], y[1] = begin.y, begin.v
     expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
@@ -143,7 +161,13 @@ def expand(
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
     """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
 
-    The first `lead` coefficients are zero, and their root at x = 0 is left out.
+    Parameters
+    ----------
+    d : ndarray (>= order + 1,), coefficients on a step that is [0, 1]
+    order : int, degree
+    lead : int, number of the first coefficients that are zero: their root at x = 0 is left out
+    level : float, 0 where lead is not
+    work : ndarray (>= MAX_DEPTH + 3, >= order + 1), spare
     """
     q = work[0]
     degree = order - lead
@@ -157,7 +181,7 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
 
 @inner
 def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
-    """Return when, about h after a state, the closed form reaches zero."""
+    """Return the time [1/p] after a state, about h, at which the closed form reaches zero."""
     x = h
     for _ in range(4):
         end, rate = linear_state(law, segment, begin, x)
@@ -178,6 +202,14 @@ def take_step(
 
     Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
     work[4].
+
+    Parameters
+    ----------
+    law, accuracy, work
+        As for `march`.
+    segment : ndarray (7,), ground motion at the time of the state
+    begin : State
+    peak : float, largest rotation so far [rad]
     """
     series, d, spare = work[0], work[4], work[5:]
     order, lead, end = accuracy.order, begin.lead, segment[1]
@@ -231,7 +263,19 @@ def sample_step(
     notes: Notes,
     n: int,
 ) -> int:
-    """Sample a step, whose series on [0, 1] is d; return the number of samples so far."""
+    """Sample a step; return the number of samples so far.
+
+    Parameters
+    ----------
+    law : Law
+    segment : ndarray (7,), ground motion
+    begin : State, at the begin of the step
+    d : ndarray (>= order + 1,), series of y on [0, 1]
+    order : int, its degree
+    step : Step, as it was taken
+    notes : Notes, whose samples are written
+    n : int, number of samples before
+    """
     h = step.h
     while n < len(notes.times) and notes.times[n] <= begin.tau + step.x * h:
         at = notes.times[n] - begin.tau
@@ -247,7 +291,14 @@ def sample_step(
 
 @inner
 def sample_rest(notes: Notes, until: float, n: int) -> int:
-    """Sample a rest up to a time; return the number of samples so far."""
+    """Sample a rest up to a time; return the number of samples so far.
+
+    Parameters
+    ----------
+    notes : Notes, whose samples are written
+    until : float, end of the rest [1/p]
+    n : int, number of samples before
+    """
     while n < len(notes.times) and notes.times[n] <= until:
         notes.samples[0, n] = notes.samples[1, n] = 0.0
         n += 1
@@ -271,16 +322,13 @@ def march(
     law : Law
     accuracy : Accuracy
         Of the exact model; for a linear one the order is that of the series that brackets events.
-    segments : ndarray, shape (m, 7)
-        The ground motion: rows of `motion.SEGMENT_COLUMNS` in units of 1/p and g.
-    start : Start
-        State at time zero.
+    segments : ndarray (m, 7), ground motion
+    start : Start, state at time zero
     until : float
-        Time to follow the response to, at least to the end of the ground motion. The outcome and
-        the peak of what comes after follow from energy.
+        Time [1/p] to follow the response to, at least to the end of the ground motion. The outcome
+        and the peak of what comes after follow from energy.
     notes : Notes
-    work : ndarray
-        From `workspace()`.
+    work : ndarray, from `workspace()`
     """
     given = listed(segments)
     if not is_finite(given):

@@ -29,7 +29,13 @@ def are_compiled(sources: Path) -> bool:
 
 
 def holds(folder: Path | None, function: Callable[..., Any]) -> bool:
-    """Return whether a folder holds a compiled function."""
+    """Return whether a folder holds a compiled function.
+
+    Parameters
+    ----------
+    folder : Path or None, as `kept_in` returns it; None holds nothing
+    function : callable, what was compiled
+    """
     name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
     pattern = f"{name.replace('<', '').replace('>', '')}-*.nbi"
     return folder is not None and any(folder.rglob(pattern))

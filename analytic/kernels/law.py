@@ -1,4 +1,17 @@
-"""What a compiled kernel is told of a model, and the arrays that it works on."""
+"""What a compiled kernel is told of a model, and the arrays that it works on.
+
+In all kernels the rotation is folded to the side s = sign(theta) on which the block stands, -1 or
+1, so that y = s theta > 0. With z = alpha - y and the ground acceleration a (EQUATIONS.md,
+"From (1) and (2)"; names as in `analytic.models`),
+
+    y'' = -[sin z + s a cos z],    of a linear model  y'' = -k^2 [c - y + s q a].
+
+Units are those of p and g: rotations in rad, times (tau, h) in 1/p, the rate v of y in rad p,
+energies ("work") v^2/2 in p^2, accelerations a and f = s a in g. A segment, shape (7,), is a row
+of `motion.SEGMENT_COLUMNS` in them: start, end [1/p], amplitude [g], omega [p], phase [rad], offset
+[g], slope [g p]. A ground motion is segments, shape (m, 7), of which j is the number of one. A
+series is an array of coefficients c[i] of sum c[i] t^i.
+"""
 
 from typing import NamedTuple
 

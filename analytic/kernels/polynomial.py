@@ -1,9 +1,12 @@
 """Roots and maxima of a polynomial on the unit interval, none missed.
 
-A polynomial is turned into Bernstein form, where the number of sign changes of its coefficients
-bounds the number of its roots in (0, 1) and has the same parity (Descartes). No change: no root;
-one change: exactly one. Otherwise the interval is halved (de Casteljau) until one of the two holds.
-Most are monotone, as the signs of their coefficients tell for less.
+A polynomial of a degree n is an array, shape (>= n + 1,), of the coefficients a[i] of sum a[i] x^i;
+d[i] are those of a step that is stretched to [0, 1], so that x is the part of the step.
+
+It is turned into Bernstein form, where the number of sign changes of its coefficients bounds the
+number of its roots in (0, 1) and has the same parity (Descartes). No change: no root; one change:
+exactly one. Otherwise the interval is halved (de Casteljau) until one of the two holds. Most are
+monotone, as the signs of their coefficients tell for less.
 """
 
 import math
@@ -66,7 +69,15 @@ def value_and_slope(a: FloatArray, degree: int, x: float) -> tuple[float, float]
 
 @inner
 def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
-    """Write the coefficients of sum a[i] (h x)^i into d[0..degree]."""
+    """Write the coefficients of sum a[i] (h x)^i into d[0..degree].
+
+    Parameters
+    ----------
+    a : ndarray (>= degree + 1,), series in time
+    degree : int
+    h : float, length of the step
+    d : ndarray (>= degree + 1,), to be written; it may be `a`
+    """
     scale = 1.0
     for i in range(degree + 1):
         d[i] = a[i] * scale
@@ -77,7 +88,11 @@ def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
 def trend(d: FloatArray, degree: int, lead: int) -> int:
     """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0.
 
-    The first `lead` coefficients are zero.
+    Parameters
+    ----------
+    d : ndarray (>= degree + 1,)
+    degree : int
+    lead : int, number of the first coefficients that are zero
     """
     first = max(lead, 1)
     least = most = first * d[first]
@@ -129,6 +144,12 @@ def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
 
     It begins where the chord between the two ends is zero.
+
+    Parameters
+    ----------
+    a : ndarray (>= degree + 1,)
+    degree : int
+    low, high : float, where the values are not of the same sign; low is 0 or more
     """
     first, last = value(a, degree, low) if low > 0.0 else a[0], value(a, degree, high)
     rising = last > first
@@ -219,6 +240,15 @@ def highest(
     """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
 
     Else `above` itself, and -1.
+
+    Parameters
+    ----------
+    d : ndarray (>= order + 1,)
+    order : int, degree
+    lead : int, number of the first coefficients that are zero
+    end : float, in (0, 1]
+    above : float
+    work : ndarray (>= MAX_DEPTH + 3, >= order + 1), spare
     """
     bound = d[0]
     for i in range(1, order + 1):

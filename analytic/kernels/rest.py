@@ -1,4 +1,7 @@
-"""Leaving rest and coming to rest: uplift, and the sum of infinitely many impacts."""
+"""Leaving rest and coming to rest: uplift, and the sum of infinitely many impacts.
+
+Symbols and units are those of `analytic.kernels.law`.
+"""
 
 import math
 from typing import Any
@@ -18,20 +21,43 @@ MOMENT = 1e-12
 
 @inner
 def ground(segments: FloatArray, j: int, tau: float) -> float:
-    """Return the ground acceleration [g] on segment j; zero after the last."""
+    """Return the ground acceleration [g] on a segment; zero after the last.
+
+    Parameters
+    ----------
+    segments : ndarray (m, 7)
+    j : int, number of the segment
+    tau : float, time [1/p]
+    """
     return shaking(segments[j], tau) if j < len(segments) else 0.0
 
 
 @inner
 def shaking(segment: FloatArray, tau: float) -> float:
-    """Return the ground acceleration [g] on a segment."""
+    """Return the ground acceleration [g] on a segment.
+
+    Parameters
+    ----------
+    segment : ndarray (7,)
+    tau : float, time [1/p], on the segment or not
+    """
     start, _, amplitude, omega, phase, offset, rate = segment
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
 
 
 def then_still(segments: Any, end: float) -> Any:
-    """Return a ground motion with one segment more, on which nothing moves until `end`."""
+    """Return a ground motion with one segment more, on which nothing moves.
+
+    Parameters
+    ----------
+    segments : ndarray (m, 7)
+    end : float, time [1/p] at which the new segment ends
+
+    Returns
+    -------
+    ndarray (m + 1, 7), or in Python a list of rows
+    """
     return [*segments, [segments[-1][1], end, 0.0, 0.0, 0.0, 0.0, 0.0]]
 
 
@@ -49,7 +75,14 @@ def _then_still(segments: FloatArray, end: float) -> FloatArray:
 
 @inner
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
-    """Return on which segment a time is, j or later; their number after the last."""
+    """Return on which segment a time is; their number after the last.
+
+    Parameters
+    ----------
+    segments : ndarray (m, 7)
+    j : int, from which on it is looked for
+    tau : float, time [1/p]
+    """
     while j < len(segments) and tau >= segments[j][1]:
         j += 1
     return j
@@ -67,7 +100,14 @@ def is_finite(segments: FloatArray) -> bool:
 
 @inner
 def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
-    """Return the largest abs(acceleration) of the ground between two times, from segment j on."""
+    """Return the largest abs(acceleration) of the ground between two times.
+
+    Parameters
+    ----------
+    segments : ndarray (m, 7), in units of 1/p and g, or in those of `motion.SEGMENT_COLUMNS`
+    j : int, segment of the first time, or one before
+    begin, end : float, times in the unit of the segments
+    """
     most = 0.0
     for i in range(j, len(segments)):
         first, last = max(begin, segments[i][0]), min(end, segments[i][1])
@@ -85,7 +125,15 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
 
 @inner
 def acceleration(law: Law, side: float, a: float, y: float) -> float:
-    """Return y'' of a block at rotation y on the given side under the ground acceleration a."""
+    """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)").
+
+    Parameters
+    ----------
+    law : Law
+    side : float, s
+    a : float, ground acceleration [g]
+    y : float, rotation [rad]
+    """
     if law.linear:
         return -law.k * law.k * (law.saddle - y + side * law.factor * a)
     return -(math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
@@ -110,8 +158,9 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
-    What exceeds it by no more than a part EQUAL does not, nor what does so for no more than the
-    part MOMENT of the segment, falling at its begin or rising at its end: there the next one tells.
+    Two excesses count as rounding: one of a part EQUAL of the onset or less, and one that lasts for
+    a part MOMENT of the segment or less. The latter falls at the segment's begin, or rises at its
+    end, where the next segment tells.
     """
     start, end, _, _, _, offset, rate = segment
     now, moment = offset + rate * (tau - start), MOMENT * (end - start)
@@ -129,7 +178,14 @@ def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 def next_uplift(
     segments: FloatArray, j: int, tau: float, onset: float
 ) -> tuple[int, float, float, int]:
-    """Find the next uplift of a block at rest at `tau` on segment j or later.
+    """Find the next uplift of a block at rest, where abs(a) first exceeds the onset.
+
+    Parameters
+    ----------
+    segments : ndarray (m, 7), ground motion
+    j : int, from which segment on
+    tau : float, since when the block is at rest [1/p]
+    onset : float, [g]
 
     Returns
     -------
@@ -156,10 +212,16 @@ def next_uplift(
 
 @inner
 def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
-    """Return how long a block leaving the base at v goes on to rock; inf if it does not rest.
+    """Return how long [1/p] a block leaving the base goes on to rock; inf if it does not rest.
 
     The excursions last 2 v/r with the restoring accelerations r of the two sides in turn, and
     each impact multiplies the velocity by eta: a geometric series.
+
+    Parameters
+    ----------
+    law : Law
+    side, v : float, the side that it turns to, and the rate [rad p] with which it leaves
+    a : float, ground acceleration [g], as if it stayed
     """
     here = -acceleration(law, side, a, 0.0)
     there = -acceleration(law, -side, a, 0.0)
@@ -176,8 +238,8 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
 def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) -> bool:
     """Tell whether a train of impacts may be summed.
 
-    It must be shorter than ZENO, and the ground acceleration, `now` at its begin and `later` at
-    its end, must change the restoring accelerations by less than a part ZENO in it.
+    It must be shorter than ZENO, and the restoring accelerations must change by less than a part
+    ZENO in it, as the ground acceleration goes from `now` to `later`.
     """
     if not wait < ZENO:
         return False
@@ -194,12 +256,9 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
     Parameters
     ----------
     law : Law
-    side, v : float
-        The side that it turns to, and how fast.
-    now, later : float
-        Ground acceleration at the impact, and `wait` after it.
-    wait : float
-        `time_to_rest`.
+    side, v : float, the side that it turns to, and how fast [rad p]
+    now, later : float, ground acceleration [g] at the impact, and `wait` after it
+    wait : float, `time_to_rest` [1/p]
     """
     if comes_to_rest(law, side, now, later, wait):
         return 0.0
@@ -213,9 +272,14 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
 def after_impact(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:
-    """Return `side_after` an impact that sends the block to a side at v, and `time_to_rest`.
+    """Return `side_after` an impact, and `time_to_rest` [1/p]; the ground moves on as on segment j.
 
-    The ground moves on as on segment j.
+    Parameters
+    ----------
+    law : Law
+    segments : ndarray (m, 7), ground motion
+    j, tau : int, float, segment and time [1/p] of the impact
+    side, v : float, the side that the block turns to, and the rate after the impact [rad p]
     """
     a = ground(segments, j, tau)
     wait = time_to_rest(law, side, v, a)

@@ -1,7 +1,7 @@
 """One swing of a block under a pulse, from an impact or an uplift to its end, for maps.
 
-A map needs no peak and no history, so a swing is followed by as few evaluations as will do. The
-rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g.
+A map needs no peak and no history, so a swing is followed by as few evaluations as will do. Symbols
+and units are those of `analytic.kernels.law`.
 
 Half cycles of the pulse are counted as whole numbers, from the one in which the swing begins, and
 an angle in [0, pi] tells the place in the present one: so no digit is lost and no half cycle
@@ -129,9 +129,18 @@ def arc_at(
     half_cycles: int,
     angle: float,
 ) -> tuple[float, float, float]:
-    """Return rotation, velocity and rounding error at the time t of a swing.
+    """Return rotation [rad], velocity [rad p] and rounding error [rad] in a swing.
 
     Where the terms of the closed form would cancel, in short swings, by `linear_state`.
+
+    Parameters
+    ----------
+    law, pulse, segment
+        As for `swing_linear`.
+    arc : Arc
+    t : float, time since the begin of the swing [1/p]
+    half_cycles, angle : int, float, the same time as half cycles since, and the angle [rad] in the
+        last one
     """
     k, omega = law.k, pulse.omega
     if t * max(k, omega) < SHORT:
@@ -163,12 +172,22 @@ def stretch(out: bool, angle: float, level: float) -> tuple[bool, float]:
 def swing_linear(
     law: Law, pulse: Pulse, start: float, v: float, side: float, level: float, segment: FloatArray
 ) -> Swing:
-    """Follow a swing of a linear model from (0, v), by the closed form.
+    """Follow a swing of a linear model from its base, by the closed form.
 
     Where the ground lifts, y is convex: tangents never pass the impact, and a block that moves up
     goes on to. Where it does not lift, a block that would be below the ground accelerates
     downwards and does not return: a positive end is proof that there was no impact, and from a
     negative one tangents lead back to it without passing it.
+
+    Parameters
+    ----------
+    law : Law
+    pulse : Pulse, what is left of it
+    start : float, angle in the present half cycle [rad], in [0, pi]
+    v : float, rate at y = 0 [rad p]
+    side : float, -1 where the present half cycle, which counts as positive, pushes outward, else 1
+    level : float, angle at which a half cycle reaches the onset [rad]
+    segment : ndarray (7,), the sine of the pulse from time 0 on, for `linear_state`
     """
     c, omega = law.saddle, pulse.omega
     arc = begin_arc(law, pulse, start, v, side)
@@ -252,7 +271,12 @@ def expand_pulse(pulse: Pulse, angle: float, side: float, f: FloatArray) -> None
 def lands(y: FloatArray, x: float, end: float, most: float, top: float) -> tuple[float, bool]:
     """Return where on [x, end] the series first reaches zero, and whether it does.
 
-    `top` is how high the swing has been.
+    Parameters
+    ----------
+    y : ndarray (MAP_ORDER + 1,), series of the rotation
+    x, end : float, times since its begin [1/p]
+    most : float, a bound of -y'' there [rad p^2]
+    top : float, how high the swing has been [rad]
     """
     for _ in range(1000):
         now, rate = value(y, MAP_ORDER, x), slope(y, MAP_ORDER, x)
@@ -301,9 +325,14 @@ def lowest_bound(y: FloatArray, h: float) -> float:
 def swing_exact(
     law: Law, pulse: Pulse, start: float, v: float, side: float, lifted: float, work: FloatArray
 ) -> Swing:
-    """Follow a swing of the exact model from (0, v) by Taylor steps; as `swing_linear`.
+    """Follow a swing of the exact model from its base by Taylor steps of degree MAP_ORDER.
 
-    Until the time `lifted` the ground lifts the block; `work` has the shape (5, MAP_ORDER + 1).
+    Parameters
+    ----------
+    law, pulse, start, v, side
+        As for `swing_linear`.
+    lifted : float, time since the begin of the swing [1/p] until which the ground lifts the block
+    work : ndarray (5, MAP_ORDER + 1), spare
     """
     series, f = work[0], work[1]
     alpha, omega = law.alpha, pulse.omega

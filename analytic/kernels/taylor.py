@@ -1,6 +1,7 @@
 """Taylor series of a step of rocking, and how far it can be trusted.
 
-The rotation is folded to one side, y = s theta > 0; time is in units of 1/p, acceleration in g.
+Symbols and units are those of `analytic.kernels.law`; the method and its error are in EQUATIONS.md,
+"How the numbers are computed".
 """
 
 import math
@@ -44,9 +45,15 @@ def accuracy(tolerance: float) -> Accuracy:
 
 @inner
 def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: FloatArray) -> None:
-    """Write the Taylor coefficients at `tau` of side x ground acceleration into f[0..order].
+    """Write the series of f, side x ground acceleration [g], into f[0..order].
 
-    `segment` is a row of `motion.SEGMENT_COLUMNS`, in units of 1/p and g.
+    Parameters
+    ----------
+    segment : ndarray (7,), the ground motion
+    tau : float, time of the expansion [1/p]
+    side : float, s
+    order : int, degree
+    f : ndarray (>= order + 1,), to be written
     """
     start, _, amplitude, omega, phase, offset, slope = segment
     angle = omega * (tau - start) + phase
@@ -96,7 +103,15 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
 
 @inner
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
-    """Extend the series y[0], y[1], y[2] by a linear model, y'' = -k^2 [saddle - y + q f]."""
+    """Extend a series by a linear model, y'' = -k^2 [saddle - y + q f].
+
+    Parameters
+    ----------
+    law : Law
+    order : int, degree
+    f : ndarray (>= order - 1,), series of side x ground acceleration [g]
+    y : ndarray (>= order + 1,), of which the first three coefficients are known
+    """
     for i in range(1, order - 1):
         y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * part(i + 1) * part(i + 2)
 
@@ -109,10 +124,15 @@ def logarithm(x: float) -> float:
 
 @inner
 def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
-    """Return the step over which the series y is accurate.
+    """Return the step [1/p] over which a series is accurate, at most LONGEST_STEP.
 
     The last two terms are held below the tolerance times the largest of the first four, which for
     a step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
+
+    Parameters
+    ----------
+    y : ndarray (>= order + 1,), the series
+    accuracy : Accuracy, its degree and tolerance
     """
     order, tolerance = accuracy
     last, before = logarithm(abs(y[order]) / tolerance), logarithm(abs(y[order - 1]) / tolerance)

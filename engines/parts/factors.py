@@ -46,7 +46,15 @@ class Level:
 
 
 def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:
-    """Return a value of a factor that is a matter of the engine's settings alone."""
+    """Return a value of a factor that is a matter of the engine's settings alone.
+
+    Parameters
+    ----------
+    name, presets, trap
+        As of `Level`.
+    **settings
+        Settings of the engine by name.
+    """
     return Level(name=name, settings=settings, presets=presets, trap=trap)
 
 
@@ -77,7 +85,16 @@ class Factor:
 
 
 def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
-    """Return a factor that is a matter of one setting, called as it unless a name is given."""
+    """Return a factor that is a matter of one setting.
+
+    Parameters
+    ----------
+    setting : str, its name
+    *levels : Level
+    name : str, optional, of the factor; by default the setting's
+    **options
+        by_default and traps of `Factor`.
+    """
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
 
 

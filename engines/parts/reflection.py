@@ -1,9 +1,9 @@
 """How much of its velocity a pivot is given back, so that its mean over a step is zero.
 
-A pivot is back where it was at the end of a step h if it leaves with -c h/2, c being its
-centripetal acceleration, in proportion to the square of the angular velocity; it comes into the
-next step with c h/2, or with c h if it was held and not returned before. Through an impact, and in
-the first step after it, nothing is given back.
+The centripetal acceleration c of a pivot is in proportion to the square of the angular velocity. A
+pivot that leaves with -c h/2 is back where it was at the end of a step h. It comes into the next
+step with c h/2, or with c h if it was held and not returned before. Through an impact, and in the
+first step after it, nothing is given back.
 """
 
 from engines.parts.compiled import State, fill, shared
@@ -29,10 +29,15 @@ before returns no more than this part."""
 
 
 def returned(step: Step, before: float) -> float:
-    """Return the part of a pivot's velocity to give back, after a step of `before` [s].
+    """Return the part of a pivot's velocity to give back.
 
     For a contact that has taken in all other velocities by the end of each step: what the pivot
     then has, it got by the turn of the last one.
+
+    Parameters
+    ----------
+    step : Step, that follows
+    before : float, length of the step before it [s]; 0 where there was none
     """
     if not (before and step.side and step.grip in (Grip.SWING, Grip.APPROACH)):
         return 0.0
@@ -65,7 +70,14 @@ class Reflection(State):
 
 
 def begin_reflection(state: Reflection, scene: Scene, dt_s: float) -> None:
-    """Prepare for a scene in ordinary steps of `dt_s` [s]."""
+    """Prepare for a scene.
+
+    Parameters
+    ----------
+    state : Reflection, to be filled
+    scene : Scene
+    dt_s : float, ordinary step [s]
+    """
     fill(
         state,
         growth=1.0 + MOST_GROWTH * scene.system.p * dt_s,
@@ -77,7 +89,13 @@ def begin_reflection(state: Reflection, scene: Scene, dt_s: float) -> None:
 
 @shared
 def part_of(state: Reflection, step: Step) -> float:
-    """Return the part of the velocity with which the pivot comes into a step."""
+    """Return the part to give back of the velocity with which the pivot comes into a step.
+
+    Parameters
+    ----------
+    state : Reflection, updated
+    step : Step, that follows
+    """
     before, state.last_dt = state.last_dt, step.dt_s
     was_aloft = state.aloft
     state.aloft = step.grip == Grip.SWING or step.grip == Grip.APPROACH
@@ -103,6 +121,13 @@ def part_returned(state: Reflection, step: Step, before: float) -> float:
 
 @shared
 def take_in(state: Reflection, step: Step, rate: float) -> None:
-    """Take in the angular velocity [rad/s] after a step."""
+    """Take in how fast the block turns after a step.
+
+    Parameters
+    ----------
+    state : Reflection, updated
+    step : Step, that was taken
+    rate : float, angular velocity after it [rad/s]
+    """
     before, state.rate = state.rate, rate
     state.gained = (rate - before) / step.kick_s

@@ -188,7 +188,6 @@ class _Filling:
         yield from (Line(f"{indent}{line}", own) for line in text.splitlines())
 
     def _known(self, statement: ast.stmt) -> list[ast.Attribute]:
-        """Return the attributes of values in a statement."""
         return [
             node
             for node in ast.walk(statement)
@@ -203,10 +202,8 @@ class _Filling:
         return names <= self._values.keys()
 
     def _sets(self, node: ast.AST) -> bool:
-        """Return whether a setting stands in a node."""
         return any(isinstance(part, ast.Name) and part.id == SETTINGS for part in ast.walk(node))
 
     def _value(self, node: ast.expr) -> Any:
-        """Return what an expression of values is."""
         code = compile(ast.Expression(node), "<values>", "eval")
         return eval(code, {"__builtins__": {}}, dict(self._values))

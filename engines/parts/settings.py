@@ -50,7 +50,15 @@ class Allowed:
 
 
 def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -> Any:
-    """Return a field of a settings class, with what it allows; see `Allowed`."""
+    """Return a field of a settings class, with what it allows.
+
+    Parameters
+    ----------
+    default : value of the library, or None, which leaves the setting to it
+    names : sequence of str, optional, what it may be
+    **allowed
+        Bounds, and settings beside which it must be given, as of `Allowed`.
+    """
     return field(default=default, metadata={"allowed": Allowed(names=tuple(names), **allowed)})
 
 

@@ -20,16 +20,27 @@ FLOOR_HEIGHTS = 100.0
 
 
 def fall(scene: Scene, dt_s: float) -> float:
-    """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot."""
+    """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot.
+
+    Parameters
+    ----------
+    scene : Scene
+    dt_s : float, dt [s]
+    """
     return (scene.system.alpha * scene.system.p * dt_s) ** 2 * scene.system.height
 
 
 def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -> int | None:
     """Return how often a solver goes through the contacts; None leaves that to it.
 
-    Where no `iterations` are asked for it is sweeps / sin^2(alpha), rounded up: the impulses of the
-    two corners on which a block stands converge the slower, the more slender it is, and as fast for
-    every block by this.
+    The impulses of the two corners on which a block stands converge the more slowly, the more
+    slender it is: sweeps / sin^2(alpha) iterations, rounded up, serve every block equally well.
+
+    Parameters
+    ----------
+    scene : Scene
+    iterations : int or None, what is asked for, which is returned then
+    sweeps : float or None
     """
     if iterations is not None or sweeps is None:
         return iterations
@@ -44,8 +55,14 @@ def half_size(body: Body) -> Point:
 def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER) -> list[Point]:
     """Return the centres [m] of spheres at the corners of a body's face, those at -x first.
 
-    They are relative to the body's centre: two in the middle plane if `planar`, or four at the
-    edges. `radius` is in metres.
+    They are relative to the body's centre.
+
+    Parameters
+    ----------
+    body : Body
+    radius : float, [m]
+    planar : bool, whether there are two in the middle plane, or four at the edges
+    face : int, optional, LOWER or UPPER
     """
     x, y, z = half_size(body)
     depths = (0.0,) if planar else (-y, y)
@@ -53,7 +70,15 @@ def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER
 
 
 def touching_spheres(scene: Scene, body: int, radius: float, *, planar: bool) -> list[Point]:
-    """Return the centres [m] of spheres at all corners by which a body touches others."""
+    """Return the centres [m] of spheres at all corners by which a body touches others.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : int, its number
+    radius, planar
+        As for `corner_spheres`.
+    """
     return [
         corner
         for face in scene.layout.faces(body)

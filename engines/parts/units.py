@@ -33,6 +33,12 @@ class Counted:
 
 
 def counted(lengths: Point, unit: float) -> Point:
-    """Return lengths [m] in units of which a metre has so many."""
+    """Return lengths in an engine's units.
+
+    Parameters
+    ----------
+    lengths : (float, float, float), [m]
+    unit : float, how many units are in a metre
+    """
     x, y, z = lengths
     return x * unit, y * unit, z * unit

@@ -1,7 +1,7 @@
 """Many runs at once: steps that are known beforehand, taken side by side and looked at after.
 
-Steps that are all equal ask nothing of the state, so that an engine can be given some hundred of
-them for every scene, and what is seen of each is what its own run would see.
+Equal steps ask nothing of the state. So an engine can be given some hundred of them for every scene
+at once, and what is seen of a scene is what its own run would see.
 """
 
 from collections.abc import Callable, Hashable, Sequence
@@ -22,7 +22,13 @@ from engines.world import Moment, Pose, Step, Worlds
 
 
 def alike(engine: Engine, scene: Scene) -> Hashable:
-    """Return what the scenes of one batch have in common; None for a scene that is run alone."""
+    """Return what the scenes of one batch have in common; None for a scene that is run alone.
+
+    Parameters
+    ----------
+    engine : Engine
+    scene : Scene
+    """
     if not isinstance(engine, BatchEngine) or not engine.installed:
         return None
     preset = engine.used_for(scene)
@@ -38,6 +44,11 @@ def alike(engine: Engine, scene: Scene) -> Hashable:
 
 def run_together(name: str, scenes: Sequence[Scene]) -> list[Response]:
     """Simulate scenes that are `alike` with an engine, at once.
+
+    Parameters
+    ----------
+    name : str, of the engine
+    scenes : sequence of Scene
 
     Returns
     -------
@@ -121,7 +132,6 @@ def _take_all(worlds: Worlds, seen: Sequence[_Seen]) -> float:
 def _look_at(
     each: _Seen, worlds: Worlds, number: int, steps: FloatArray, states: FloatArray
 ) -> None:
-    """See what one of the scenes has done in some steps."""
     taken = watch(each.look.runs, each.look.lists, steps, states)
     each.steps += taken
     lags = getattr(worlds, "lag_m", None)
@@ -171,7 +181,15 @@ def alone(
     settings: Any,
     dt_s: float,
 ) -> "Alone":
-    """Build one scene with an engine that knows only batches; see `BatchEngine.batch`."""
+    """Build one scene with an engine that knows only batches.
+
+    Parameters
+    ----------
+    batch : callable, see `BatchEngine.batch`
+    scene : Scene
+    settings : the engine's settings
+    dt_s : float, ordinary step [s]
+    """
     return Alone(batch([scene], settings, np.array([dt_s])), scene)
 
 

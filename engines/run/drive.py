@@ -81,6 +81,11 @@ def run(engine: str, scene: Scene) -> Response:
 def build(engine: Engine, scene: Scene) -> World:
     """Build a scene with an engine, in the preset and the settings that the scene names.
 
+    Parameters
+    ----------
+    engine : Engine
+    scene : Scene
+
     Raises
     ------
     NotAvailableError
@@ -107,7 +112,21 @@ def simulate_world(
     stepping: Stepping = Stepping.LANDING,
     resolution: Resolution = UNLIMITED,
 ) -> Response:
-    """Step a built world until its response is decided; dt_s [s] is the ordinary step."""
+    """Step a built world until its response is decided.
+
+    Parameters
+    ----------
+    world : World, at the start of the scene
+    scene : Scene
+    dt_s : float, ordinary step [s]
+    stepping : Stepping, optional, who chooses the steps
+    resolution : Resolution, optional, what the engine's numbers tell apart
+
+    Returns
+    -------
+    Response
+        A failed one with its reason where the world fails or the limits of the scene are reached.
+    """
     look = Look(scene, dt_s, stepping, world.moment, resolution)
     go = driven(look, world) if scene.compiled else None
     go = go or Walk(look, world, stepping).go
@@ -131,7 +150,6 @@ def simulate_world(
 
 
 def _with_lag(response: Response, world: World) -> Response:
-    """Return a response that says how far a base that moves was from where it should have been."""
     lag = getattr(world, "lag_m", None)
     if lag is None:
         return response
@@ -189,7 +207,6 @@ class Walk:
 
 
 def _fault(world: World) -> Problem | None:
-    """Return what the engine says has gone wrong."""
     message = world.fault()
     return Problem(Reason.FAULT, f"{message}") if message else None
 

@@ -44,7 +44,13 @@ def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
 
 
 def mean_velocity_over(rows: Ground, begin: float, finish: float) -> float:
-    """Return the base's mean velocity [m/s] between two times [s], over rows of `rows_of`."""
+    """Return the base's mean velocity [m/s] between two times, by exact integration.
+
+    Parameters
+    ----------
+    rows : sequence of rows (m + 1, 8), from `rows_of`
+    begin, finish : float, the times [s], of which the second may be the first
+    """
     first = last = segment_at(rows, begin)
     while finish > rows[last][END]:
         last += 1

@@ -33,17 +33,18 @@ REMAINDER = 0.5
 """Part of the way to an event that each step of an approach leaves for the next."""
 
 NEAR = 1e-6
-"""An impact is near when less than this part of the ordinary step is left, or than the shortest
-time that the engine resolves, or the time that `MOST_ACCELERATION` leaves."""
+"""An impact is near when the time left is less than this part of the ordinary step, than the
+shortest time that the engine resolves, or than that in which `MOST_ACCELERATION` stops the block.
+"""
 
 MOST_ACCELERATION = 3e9
 """An impact is near when this angular acceleration [rad/s2] would stop the block in a step; engines
 take what is much larger for a failure."""
 
 CALM_PART = 1.0 / 32.0
-"""A block at rest takes steps of this part of the time until the base can lift it, and each is
-longer than the one before by this part at most: a sudden change would let go of a corner, or leave
-it as low as a long step presses it."""
+"""A block at rest takes steps of this part of the time until the base can lift it. Each is longer
+than the one before by this part at most: a sudden change would let go of a corner, or leave it as
+low as a long step presses it."""
 
 UPLIFT_NEAR = 2e-3
 """An uplift is near when less than this part of the ordinary step is left."""
@@ -77,7 +78,8 @@ class Landing(State):
     width, half_height, touching : float
         Of the block, and the height below which a corner touches the base [m].
     fall : float
-        What a block that stands on one corner is accelerated by towards the other [rad/s2].
+        p^2 sin(alpha) [rad/s2], by which a block that is upright on one corner is accelerated
+        towards the other (EQUATIONS.md, "From (1) and (2)"), times the hint of the scene.
     swing_part, load_part : float
         Parts of a swing and of a load that a step may cover.
     settled : float
@@ -165,7 +167,15 @@ def begin_landing(
 
 @shared
 def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
-    """Choose the next step, where the block has the pose `pose`."""
+    """Choose the next step.
+
+    Parameters
+    ----------
+    to : Landing, moved on
+    times : Times, where the run stands
+    pose : Pose, of the block after the last step
+    lifted : bool, whether it is aloft
+    """
     if to.strikes:
         choice = through(to, times, pose)
     elif to.resting and not lifted:

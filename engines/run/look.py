@@ -60,7 +60,14 @@ class Run(State):
 
 @shared
 def onward(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
-    """Return the step from where the bodies have a state."""
+    """Return the step that follows a state, and advance to its end.
+
+    Parameters
+    ----------
+    runs : sequence of Run, one for each body that rocks
+    lists : tuple, see `Lists`
+    state : ndarray (bodies, 4), a `Pose` a row
+    """
     ground, stops, loads, _, _ = lists
     run = runs[0]
     return next_step(run.pace, ground, stops, loads, pose_in(state, 0), run.watch.lifted)
@@ -75,7 +82,13 @@ def pose_in(state: FloatArray, body: int) -> Pose:
 
 @shared
 def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
-    """See the state at the end of the step; return whether the run goes on."""
+    """See the state at the end of the step; return whether the run goes on.
+
+    Parameters
+    ----------
+    runs, lists, state
+        As for `onward`.
+    """
     _, _, _, rows, events = lists
     first = runs[0]
     if first.slide.on:
@@ -106,7 +119,13 @@ def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray)
 
 @shared
 def put_step(numbers: FloatArray, step: Step) -> None:
-    """Write a step down, for Python to read."""
+    """Write a step down, for Python to read.
+
+    Parameters
+    ----------
+    numbers : ndarray (10,), to be written in the order of the fields
+    step : Step
+    """
     numbers[0], numbers[1], numbers[2] = step.dt_s, step.end_s, step.kick_s
     numbers[3], numbers[4] = step.pull_x, step.pull_z
     numbers[5], numbers[6], numbers[7] = step.base_kick, step.base_velocity, step.base_x

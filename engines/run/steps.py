@@ -109,7 +109,20 @@ def policy_of(stepping: Stepping, scene: Scene) -> int:
 def next_step(
     pace: Pace, ground: Ground, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool
 ) -> Step:
-    """Return the next step, and advance to its end."""
+    """Return the next step, and advance to its end.
+
+    Over the step the base has its mean velocity. In the frame "base" the block carries the body
+    force -m u_g'' instead, the forcing of EQUATIONS.md, "From (1) and (2)".
+
+    Parameters
+    ----------
+    pace : Pace, moved on
+    ground : sequence of rows (m + 1, 8), from `ground.rows_of`
+    stops : ndarray (k,), times that a step must not pass [s], of `timetable`
+    loads : ndarray (l, 3), a `Load` a row, of `timetable`
+    pose : Pose, of the block after the last step
+    lifted : bool, whether it is aloft
+    """
     dt, grip, side = chosen(pace, stops, loads, pose, lifted)
     begin, end = pace.time, pace.time + dt
     # from the moment of the last velocity to that of this one

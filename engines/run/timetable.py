@@ -52,7 +52,7 @@ class Times(State):
     calm : float
         Time [s] left until a block at rest may lift, or the motion or the observation ends.
     loaded : bool
-        Whether the present load or else the next is present.
+        Whether the first load that has not ended has begun.
     lifts_next : bool
         Whether what ends the calm is a load.
     load_s, load_side : float
@@ -74,6 +74,9 @@ class Times(State):
 
 def timetable(scene: Scene, dt_s: float, resolved_s: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Return the stops [s] that a step must not pass, and the loads, a row each.
+
+    A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)"), or the
+    part of it that the hints of the scene say.
 
     Parameters
     ----------
@@ -101,14 +104,28 @@ def same_time(dt_s: float, resolved_s: float = 0.0) -> float:
 
 
 def begin_times(times: Times, scene: Scene, dt_s: float, resolved_s: float = 0.0) -> None:
-    """Stand before the first stop and the first load."""
+    """Stand before the first stop and the first load.
+
+    Parameters
+    ----------
+    times : Times, to be filled
+    scene, dt_s, resolved_s
+        As for `timetable`.
+    """
     end = math.inf if scene.duration is None else scene.duration
     fill(times, same=same_time(dt_s, resolved_s), motion_end=scene.motion.duration, end=end)
 
 
 @shared
 def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> None:
-    """Move on to `time` [s]."""
+    """Move on to a time.
+
+    Parameters
+    ----------
+    times : Times, moved on
+    stops, loads : ndarray (k,), (l, 3), of `timetable`
+    time : float, [s]
+    """
     reached = time + times.same
     while stops[times.stops] <= reached:
         times.stops += 1
@@ -129,7 +146,13 @@ def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> 
 
 @shared
 def even(left_s: float, longest: float) -> float:
-    """Return the longest step [s], up to `longest`, of which a whole number makes up a time."""
+    """Return the longest step [s] of which a whole number makes up a time.
+
+    Parameters
+    ----------
+    left_s : float, the time [s]; inf where there is none to be made up
+    longest : float, no longer than this [s]
+    """
     if left_s == math.inf:
         return longest
     parts = left_s / longest * (1.0 - SAME_TIME)

@@ -39,7 +39,14 @@ def problem_of(watch: Watch | Slide) -> Problem:
 
 
 def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
-    """Return what was seen until now; `events` has room for one more."""
+    """Return what was seen until now.
+
+    Parameters
+    ----------
+    watch : Watch
+    events : ndarray (>= watch.events + 1, 4), columns as in `watch`: there is room for one more
+    history : History or None
+    """
     complete(watch, events)
     if watch.overturned:
         outcome, ratio = Outcome.OVERTURNED, math.inf
@@ -75,6 +82,11 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
     """Return the response of bodies that rock side by side: the first one's, and how all fared.
 
     It has overturned if one has, and its peak is the largest.
+
+    Parameters
+    ----------
+    responses : sequence of Response, one a body
+    observables : mapping, what was seen beside them
     """
     first, *others = responses
     if not others:
@@ -92,7 +104,14 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
 
 
 def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> Response:
-    """Return what was seen of a box that slides; the last slip counts as far as it got."""
+    """Return what was seen of a box that slides; the last slip counts as far as it got.
+
+    Parameters
+    ----------
+    slide : Slide
+    slips : ndarray (>= slide.slips + 1, >= 3), columns as in `sliding`: there is room for one more
+    history : History or None
+    """
     end_slip(slide, slips, slide.time, slide.place)
     slide.way = 0.0
     seen = slips[: slide.slips]

@@ -1,4 +1,7 @@
-"""What a frame shows beside its columns: they turn together, and the beam rides without turning."""
+"""What a frame shows beside its columns: they turn together, and the beam rides without turning.
+
+See EQUATIONS.md, "The rocking frame".
+"""
 
 from collections.abc import Mapping
 
@@ -28,7 +31,13 @@ class Spread(State):
 
 
 def begin_spread(spread: Spread, layout: Layout) -> None:
-    """Begin where nothing has parted; the body after those that rock is a beam."""
+    """Begin where nothing has parted; the body after those that rock is a beam.
+
+    Parameters
+    ----------
+    spread : Spread, to be filled
+    layout : Layout
+    """
     if 0 < layout.rocking < len(layout.bodies):
         beam, first = layout.bodies[layout.rocking], layout.bodies[0]
         fill(spread, columns=layout.rocking, homes=beam.home[0] - 2.0 * first.home[0])
@@ -36,7 +45,13 @@ def begin_spread(spread: Spread, layout: Layout) -> None:
 
 @shared
 def see_spread(spread: Spread, state: FloatArray) -> None:
-    """Take in a state."""
+    """Take in a state.
+
+    Parameters
+    ----------
+    spread : Spread, updated
+    state : ndarray (bodies, 4), a `Pose` a row
+    """
     columns = spread.columns
     if columns == 0:
         return
@@ -49,7 +64,18 @@ def see_spread(spread: Spread, state: FloatArray) -> None:
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:
-    """Return what was seen, angles over alpha [rad]; nothing where there is no beam."""
+    """Return what was seen of a frame; nothing where there is no beam.
+
+    Parameters
+    ----------
+    spread : Spread
+    alpha : float, slenderness [rad]
+
+    Returns
+    -------
+    mapping
+        parting and tilt over alpha, and drift_m [m].
+    """
     if not spread.columns:
         return {}
     return {

@@ -48,7 +48,16 @@ from engines.world import Pose
 def see(
     watch: Watch, rows: FloatArray, events: FloatArray, time: float, dt_s: float, pose: Pose
 ) -> None:
-    """Take in the pose at `time` [s], at the end of a step of `dt_s` [s]."""
+    """Take in a pose at the end of a step.
+
+    Parameters
+    ----------
+    watch : Watch, updated
+    rows : ndarray (k, 4), where a history is kept, columns as in `swing`
+    events : ndarray (k, 4), where events are written, columns as in `watch`
+    time, dt_s : float, end and length of the step [s]
+    pose : Pose
+    """
     theta = pose.theta
     if not math.isfinite(pose.x + pose.z + theta + pose.rate):
         watch.problem = DIVERGED
@@ -178,7 +187,13 @@ def land(watch: Watch, events: FloatArray) -> None:
 
 @shared
 def complete(watch: Watch, events: FloatArray) -> None:
-    """Complete the last impact with the velocity after it, zero if no swing followed."""
+    """Complete the last impact with the velocity after it, zero if no swing followed.
+
+    Parameters
+    ----------
+    watch : Watch, updated
+    events : ndarray (k, 4), columns as in `watch`
+    """
     if watch.landed:
         time, swing = watch.landed_s, watch.swing
         after = launch(swing, time) if swing.side != 0.0 else 0.0
@@ -215,7 +230,11 @@ def turning(watch: Watch) -> None:
 
 @shared
 def decide(watch: Watch, row: Row) -> None:
-    """Say whether the response is decided."""
+    """Say whether the response is decided.
+
+    After the motion a block overturns that moves outward beyond alpha, where its weight no longer
+    brings it back (EQUATIONS.md, "From (1) and (2)").
+    """
     size, outward = abs(row.theta), row.theta * row.rate > 0.0
     over = row.time >= watch.motion_end
     still = row.time - watch.turned_at >= watch.rest_time

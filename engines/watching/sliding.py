@@ -1,4 +1,7 @@
-"""States in, slips out: what is seen of a box that slides flat along its base."""
+"""States in, slips out: what is seen of a box that slides flat along its base.
+
+See EQUATIONS.md, "The sliding block".
+"""
 
 import math
 from collections.abc import Mapping
@@ -20,7 +23,7 @@ STILL_TIME = 0.05
 """A box is at rest when it has not slid for this time, in units of sqrt(B/g)."""
 
 TREMORS = 20.0
-"""After so many times of a rest a box is at rest, too, that trembles where it is."""
+"""A box that trembles where it is counts as at rest after this many times `STILL_TIME`."""
 
 WHEN, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
@@ -36,7 +39,7 @@ class Slide(State):
     home, half_height, width : float
         Of the box [m].
     slow, still : float
-        Velocity up to which it does not slide [m/s], and how long not to be at rest [s].
+        Velocity up to which it does not slide [m/s], and time after which it is at rest [s].
     motion_end, end : float
         End of the motion and of the observation [s].
     keeps_rows : bool
@@ -87,7 +90,13 @@ class Slide(State):
 
 
 def begin_slide(slide: Slide, scene: Scene) -> None:
-    """Begin where the scene does."""
+    """Begin where the scene does.
+
+    Parameters
+    ----------
+    slide : Slide, to be filled
+    scene : Scene, of a box that slides
+    """
     body, gravity = scene.bodies[0], scene.system.gravity
     fill(
         slide,
@@ -108,7 +117,17 @@ def begin_slide(slide: Slide, scene: Scene) -> None:
 
 @shared
 def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, pose: Pose) -> None:
-    """Take in the pose at `time` [s]; a row has place and velocity for rotation and rate."""
+    """Take in a pose at the end of a step.
+
+    Parameters
+    ----------
+    slide : Slide, updated
+    rows : ndarray (k, 4), where a history is kept: a `swing.Row` each, with place [m] and velocity
+        [m/s] for rotation and rate
+    slips : ndarray (k, >= 3), where slips are written
+    time : float, end of the step [s]
+    pose : Pose
+    """
     if not math.isfinite(pose.x + pose.z + pose.theta + pose.rate):
         slide.problem = DIVERGED
         return
@@ -142,7 +161,14 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
 
 @shared
 def end_slip(slide: Slide, slips: FloatArray, time: float, place: float) -> None:
-    """Write down the slip that is under way, if there is one, as ended at a time [s] and place."""
+    """Write down the slip that is under way, if there is one, as ended.
+
+    Parameters
+    ----------
+    slide : Slide, updated
+    slips : ndarray (k, >= 3)
+    time, place : float, when [s] and where, relative to the base [m]
+    """
     if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
         number = slide.slips
         slips[number, WHEN], slips[number, SINCE] = time, slide.since

@@ -67,7 +67,14 @@ class Swing(State):
 
 @shared
 def begin_swing(swing: Swing, side: float, from_rest: bool) -> None:
-    """Forget the last swing for one on `side`, or for none where that is 0."""
+    """Forget the last swing for another one, or for none.
+
+    Parameters
+    ----------
+    swing : Swing, updated
+    side : float, -1 or 1, or 0 for none
+    from_rest : bool, whether an uplift begins it
+    """
     swing.side, swing.from_rest = side, from_rest
     swing.rows = swing.kept = 0
     swing.dt = 0.0
@@ -107,7 +114,14 @@ def copy(rows: FloatArray, source: int, to: int) -> None:
 
 @shared
 def add(swing: Swing, row: Row, dt_s: float) -> None:
-    """Take in the next row, at the end of a step of `dt_s` [s]."""
+    """Take in the next row.
+
+    Parameters
+    ----------
+    swing : Swing, updated
+    row : Row, at the end of a step
+    dt_s : float, length of the step [s]
+    """
     if swing.rows < EDGE:
         put(swing.first, swing.rows, row)
     swing.rows += 1
@@ -136,10 +150,15 @@ def landing(swing: Swing) -> tuple[float, float]:
 
 @shared
 def lift_off(swing: Swing, earliest: float) -> float:
-    """Return the time [s], no earlier than `earliest`, at which the swing left the rest.
+    """Return the time [s] at which the swing left the rest.
 
-    The base's acceleration passes the onset steadily, so that the square root of the angular
-    velocity grows in proportion to time.
+    The base's acceleration passes the onset steadily, so that theta'' grows in proportion to time
+    (EQUATIONS.md, "From (1) and (2)") and so does the square root of the angular velocity.
+
+    Parameters
+    ----------
+    swing : Swing, of which the first rows are used
+    earliest : float, it left no earlier [s]
     """
     a, b = row_of(swing.first, 1), row_of(swing.first, 2)
     root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
@@ -150,7 +169,13 @@ def lift_off(swing: Swing, earliest: float) -> float:
 
 @shared
 def launch(swing: Swing, time: float) -> float:
-    """Return the velocity [rad/s] with which the swing left theta = 0 at `time` [s]."""
+    """Return the velocity [rad/s] with which the swing left theta = 0.
+
+    Parameters
+    ----------
+    swing : Swing, of which the first rows are used
+    time : float, when it did [s]
+    """
     rows = min(swing.rows, EDGE)
     # the step to the first row may contain the impact
     return extrapolated(swing.first, min(1, rows - 1), rows, time)
@@ -158,7 +183,14 @@ def launch(swing: Swing, time: float) -> float:
 
 @shared
 def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
-    """Return the angular velocity [rad/s] at `time` [s] by the polynomial through some rows."""
+    """Return the angular velocity [rad/s] at a time by the polynomial through some rows.
+
+    Parameters
+    ----------
+    rows : ndarray (k, 4), a `Row` each
+    first, stop : int, numbers of the first row and of the one after the last
+    time : float, [s]
+    """
     total = 0.0
     for i in range(first, stop):
         weight = 1.0

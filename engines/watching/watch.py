@@ -16,22 +16,21 @@ from engines.watching.swing import (
 from engines.world import Moment, Resolution
 
 LIFT_WIDTHS = 1e-8
-"""A block has lifted when its free corner is higher above the base than this part of its width,
-above the noise of a tuned contact at rest and below the smallest lift of interest, or than the
-length that the engine's numbers tell apart, and by what `LIFT_FALL` says."""
+"""Part of the width. A block has lifted when its free corner is higher above the base than this, or
+than the length that the engine's numbers tell apart, and what `LIFT_FALL` adds. It is above the
+noise of a tuned contact at rest and below the smallest lift of interest."""
 
 LIFT_FALL = 1e-3
-"""The free corner of a block that has lifted is higher by this part of g dt^2, twice the way fallen
-in one step, which no engine resolves; by the depth to which the contact was seen to give way under
-the resting block; and by twice the height to which the pivot of the last swing hopped, by the
-curvature of its steps."""
+"""Part of g dt^2, twice the way fallen in one step, which no engine resolves. With it are added the
+depth to which the contact was seen to give way under the resting block, and twice the height to
+which the pivot of the last swing hopped, by the curvature of its steps."""
 
 FALL_PART = 0.5
-"""A block that leans in a soft contact comes back as its load does; one that rocks falls back: with
-this part at least of the speed squared that its weight gives it on the way to upright."""
+"""Part of the squared rate that its weight gives a block on the way to upright. One that rocks
+falls back with more than this; one that leans in a soft contact comes back as its load does."""
 
 FALL_STEPS = 2.0
-"""Steps at least that a fall takes which is told from a tremor of the contact."""
+"""Least number of steps of a fall: a shorter one is not told from a tremor of the contact."""
 
 HOVER_WIDTHS = 1e-3
 """A contact that holds a block at rest higher above the base than this part of the width, and by
@@ -47,8 +46,8 @@ SLIDE_WIDTHS = 0.1
 """A pivot that slides further than this part of the width has left the problem."""
 
 PROPPED_PART = 0.5
-"""Part of alpha below which a block that nothing holds, or shakes, turns within the time of a rest
-faster than one at rest may."""
+"""Part of alpha. A block that leans by less, and is neither held nor shaken, turns faster within
+`REST_TIME` than one at rest may."""
 
 THROWN_WIDTHS = 1.0
 """A pivot higher above the base than this part of the width has been thrown off."""
@@ -85,8 +84,8 @@ class Watch(State):
     half_width, half_height, alpha : float
         Of the block [m, m, rad].
     lift, rest_time, rest_rate : float
-        From which height of the free corner on it is aloft [m], for how long it must not be to be
-        at rest [s], and how slowly it may turn then [rad/s].
+        Height of the free corner above which the block is aloft [m]; time without that after which
+        it is at rest [s]; and the rate up to which it may turn then [rad/s].
     fall, least_fall : float
         Rate squared over the rotation [rad/s2] with which a block falls back, and the least
         rotation [rad] from which a fall is seen as one.
@@ -116,8 +115,8 @@ class Watch(State):
     lean_side, lean_peak, lean_since : float
         Of the block at rest: to which side it leans, how far it did [rad], and since when [s].
     hovers, loose, props : bool
-        Whether a skin of the contact holds it above its base, whether it was seen to rock where no
-        corner's height shows it, and whether its contact holds it leaning.
+        Whether a skin of the contact holds it above its base, whether it was seen to rock although
+        no corner's height shows it, and whether its contact holds it leaning.
     uplift : int
         Which event is the last uplift.
     landed : bool
