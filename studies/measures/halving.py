@@ -13,9 +13,9 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines.declaration import Stepping
-from studies.kit.digests import check
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.provenance import check
 from studies.measures.published import PUBLISHED
 from studies.sources.registry import resolve
 

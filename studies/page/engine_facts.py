@@ -14,13 +14,13 @@ from engines.declaration import AT_REST, RECOMMENDED, Help, Preset, Stepping
 from engines.parts.factors import AS_BEST, BEST, DEFAULT
 from engines.registry import OWN
 from engines.troubles import TROUBLES
-from studies.contact.report import changed, frames, name_of, prices, rules
-from studies.contact.report import read as read_variants
+from studies import contact
+from studies.contact.study import changed, frames, name_of, prices, rules
 from studies.measures.presets import preset_of, told
-from studies.measures.slippery import needed
+from studies.measures.published import needed
 from studies.measures.words import capital, listed, part, right_of
 from studies.page.facts import table
-from studies.scenes.findings import LATE_M
+from studies.scenes.told import LATE_M
 
 
 def helps(published: Path) -> str:
@@ -77,7 +77,7 @@ def frames_of_engines(published: Path) -> str:
 
 
 def _variants(published: Path) -> pd.DataFrame:
-    return read_variants(published / "contact" / "variants.csv")
+    return contact.STUDY.read(published / "contact", "variants")
 
 
 def documented() -> str:
@@ -150,7 +150,7 @@ def objections(published: Path, presets: pd.DataFrame) -> str:
     presets : DataFrame
         A line for each preset over the paper's cases.
     """
-    variants = read_variants(published / "contact" / "own-steps.csv")
+    variants = contact.STUDY.read(published / "contact", "own-steps")
     steps = pd.read_csv(published / "precision" / "work-precision.csv")
     blocks = pd.read_csv(published / "scenes" / "block-summary.csv")
     rows = []

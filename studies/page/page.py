@@ -18,8 +18,7 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.catalogue import CHAPTERS
-from studies.defaults.claims import INVALID
-from studies.defaults.study import read
+from studies.defaults.study import INVALID, read
 from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
@@ -100,11 +99,10 @@ def _unbroken(words: str) -> str:
 
 
 def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
-    module = study.load()
     return {
         "folder": chapter.folder,
         "question": chapter.question,
-        "claim": module.headline(folder),
+        "claim": study.headline(folder),
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
@@ -112,10 +110,10 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
         "pictures": [
             (study.captions.get(name, name), embedded(drawn))
-            for name, drawn in module.pictures(folder).items()
+            for name, drawn in study.pictures(folder).items()
         ],
         "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
-        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, module)],
+        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, study.load())],
         "failures": failures(folder, study.table),
     }
 

@@ -14,16 +14,16 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed, times
-from studies.precision import cost
+from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 STRICT = "RK4"
@@ -52,12 +52,7 @@ def report(folder: Path) -> str:
         f"Its cost over that of the {EXACT} at its tightest": over_targets(costs, "cost"),
         "Typical cases at the setting with the smallest median error": finest(typical),
     }
-    return tell(folder, {"precision": drawn(folder)}, first_claim(table), tables)
-
-
-def headline(folder: Path) -> str:
-    """Return what a folder's work-precision.csv says first."""
-    return first_claim(pd.read_csv(folder / "work-precision.csv"))
+    return tell(STUDY, folder, tables)
 
 
 def first_claim(table: pd.DataFrame) -> str:
@@ -80,18 +75,6 @@ def first_claim(table: pd.DataFrame) -> str:
         f"The exact solution takes {duration(own)} a case; an error below {reached[-1]:g} costs "
         f"an engine {listed(engines)}{rival}."
     )
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
-    return {"precision": drawn(folder), **cost.pictures(folder)}
-
-
-def drawn(folder: Path) -> Figure:
-    """Draw the work-precision diagram of a folder's work-precision.csv."""
-    from studies.precision.figure import draw_precision
-
-    return draw_precision(pd.read_csv(folder / "work-precision.csv"))
 
 
 def with_errors(rows: pd.DataFrame) -> pd.DataFrame:

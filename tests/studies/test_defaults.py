@@ -9,7 +9,8 @@ import pytest
 from analytic import simulate
 from studies.__main__ import run
 from studies.defaults import study
-from studies.defaults.claims import (
+from studies.defaults.figure import COLOURS, LABELS, draw_maps
+from studies.defaults.study import (
     FALSE,
     INVALID,
     MISSED,
@@ -23,7 +24,6 @@ from studies.defaults.claims import (
     similarity,
     with_verdicts,
 )
-from studies.defaults.figure import COLOURS, LABELS, draw_maps
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST
 
 
