@@ -29,7 +29,7 @@ from studies.kit.arguments import (
 )
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
-from studies.kit.posing import posed_block
+from studies.kit.posing import Height, Width, posed_block
 from studies.measures.published import published_in, too_slippery
 from studies.measures.words import listed
 
@@ -42,8 +42,8 @@ def command(
     ] = None,
     dt: Positive | None = None,
     friction: NotNegative | None = None,
-    width: Positive = 0.5,
-    height: Positive = 1.5,
+    width: Width = 0.5,
+    height: Height = 1.5,
     published: Place | None = None,
     out: Place | None = None,
 ) -> int:
@@ -62,10 +62,6 @@ def command(
     friction
         Coefficient of friction with which settings are written out; by default the preset's, with
         which they were measured.
-    width
-        Full width B of the block [m] for which settings are written out.
-    height
-        Full height H of the block [m].
     published
         Folder of the published tables; by default those that come with this project.
     out

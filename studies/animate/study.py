@@ -25,8 +25,10 @@ from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
     Excitation,
+    Height,
     Posed,
     Standing,
+    Width,
     refuse_endless,
 )
 from studies.kit.provenance import check
@@ -45,8 +47,8 @@ CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 def command(
     *,
     out: Place,
-    width: Positive | None = None,
-    height: Positive | None = None,
+    width: Width | None = None,
+    height: Height | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
     yours: Yours = NOT_YOURS,
@@ -61,10 +63,6 @@ def command(
     ----------
     out
         The film: a .gif, or an .mp4 (which needs the extra [video]).
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m].
     results
         Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
         shown in which the sources differ most.

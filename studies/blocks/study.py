@@ -181,7 +181,8 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
     A factor that was asked for and overturns counts for the margin, too: it may lie in a sliver
     that the search did not see.
     """
-    facts = {_case(row): row for row in rows if _is_exact(row)}
+    of_exact = (ANSWERS, "exact")
+    facts = {_case(row): row for row in rows if (row["table"], row["source"]) == of_exact}
     margins = {_case(row)[:2]: row for row in rows if row["table"] == MARGINS}
     falls: dict[tuple[Any, ...], float] = {}
     for (name, record, scale), row in facts.items():
@@ -203,10 +204,6 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
             }
         )
     return pd.DataFrame(table)
-
-
-def _is_exact(row: Row) -> bool:
-    return bool(row["table"] == ANSWERS and row["source"] == "exact")
 
 
 def _case(row: Row) -> tuple[Any, ...]:

@@ -48,8 +48,10 @@ from studies.kit.posing import (
     ONE_BLOCK,
     WHERE_IT_ROCKS,
     Excitation,
+    Height,
     Posed,
     Standing,
+    Width,
     both_sizes,
     note_unusual,
     refuse_endless,
@@ -78,8 +80,8 @@ NOT_ROLLING = "only where no cylinder rolls"
 
 def command(
     *,
-    width: Positive | None = None,
-    height: Positive | None = None,
+    width: Width | None = None,
+    height: Height | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
     sources: Sources = DEFAULT_SOURCES,
@@ -95,10 +97,6 @@ def command(
 
     Parameters
     ----------
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m], or that of the cylinder.
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
         8/p of free rocking. A cylinder by default five turns, and fifty.
@@ -111,9 +109,10 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
+    if standing.scene in ("slide", "cart", "cylinder") and sources == DEFAULT_SOURCES:
+        sources = OF_A_SLIDE
     if standing.scene == "cylinder":
         refuse_given({"width": width, "plot": plot, "estimate": estimate or None}, NOT_ROLLING)
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_two_steps(effort.step, yours)
         return compare_rolling(
             standing.cylinder(height, excitation),
@@ -126,10 +125,8 @@ def command(
         )
     width, height = both_sizes(width, height)
     if not standing.rocks:
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_given({"plot": plot}, WHERE_IT_ROCKS)
     if standing.scene == "cart":
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_given({"estimate": estimate or None}, "only on a base that moves as it is told")
     check_plot(plot)
     block = standing.system(width, height, yours.friction)

@@ -18,6 +18,7 @@ where the exact solution has no result.""",
         minutes=(0.1, 3.5),
         weaker="One H/B, full sines and fewer pulses.",
     ),
+    claims=("parts", "rests"),
     captions={
         "small": (
             "Frequency and amplitude of full-sine pulses, a map for each engine as its "

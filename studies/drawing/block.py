@@ -17,7 +17,7 @@ from analytic.motion import FloatArray
 from engines.layouts import System, layout_of
 from studies.drawing.styles import style_of, title_of
 from studies.measures.presets import engine_of, is_engine, preset_of, told
-from studies.measures.words import power
+from studies.measures.words import signed
 
 INK, SOFT, BLOCK, GROUND = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4"
 
@@ -68,7 +68,8 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
     axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
     _dimensions(axes, corners)
     _angles(axes, corners, width, height, theta)
-    _shaking(axes)
+    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
+    axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
     return drawing
 
 
@@ -137,11 +138,6 @@ def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: s
     angle = math.radians(degrees)
     x, y = origin + distance * np.array([math.cos(angle), math.sin(angle)])
     axes.text(x, y, name, ha="center", va="center", fontsize=15)
-
-
-def _shaking(axes: Axes) -> None:
-    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
-    axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
 
 
 def _arrow(
@@ -215,9 +211,7 @@ def _verdict(line: pd.Series[Any]) -> str:
     if line["outcome"] != "rocked":
         return str(line["outcome"])
     error = float(line["error"])
-    if abs(error) < 1e-3:
-        return f"peak to {power(abs(error))}"
-    return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
+    return f"peak {'to ' * (abs(error) < 1e-3)}{signed(error)}"
 
 
 def _outlines(axes: Axes, block: RigidBlock, exact: float, found: float, colour: str) -> None:

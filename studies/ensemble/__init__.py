@@ -15,6 +15,7 @@ the exact solution case by case and in distribution. Resumable.""",
         minutes=(0.1, 2.7),
         weaker="Fewer motions and intensities, and one block.",
     ),
+    claims=("agreement",),
     captions={
         "ensemble": (
             "Share of motions that overturn a block over their intensity, by each source, and "

@@ -27,7 +27,9 @@ from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
     Excitation,
+    Height,
     Standing,
+    Width,
     refuse_endless,
 )
 from studies.kit.provenance import project_version, version_of
@@ -39,8 +41,8 @@ def command(
     *,
     engine: str,
     out: Place,
-    width: Positive,
-    height: Positive,
+    width: Width,
+    height: Height,
     preset: str | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
@@ -57,10 +59,6 @@ def command(
     out
         Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
         library reads one.
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m].
     preset
         One of the engine's with equal steps: naive or fixed; fixed by default.
     step

@@ -30,7 +30,7 @@ from studies.kit.journal import Row
 from studies.kit.naming import CORE, EngineSources
 from studies.kit.options import DEFAULT_RUNNING, Running, refuse_days, refuse_excess
 from studies.kit.plan import Plan, Tables, by_label, carry_out
-from studies.kit.posing import posed_block
+from studies.kit.posing import Height, Width, posed_block
 from studies.kit.tables import table_in
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.measures.words import out_of
@@ -72,8 +72,8 @@ class Branch:
 def command(
     *,
     out: Out,
-    width: Positive = 0.5,
-    height: Positive = 1.5,
+    width: Width = 0.5,
+    height: Height = 1.5,
     over: Over = "frequency",
     low: Positive | None = None,
     high: Positive | None = None,
@@ -91,10 +91,6 @@ def command(
 
     Parameters
     ----------
-    width
-        Width B of the block [m].
-    height
-        Height H of the block [m].
     over
         What is swept: the frequency of the motion, or its amplitude.
     low

@@ -21,7 +21,7 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, blaming_its_rows, fill
 from studies.kit.provenance import seal, write_text
 from studies.kit.runner import exit_code
-from studies.measures.claims import TABLE, Claim, Finding, read_findings, tally, write_findings
+from studies.measures.claims import TABLE, Finding, claim, read_findings, tally, write_findings
 from studies.measures.samples import samples
 
 if TYPE_CHECKING:
@@ -191,6 +191,11 @@ def judge(figure: int, rows: Sequence[Row], samples: pd.DataFrame) -> Finding:
     return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
+@claim(
+    "Runge–Kutta and average acceleration coincide (within 0.001 of θcr)",
+    "average-acceleration",
+    "rk4",
+)
 def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
     """Compare the samples of both solvers."""
     lines = table.pivot(index=["panel", "time_s"], columns="source", values="theta_ratio")
@@ -199,6 +204,12 @@ def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
     return bool((apart < 1e-3).all()), f"largest difference of θ/θcr: {words}"
 
 
+@claim(
+    "Housner's error grows as H/B falls, and the modified linearization's stays smaller",
+    "exact",
+    "housner",
+    "modified",
+)
 def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
     """Compare the errors of both linearizations from panel to panel."""
     peaks = rows.pivot(index="panel", columns="source", values="peak_ratio")
@@ -209,6 +220,12 @@ def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
     return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
 
 
+@claim(
+    "In 5-b and 5-c the block overturns by Housner alone, and survives otherwise",
+    "exact",
+    "housner",
+    "modified",
+)
 def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
     """Look at the outcomes in 5-b and 5-c."""
     table = rows.pivot(index="panel", columns="source", values="outcome")
@@ -221,21 +238,5 @@ def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
     return holds, "; ".join(words)
 
 
-CLAIMS = {
-    2: Claim(
-        "Runge–Kutta and average acceleration coincide (within 0.001 of θcr)",
-        solvers_coincide,
-        ("average-acceleration", "rk4"),
-    ),
-    4: Claim(
-        "Housner's error grows as H/B falls, and the modified linearization's stays smaller",
-        housner_strays,
-        ("exact", "housner", "modified"),
-    ),
-    5: Claim(
-        "In 5-b and 5-c the block overturns by Housner alone, and survives otherwise",
-        housner_overturns,
-        ("exact", "housner", "modified"),
-    ),
-}
+CLAIMS = {2: solvers_coincide, 4: housner_strays, 5: housner_overturns}
 """Figure -> what the paper says about it."""

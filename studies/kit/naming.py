@@ -6,7 +6,7 @@ A name that nobody has, or one given twice, is refused where the argument is rea
 from collections.abc import Iterable, Sequence
 from typing import Annotated
 
-from cyclopts import Parameter, Token
+from cyclopts import Parameter
 
 from engines import ENGINES, core_engines
 from studies.kit.arguments import BadInputError, refuse_repeats
@@ -24,11 +24,9 @@ CORE = core_engines()
 """The engines that the published studies ask."""
 
 
-def _expanded(_: type, tokens: Sequence[Token]) -> tuple[str, ...]:
-    return tuple(expanded(token.value for token in tokens))
-
-
-def _check_sources(_: type, names: Sequence[str]) -> None:
+def _check_sources(_: type, names: Sequence[str] | None) -> None:
+    if names is None:  # they are not given
+        return
     if not names:
         raise BadInputError(f"--sources is empty; it must name at least one of {allowed()}")
     for name in names:
@@ -39,12 +37,13 @@ def _check_sources(_: type, names: Sequence[str]) -> None:
     refuse_repeats("--sources", names)
 
 
-def _check_engines(_: type, names: Sequence[str]) -> None:
-    for name in names:
+def _check_engines(_: type, names: Sequence[str] | None) -> None:
+    for name in names or ():
         if name not in ENGINES:
             among = ", ".join(ENGINES)
             raise BadInputError(f"--engines is {name!r}; it must be among {among}")
-    refuse_repeats("--engines", names)
+    if names is not None:  # they are given
+        refuse_repeats("--engines", names)
 
 
 def sources_option(
@@ -65,7 +64,7 @@ def sources_option(
     return Parameter(
         consume_multiple=True,
         show_default=" ".join if default else False,
-        converter=_expanded,
+        converter=lambda _, tokens: tuple(expanded(token.value for token in tokens)),
         validator=_check_sources,
         help=(
             f"{first}{' '.join(names)}; an engine takes a preset after a colon: "

@@ -52,6 +52,9 @@ MOST_DEGREES = 90.0
 LEAST_COLUMNS = 2
 """Of a frame."""
 
+Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
+Height = Annotated[Positive, Parameter(help="Full height H of these, or of a cylinder [m].")]
+
 Pulse = Literal["half-sine", "full-sine"]
 SceneName = Literal["block", "frame", "slide", "cart", "cylinder"]
 

@@ -19,6 +19,7 @@ beside the edges; where each differs from the exact solution. The engines' runs 
         minutes=(0.1, 5.0),
         weaker="A coarser map, 64 cells for each engine, and one place on each edge.",
     ),
+    claims=("differences",),
     captions={
         "map": (
             "Amplitude over frequency: which pulses overturn a block at once, which after an "

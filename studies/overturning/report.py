@@ -70,9 +70,8 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def headline(folder: Path) -> str:
+def first_claim(lines: pd.DataFrame) -> str:
     """Say how much of the map the linearizations get wrong, and how many cells engines do."""
-    lines = table_in(folder, "differences")
     if lines.empty:
         return "The exact map stands alone: no other source was asked."
     models, engines = lines[lines["cells"].isna()], lines[lines["cells"].notna()]

@@ -122,14 +122,16 @@ def random_fixed(published: Path) -> str:
 def troubles() -> str:
     """Return what goes wrong in each engine, by which mechanism, and the script that shows it."""
     rows = [
-        (ENGINES[each.engine].title, each.title, each.kind, each.mechanism, _script(each.script))
+        (
+            ENGINES[each.engine].title,
+            each.title,
+            each.kind,
+            each.mechanism,
+            f"[{each.script}](../../engines/troubles/{each.script})",
+        )
         for each in sorted(TROUBLES, key=lambda each: list(ENGINES).index(each.engine))
     ]
     return table(("engine", "what happens", "kind", "mechanism", "script"), rows)
-
-
-def _script(name: str) -> str:
-    return f"[{name}](../../engines/troubles/{name})"
 
 
 SHOWN = 2

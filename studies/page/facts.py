@@ -36,7 +36,7 @@ from studies.measures.words import (
     out_of,
     part,
     per_cent,
-    power,
+    signed,
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
@@ -308,17 +308,11 @@ def hero_lines(published: Path) -> dict[str, str]:
     """Return the outcome of each source of the first picture, or how far its peak is off."""
     lines = hero_summary(pd.read_csv(published / "hero" / "hero.csv"))
     return {
-        str(row["source"]): _off(float(row["error"]))
+        str(row["source"]): signed(float(row["error"]))
         if row["outcome"] == "rocked"
         else str(row["outcome"])
         for _, row in lines.iterrows()
     }
-
-
-def _off(error: float) -> str:
-    if abs(error) < 1e-3:
-        return power(abs(error))
-    return f"{error:+.0%}".replace("%", " %").replace("-", "−")
 
 
 def counts(published: Path) -> dict[str, int]:
@@ -338,7 +332,8 @@ def counts(published: Path) -> dict[str, int]:
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
     sweep = provenance.record_of(published / "sweep")
-    machine = sweep["machine"]
+    machine, first = sweep["machine"], published / "sweep" / FIRST
+    others = [json.loads(first.read_text(encoding="utf-8"))] if first.is_file() else []
     versions = provenance.engines_of(provenance.record_of(_with_presets(published)[0]))
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
@@ -346,17 +341,12 @@ def made(published: Path) -> dict[str, str]:
         "engines": listed([f"{name} {versions[name]}" for name in packages]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
         "date": sweep["runs"][-1]["start"][:10],
-        "sweep": lasts(sweep, *_first_of(published)),
+        "sweep": lasts(sweep, *others),
     }
 
 
 FIRST = "first.json"
 """Provenance of the sweep in another folder, where it was the first run after an installation."""
-
-
-def _first_of(published: Path) -> list[dict[str, Any]]:
-    path = published / "sweep" / FIRST
-    return [json.loads(path.read_text(encoding="utf-8"))] if path.is_file() else []
 
 
 def lasts(*records: Mapping[str, Any]) -> str:

@@ -230,7 +230,12 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
     order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
-    found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
+    found = {
+        str(name): [
+            float(f"{peak:.{DIGITS}g}") if math.isfinite(peak) else None for peak in wide[name]
+        ]
+        for name in rows["source"].unique()
+    }
     slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
     judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
     rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
@@ -241,7 +246,3 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         "rests": rests.tolist(),
         "written": list(filter(written_out, found)),
     }
-
-
-def _short(value: float) -> float | None:
-    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

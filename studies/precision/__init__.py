@@ -47,7 +47,7 @@ history, ... measured by putting them back, on the block and pulse of the paper'
 thread, warm, the best of five or more, the scenes of an engine in turn. With --starts how long
 whole commands take, too, and with --batches what it is worth to run many scenes at once.""",
     tables=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "batches.csv"),
-    table="shares.csv",
+    claims=("shares",),
     drawings={"cost": ("draw_scenes", "scenes")},
     others=("cost.txt", "cost.png"),
 )

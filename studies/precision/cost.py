@@ -248,9 +248,9 @@ def report(folder: Path) -> str:
     return tell(COST, folder, tables)
 
 
-def headline(folder: Path) -> str:
+def first_claim(shares: pd.DataFrame) -> str:
     """Say how long a step takes with each loop, and how much of that is the engine's own."""
-    shares = table_in(folder, "shares").dropna(subset=["step_s"])
+    shares = shares.dropna(subset=["step_s"])
     words = [
         f"{listed([_step(line) for _, line in lines.iterrows()])} with {engine}"
         for engine, lines in shares.groupby("engine", sort=False)

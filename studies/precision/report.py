@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -82,19 +83,19 @@ def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    exact = {
-        tuple(getattr(case, name) for name in CASE): (case, _windowed(case))
-        for cases in chosen_cases(quick=False).values()
-        for case in cases
-    }
+    exact = {}
+    for case in chain(*chosen_cases(quick=False).values()):
+        window = free_rocking_window(case.block, case.motion)
+        found = simulate(case.block, case.motion, duration=window)
+        exact[tuple(getattr(case, name) for name in CASE)] = case, found
     posed = [exact[case] for case in rows[list(CASE)].itertuples(index=False, name=None)]
     peaks = np.array([response.peak_ratio for _, response in posed])
     failed = rows["outcome"] == Outcome.FAILED.value
     error = (rows["peak_ratio"] / peaks - 1.0).abs()
     finest = rows.groupby(["method", "figure", "aspect", "set"])["peak_ratio"].transform("last")
     own = (rows["peak_ratio"] / finest - 1.0).abs()
-    found = map(json.loads, rows["impact_times"])
-    late = [_impact_error(each, *asked) for each, asked in zip(found, posed, strict=True)]
+    impacts = map(json.loads, rows["impact_times"])
+    late = [_impact_error(each, *asked) for each, asked in zip(impacts, posed, strict=True)]
     return rows.assign(
         error=error.mask(failed),
         own_error=own.mask(failed),
@@ -102,11 +103,6 @@ def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
         failed=failed,
         pulse_s=[case.motion.duration for case, _ in posed],
     )
-
-
-def _windowed(case: Case) -> Response:
-    window = free_rocking_window(case.block, case.motion)
-    return simulate(case.block, case.motion, duration=window)
 
 
 def _impact_error(found: list[float], case: Case, exact: Response) -> float:

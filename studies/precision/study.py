@@ -51,12 +51,11 @@ def command(
         Wall-clock time [s] after which one case with one setting is given up.
     """
     alone = Running(jobs=1, time_limit=time_limit)
-    return carry_out(STUDY, plan(out, engines, quick), out, alone, both_reports)
 
+    def both(folder: Path) -> str:
+        return f"{report(folder)}\n\n{cost.report(folder)}"
 
-def both_reports(folder: Path) -> str:
-    """Write and return what a folder says of errors, and of what a scene costs."""
-    return f"{report(folder)}\n\n{cost.report(folder)}"
+    return carry_out(STUDY, plan(out, engines, quick), out, alone, both)
 
 
 def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:

@@ -15,7 +15,6 @@ from studies.drawing.kept import tell
 from studies.kit import provenance
 from studies.kit.arguments import Count, Out, Yes, one_of
 from studies.kit.jobs import Job
-from studies.kit.journal import Row
 from studies.kit.naming import CORE, Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, by_label, carry_out
@@ -117,16 +116,9 @@ def plan(
         settings={"seed": seed, **asdict(effort), **({} if scene == "block" else {"scene": scene})},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
-        needed=without_hints,
+        # what becomes of a false hint is an answer, and half a step that failed is no estimate
+        needed=lambda rows: [row for row in rows if row["table"] == STUDY.name],
     )
-
-
-def without_hints(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of validate.csv: what becomes of a false hint is an answer.
-
-    A run at half the step that failed leaves a row without an estimate.
-    """
-    return [row for row in rows if row["table"] == STUDY.name]
 
 
 def report(folder: Path) -> str:

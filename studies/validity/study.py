@@ -88,7 +88,8 @@ def plan(sources: Sequence[str], quick: bool) -> Plan:
         growing={"source": sources},
         reduce=_reduce,
         tabulate=tabulate,
-        needed=unanswered,
+        # a block that slid away is what was asked for
+        needed=lambda rows: [row for row in rows if row["verdict"] == "failed"],
     )
 
 
@@ -96,11 +97,6 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the engines' table, and the map of the reference beside it."""
     reference = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
     return {"validity": pd.DataFrame(rows), "map": reference}
-
-
-def unanswered(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that failed: a block that slid away is what was asked for."""
-    return [row for row in rows if row["verdict"] == "failed"]
 
 
 def _job(case: ValidityCase, source: str, factor: float, options: dict[str, float]) -> Job:

@@ -279,7 +279,7 @@ def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
         {**line, "source": "rapier", "rest_wrong": 3, "no_answer": 2},
     ]
     pd.DataFrame(lines).to_csv(tmp_path / "differences.csv")
-    assert overturning.headline(tmp_path).endswith(
+    assert overturning.STUDY.headline(tmp_path).endswith(
         "the fall wrong in up to 1 (mujoco), at rest for rocked in up to 3 (rapier) and no answer "
         "in up to 2 (rapier)."
     )
