@@ -1,4 +1,4 @@
-"""The block with the names of its parts, and blocks as outlines."""
+"""The block with the names of its parts, blocks as outlines, and the picture of the front page."""
 
 from __future__ import annotations
 

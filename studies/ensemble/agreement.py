@@ -1,4 +1,12 @@
-"""Sources beside the exact solution of an ensemble, case by case and in distribution."""
+"""Sources beside the exact solution of an ensemble, case by case and in distribution.
+
+In distribution: the probability of overturning against intensity, with what is not known of it. A
+block overturns at the intensity x with the probability Phi(ln(x/median)/beta): capacities are
+lognormal. Fitted by maximum likelihood to the counts at each intensity (Baker 2015, "Efficient
+analytical fragility function fitting using dynamic structural analysis"), all samples at once; the
+bounds are quantiles over resampled motions, whole, since what one motion does at two intensities is
+not independent.
+"""
 
 from __future__ import annotations
 

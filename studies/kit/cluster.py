@@ -4,6 +4,10 @@ Dask is imported only here and on a worker, and only when a cluster is named. Wh
 connection is encrypted, and whom it trusts, is Dask's own configuration (`distributed.comm.tls`),
 as on the scheduler and the workers. A case whose worker dies is done again elsewhere, up to the
 scheduler's `allowed-failures`, after which it is a failed row.
+
+A worker says whether it is fit, and does to a job what Local would: models and solvers run in its
+own process, engines and long solves in a process of their own, so that a crash or the time limit
+is a failed row and costs no worker.
 """
 
 import asyncio

@@ -1,4 +1,8 @@
-"""Where jobs are run: on the machine at hand, or on a cluster that is named."""
+"""Where jobs are run: on the machine at hand, or on a cluster that is named.
+
+In processes of their own, where engines are concerned, and many at once where an engine can answer
+so: which jobs make up a batch, how a process asks about it, and what came of each.
+"""
 
 import math
 import sys

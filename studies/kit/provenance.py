@@ -1,4 +1,4 @@
-"""What ran: versions, settings, commit, machine."""
+"""What ran: versions, settings, commit, machine, and the digests of what was written."""
 
 import errno
 import gzip

@@ -1,4 +1,10 @@
-"""What an overturning map says: who differs from the exact solution, and where."""
+"""What an overturning map says: who differs from the exact solution, and where.
+
+Thresholds are held against closed forms and against the literature. What could be read of it is
+its formulas as later papers and `analytic.criteria` quote them. The tables and figures of Makris
+and Roussos (2000) and of Zhang and Makris (2001) could not be read, so no number of theirs stands
+here.
+"""
 
 from __future__ import annotations
 

@@ -214,7 +214,7 @@ def _settings(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
     alike = best["median_error"].map("{:.3e}".format)  # two names of one thing
     for line in _rows(best[~alike.duplicated() & ~best["factor"].duplicated()].head(SHOWN)):
         name = name_of(pd.Series(line)).replace(AS_BEST, f"as `:{BEST}`")
-        yield name, _some(without["cases"]), _of_variant(without), _of_variant(line)
+        yield name, f"{without['cases']} of them", _of_variant(without), _of_variant(line)
 
 
 def _of_variant(line: Line) -> str:
@@ -232,7 +232,7 @@ def _finest(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
             _errors(each["median_error"], each["max_error"], each["failed"])
             for each in (coarsest, finest)
         )
-        yield said, _some(finest["cases"]), before, after
+        yield said, f"{finest['cases']} of them", before, after
 
 
 def _floor(blocks: pd.DataFrame, engine: str) -> Iterator[Tried]:
@@ -241,10 +241,6 @@ def _floor(blocks: pd.DataFrame, engine: str) -> Iterator[Tried]:
         if line["floor_lag_m"] > LATE_M:
             tried, cases = "exact answer on the floor as it moved", f"{line['blocks']} pulses"
             yield tried, cases, part(line["median_error"]), part(line["median_own_error"])
-
-
-def _some(cases: int) -> str:
-    return f"{cases} of them"
 
 
 def _rows(lines: pd.DataFrame) -> list[Line]:

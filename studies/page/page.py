@@ -22,7 +22,7 @@ from studies.defaults.study import INVALID, read
 from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
-from studies.kit.tables import read_table
+from studies.kit.tables import SMALL, read_table
 from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
@@ -127,8 +127,6 @@ def prose(text: str) -> list[tuple[bool, list[str]]]:
     ]
 
 
-SMALL = 1e-2
-"""Numbers below are shown as powers of ten."""
 LARGE = 150_000
 """Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
 

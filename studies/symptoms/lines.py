@@ -1,4 +1,4 @@
-"""What users of an engine see: how it is measured by default, with one setting, and with all."""
+"""What users of an engine see: by default, with one setting, with all; and the patch between."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What random cases say, in tables and a sentence, and what was left out of them."""
+"""What random cases say, in tables and a sentence, with bounds, and what was left out of them."""
 
 from __future__ import annotations
 
