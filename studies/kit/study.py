@@ -67,8 +67,8 @@ class Study:
         module without it has a `headline` of the folder.
     drawings : mapping
         Name of a picture -> the function of its module `figure` that draws it, and the tables that
-        this takes. Of other captions one of both modules has `pictures`
-        of the folder, by name.
+        this takes. Where captions name others, one of the two modules has `pictures` of the folder,
+        by name.
     captions : mapping
         Name of a picture -> what is seen in it, for those who read and those who are read to.
     chapter, chapters : Chapter, tuple of Chapter

@@ -23,9 +23,9 @@ from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wron
 from studies.sweep.study import over_all, preset_table, read
 
 OVERTURNED = "overturned"
-TOP, ROW = 1.2, 0.085
+TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
-LEAST, MOST = 1e-8, 1e1
+FLOOR, CEILING = 1e-8, 1e1
 """Ends of the scale of errors."""
 
 
@@ -41,7 +41,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     sources = list(rows["source"].unique())
     drawn = rows.sort_values("omega_over_p", kind="stable").assign(
         survived=rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
-        error=rows["error"].abs().clip(LEAST, MOST),
+        error=rows["error"].abs().clip(FLOOR, CEILING),
     )
     panels = dict(list(drawn.groupby("aspect")))
     drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
@@ -55,8 +55,8 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
     grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
                    ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
-    grid[1, 0].set(yscale="log", ylim=(LEAST, MOST), ylabel="relative error of it  [–]")
-    error_scale(grid[1, 0].yaxis, LEAST, MOST)
+    grid[1, 0].set(yscale="log", ylim=(FLOOR, CEILING), ylabel="relative error of it  [–]")
+    error_scale(grid[1, 0].yaxis, FLOOR, CEILING)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
     _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
@@ -89,7 +89,7 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
 
 
 def _level(number: float) -> float:
-    return TOP + ROW * (number + 0.7)
+    return TOP + LINE * (number + 0.7)
 
 
 def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
