@@ -25,8 +25,8 @@ from studies.kit.arguments import (
     refuse_given,
     refuse_repeats,
     several,
-    several_or_none,
 )
+from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.posing import Height, Width, posed_block
@@ -37,9 +37,7 @@ from studies.measures.words import listed
 def command(
     *,
     error: Annotated[tuple[Positive, ...], several] = TARGETS,
-    engines: Annotated[
-        tuple[str, ...] | None, several_or_none, Parameter(name=("--engines", "--engine"))
-    ] = None,
+    engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
     dt: Positive | None = None,
     friction: NotNegative | None = None,
     width: Width = 0.5,
@@ -54,8 +52,8 @@ def command(
     error
         Largest relative errors [-] of the peak rotation that are to be kept.
     engines
-        Names of engines, without a preset; by default all in the published tables. Of one alone
-        the settings are written out.
+        Names of engines, without a preset, of those in the published tables. Of one alone the
+        settings are written out.
     dt
         Your step [s], instead of errors: which error each preset with equal steps keeps with it,
         and its settings as formulas of the step DT, with their values.

@@ -62,6 +62,8 @@ def command(
 
     Parameters
     ----------
+    engines
+        Names of engines, without a preset.
     quick
         Fewer cases and twice the step: less than a minute on 2 cores.
     """

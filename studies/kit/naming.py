@@ -86,7 +86,6 @@ Engines = Annotated[
         consume_multiple=True,
         show_default=lambda names: " ".join(names or ("all",)),
         validator=_check_engines,
-        help="Names of engines, without a preset.",
     ),
 ]
 """Names of engines alone."""

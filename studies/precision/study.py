@@ -45,6 +45,8 @@ def command(
 
     Parameters
     ----------
+    engines
+        Names of engines, without a preset.
     quick
         Fewer cases and settings: some one and a half minutes.
     time_limit

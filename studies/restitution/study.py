@@ -39,7 +39,13 @@ RANGES = listed(
 
 
 def command(*, out: Out, engines: Engines = ASKED) -> int:
-    """Hold what a rocking block keeps at an impact against what was asked."""
+    """Hold what a rocking block keeps at an impact against what was asked.
+
+    Parameters
+    ----------
+    engines
+        Names of engines, without a preset.
+    """
     mute = [name for name in engines if name not in WAYS]
     if mute:
         able = ", ".join(WAYS)

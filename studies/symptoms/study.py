@@ -39,8 +39,8 @@ def command(
     Parameters
     ----------
     engines
-        Names of engines, without a preset; by default all in the published tables. Of one alone
-        what its settings change is written out.
+        Names of engines, without a preset, of those in the published tables. Of one alone what
+        its settings change is written out.
     published
         Folder of the published tables; by default those that come with this project.
     dt

@@ -117,7 +117,7 @@ def command(
     out
         Folder for the results, with one inside for each release; made if there is none.
     engines
-        Names of engines, without a preset; by default all that are installed.
+        Names of engines, without a preset, of those that are installed.
     releases
         "installed", by default; "minor": the last one of each minor number; "all"; or some by name,
         as in mujoco==3.2.7.
