@@ -43,6 +43,8 @@ def command(
 
     Parameters
     ----------
+    engines
+        Names of engines, without a preset.
     cases
         Number of random cases at a setting, at most.
     share

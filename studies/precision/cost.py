@@ -80,6 +80,8 @@ def command(
 
     Parameters
     ----------
+    engines
+        Names of engines, without a preset.
     quick
         Shorter timing: a few seconds.
     starts
