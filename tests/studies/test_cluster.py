@@ -220,7 +220,7 @@ def test_a_case_that_kills_every_worker_is_a_row(tmp_path, monkeypatch):
 
 def test_a_cluster_knows_nothing_of_who_chooses_it():
     graph = grimp.build_graph("studies")
-    for module in ("cluster", "worker", "processes"):
+    for module in ("cluster", "executors", "pool"):
         assert not graph.chain_exists(
             importer=f"studies.kit.{module}", imported="studies.kit.options"
         )
