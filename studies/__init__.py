@@ -210,6 +210,16 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     >>> plot(response).get_xlabel()
     'time  t  [s]'
     """
-    from studies.drawing.response import draw_response
+    from matplotlib.figure import Figure
 
-    return draw_response(response, axes)
+    history = table(response)
+    axes = axes or Figure(figsize=(7.0, 2.8), layout="constrained").subplots()
+    (line,) = axes.plot(history["time_s"], history["theta_rad"])
+    axes.axhline(0.0, color="#999999", linewidth=0.6)
+    end = history["time_s"].iloc[-1]
+    impacts = [impact.time for impact in response.impacts if impact.time <= end]
+    axes.plot(impacts, [0.0] * len(impacts), "|", color=line.get_color(), markersize=9)
+    peak = f", {response.peak_ratio:.4g} θcr at most" if response.outcome.value == "rocked" else ""
+    axes.set(title=f"{response.outcome.value}{peak}, {len(response.impacts)} impacts",
+             xlabel="time  t  [s]", ylabel="rotation  θ  [rad]")  # fmt: skip
+    return axes

@@ -26,11 +26,6 @@ def draw_advice(lines: pd.DataFrame) -> Figure:
     """Draw the time of a case with each preset that keeps an error: engines as rows.
 
     A panel for each error; at a point the step, p dt, or the accuracy of an engine's own.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of advice.csv.
     """
     engines, targets = list(lines["engine"].unique()), list(lines["target"].unique())
     each = (4.8, 0.9 + 0.3 * len(engines))

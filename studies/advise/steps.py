@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from typing import Annotated
 
 import pandas as pd
 
-from engines import ENGINES, core_engines, installed_engines
+from engines import ENGINES, installed_engines
 from studies.advise import STEPS
 from studies.advise.choice import TARGETS
 from studies.advise.evidence import SETTING, counted, judged, options_at, settings
 from studies.cases.drawn import RandomCase, draw
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import BadInputError, Count, Out, Positive, check_engines, several
+from studies.drawing.kept import tell
+from studies.kit.arguments import BadInputError, Count, Out, Positive
 from studies.kit.jobs import Job
+from studies.kit.naming import CORE, Engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import table_in
@@ -33,7 +33,7 @@ LEAST = 50
 def command(
     *,
     out: Out,
-    engines: Annotated[tuple[str, ...], several] = core_engines(),
+    engines: Engines = CORE,
     cases: Count = 500,
     share: Positive = 20.0,
     seed: Count = 1,
@@ -53,7 +53,6 @@ def command(
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
     """
-    check_engines(engines)
     if absent := [name for name in engines if name not in installed_engines()]:
         raise BadInputError(f"--engines is {absent[0]!r}; it must be installed here")
     return carry_out(STEPS, plan(engines, cases, share, seed), out, running, report)
@@ -106,7 +105,7 @@ def report(folder: Path) -> str:
             known[known["random_calm_off"] > 0]
         ),
     }
-    return tell(folder, {}, first_claim(table), tables)
+    return tell(STEPS, folder, tables)
 
 
 def counts(table: pd.DataFrame, target: float) -> pd.DataFrame:
@@ -123,11 +122,6 @@ def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
     return shown.astype(int).reset_index()
 
 
-def headline(folder: Path) -> str:
-    """Say how many of the settings keep the largest of the errors on random cases."""
-    return first_claim(table_in(folder, "random"))
-
-
 def first_claim(table: pd.DataFrame) -> str:
     """Say of how many settings that keep an error on the published cases it is kept on these."""
     known = counts(table, max(TARGETS))
@@ -139,8 +133,3 @@ def first_claim(table: pd.DataFrame) -> str:
         f"cases, with every finer one, {calm} keep it on all random ones with "
         f"κ < {WELL_CONDITIONED:g}, and {every} on all ({each} random cases at a setting)."
     )
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw nothing: `rocking advise` draws what follows."""
-    return {}

@@ -14,67 +14,52 @@ from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
-from studies.advise.words import ASK, claim, kept_errors, reverse_text, settings_text, tables
-from studies.drawing.kept import WIDTH, Pictures, as_text, keep
+from studies.advise.words import ASK, first_claim, kept_errors, reverse_text, settings_text, tables
+from studies.drawing.kept import WIDTH, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (
     NotNegative,
     Place,
     Positive,
     as_bad_input,
-    check_engines,
     refuse_given,
     refuse_repeats,
     several,
-    several_or_none,
 )
+from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
-from studies.kit.posing import posed_block
-from studies.kit.tables import table_in
-from studies.measures.published import published_in
-from studies.measures.slippery import too_slippery
+from studies.kit.posing import Height, Width, posed_block
+from studies.measures.published import published_in, too_slippery
 from studies.measures.words import listed
 
 
 def command(
     *,
     error: Annotated[tuple[Positive, ...], several] = TARGETS,
-    engines: Annotated[
-        tuple[str, ...] | None, several_or_none, Parameter(name=("--engines", "--engine"))
-    ] = None,
+    engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
     dt: Positive | None = None,
     friction: NotNegative | None = None,
-    width: Positive = 0.5,
-    height: Positive = 1.5,
+    width: Width = 0.5,
+    height: Height = 1.5,
     published: Place | None = None,
     out: Place | None = None,
 ) -> int:
     """Name the cheapest setting of every engine with which all published cases keep an error.
-
-    A step counts if it and every finer published one keep the error on every case on which they
-    were published: 24 along all steps, and the paper's with each preset as it is declared; and on
-    the random cases that were run at these steps (`rocking steps`), where κ is small. How many
-    random cases are off at the step that is advised stands beside it, and who takes the steps:
-    a compiled loop, or Python.
 
     Parameters
     ----------
     error
         Largest relative errors [-] of the peak rotation that are to be kept.
     engines
-        Names of engines, without a preset; by default all in the published tables. Of one alone
-        the settings are written out.
+        Names of engines, without a preset, of those in the published tables. Of one alone the
+        settings are written out.
     dt
         Your step [s], instead of errors: which error each preset with equal steps keeps with it,
         and its settings as formulas of the step DT, with their values.
     friction
         Coefficient of friction with which settings are written out; by default the preset's, with
         which they were measured.
-    width
-        Full width B of the block [m] for which settings are written out.
-    height
-        Full height H of the block [m].
     published
         Folder of the published tables; by default those that come with this project.
     out
@@ -88,7 +73,6 @@ def command(
     block = posed_block(width, height)
     kept = published_in(published, TABLES)
     asked = published_engines(kept) if engines is None else engines
-    check_engines(asked)
     with as_bad_input():
         if dt is not None:
             print(_reverse(kept, asked, block, dt, friction))
@@ -100,10 +84,7 @@ def command(
         return 0
     settings = {"error": error, "engines": asked, "width": width, "height": height}
     plan = Plan(settings=settings, tabulate=lambda _: {"advice": lines})
-
-    return carry_out(
-        STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(folder, pictures(folder), text)
-    )
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(STUDY, folder, text))
 
 
 def _reverse(
@@ -119,7 +100,7 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: flo
     written = settings_text(lines, block, friction) or "No setting to write out."
     made = f"From {listed(read_from(published))}, made with {_versions(published)}."
     parts = [
-        as_text(claim(lines), tables(lines, block)),
+        as_text(first_claim(lines), tables(lines, block)),
         _beyond(block, published),
         written if len(engines) == 1 else f"{ASK} {engines[0]}",
         too_slippery(friction),
@@ -143,15 +124,3 @@ def _versions(published: Path) -> str:
     except (KeyError, TypeError):
         return "unknown versions"
     return listed([f"{name} {version}" for name, version in versions.items()])
-
-
-def headline(folder: Path) -> str:
-    """Say what keeps each error cheapest."""
-    return claim(table_in(folder, "advice"))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the price of each error from a folder's advice.csv alone."""
-    from studies.advise.figure import draw_advice
-
-    return {"advice": draw_advice(table_in(folder, "advice"))}

@@ -104,13 +104,16 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None
     return "\n\n".join(parts)
 
 
-def claim(lines: pd.DataFrame) -> str:
+def first_claim(lines: pd.DataFrame) -> str:
     """Say what each error costs at the least, with whom, and where nothing keeps it."""
     said = []
     for target, group in lines.groupby("target", sort=False):
         cheapest = group[group["message"] == ""].nsmallest(1, "wall_s")
-        words = [f"costs {_price(line)}" for _, line in cheapest.iterrows()] or ["cannot be had"]
-        said.append((per_cent(float(str(target))), words[0]))
+        words = "cannot be had"
+        for _, line in cheapest.iterrows():
+            cost = cost_text(line["wall_s"], line["runs"], " a case")
+            words = f"costs {cost} ({line['engine']} {line['preset']})"
+        said.append((per_cent(float(str(target))), words))
     return f"An error of {gathered(said)}."
 
 
@@ -118,11 +121,6 @@ def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
     """Return for each loop that takes steps, compiled or Python, the cheapest line of advice."""
     kept = lines[lines["message"] == ""].sort_values("wall_s").drop_duplicates("driver")
     return {str(line["driver"]): line for _, line in kept.sort_values("driver").iterrows()}
-
-
-def _price(line: pd.Series[Any]) -> str:
-    cost = cost_text(line["wall_s"], line["runs"], " a case")
-    return f"{cost} ({line['engine']} {line['preset']})"
 
 
 def setting_text(line: pd.Series[Any]) -> str:
@@ -161,17 +159,14 @@ def kept_errors(
     table, p_dt = pd.read_csv(published / LADDER), dt_s * block.p
     table["max_error"] = table["max_error"].where(table["failed"] == 0, math.inf)
     lines = []
-    for engine, preset in ((name, use.name) for name in engines for use in _equal(name)):
+    uses = [(name, use) for name in engines for use in uses_of(name)]
+    for engine, preset in [(n, use.name) for n, use in uses if use.stepping is Stepping.FIXED]:
         mine = table[table["method"] == f"{engine} {preset}"]
         at = mine.loc[mine["value"] >= p_dt * (1.0 - SAME), "value"].min()
         worst = mine[mine["value"] <= at].groupby("set")["max_error"].max()
         use = {"engine": engine, "preset": preset, "p_dt": p_dt, "coarser": at}
         lines.append({**use, **worst.reindex(SETS)})
     return pd.DataFrame(lines)
-
-
-def _equal(engine: str) -> list[Preset]:
-    return [use for use in uses_of(engine) if use.stepping is Stepping.FIXED]
 
 
 def reverse_text(

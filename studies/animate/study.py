@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,24 +15,25 @@ from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.paper import Case, free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Positive, check_sources, refuse_given
-from studies.kit.digests import check
+from studies.kit.arguments import BadInputError, Place, Positive, refuse_given
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_COMPUTING, NOT_YOURS, Computing, Yours
 from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
     Excitation,
+    Height,
     Posed,
     Standing,
+    Width,
     refuse_endless,
 )
-from studies.kit.refusing import one_line
+from studies.kit.provenance import check
 from studies.kit.runner import exit_code, run_jobs
-from studies.sources.groups import core_sources
+from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 OF_A_SLIDE = tuple(name for name in DEFAULT_SOURCES if name != "housner")
@@ -46,28 +47,22 @@ CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 def command(
     *,
     out: Place,
-    width: Positive | None = None,
-    height: Positive | None = None,
+    width: Width | None = None,
+    height: Height | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
     yours: Yours = NOT_YOURS,
     results: Place | None = None,
-    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    sources: Sources = DEFAULT_SOURCES,
     slower: Positive = 1.0,
     computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
     """Show a block, a frame or a slide in several sources side by side.
 
-    The bodies of a frame are drawn as its first column turns.
-
     Parameters
     ----------
     out
         The film: a .gif, or an .mp4 (which needs the extra [video]).
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m].
     results
         Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
         shown in which the sources differ most.
@@ -80,7 +75,6 @@ def command(
 
     if not standing.rocks and sources == DEFAULT_SOURCES:
         sources = OF_A_SLIDE
-    check_sources(sources)
     check_film(out)
     if len(sources) > 8:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most 8")
@@ -120,7 +114,7 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
     Raises
     ------
     BadInputError
-        If there is no sweep.csv, or it lacks one of the sources.
+        If there is no sweep.csv, it lacks one of the sources, or none of its cases has all.
     FolderError
         If it is not as the sweep left it.
     """
@@ -128,31 +122,17 @@ def most_different(results: Path, sources: Sequence[str]) -> Case:
     if not path.exists():
         raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
     check(results, [path.name], "--results")
-    try:
-        rows = pd.read_csv(path)
-        peaks = rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
-        missing = sorted(set(sources) - set(peaks.columns))
-        if missing:
-            raise ValueError(f"it lacks {', '.join(missing)}")
-        case = _furthest_apart(peaks[list(sources)])
-        _ = case.block, case.motion
-    except OSError:
-        raise
-    except Exception as error:
-        # a table that was edited may be anything
-        problem = "no case of its sweep.csv can be shown"
-        words = f"{problem} ({one_line(error)})"
-        raise BadInputError(f"--results is {str(results)!r}; {words}") from error
-    return case
-
-
-def _furthest_apart(peaks: pd.DataFrame) -> Case:
-    answered = peaks.dropna()
+    rows = pd.read_csv(path)
+    peaks = rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
+    if missing := sorted(set(sources) - set(peaks.columns)):
+        words = f"its sweep.csv lacks {', '.join(missing)}"
+        raise BadInputError(f"--results is {str(results)!r}; {words}")
+    answered = peaks[list(sources)].dropna()
+    if answered.empty:
+        raise BadInputError(f"--results is {str(results)!r}; in each of its cases a source failed")
     least, most = answered.min(axis=1), answered.max(axis=1)
     apart = np.isinf(most) & np.isfinite(least)
     ratios = (most / least).where(most > least, 1.0)
-    if ratios.empty:
-        raise ValueError("in each of them a source failed")
     place: Any = least[apart].idxmin() if apart.any() else ratios.idxmax()
     return Case(**dict(zip(CASE, place, strict=True)))
 

@@ -8,11 +8,11 @@ STUDY = Study(
 
 For each block, record, scale and source: the outcome, the largest rotation over the critical one, κ
 and the sensitivity, the friction that the exact solution needs, and the margin: the factor on the
-record at which the block first overturns. Writes blocks.csv, a picture that ranks the blocks, a
-page to hand on and findings.txt; resumable. Forty blocks under one record take seconds.""",
-    table="blocks.csv",
+record at which the block first overturns. The exact block neither slides nor lifts off its pivot:
+where its friction is less than it needs, its row says so. A picture ranks the blocks, a page is to
+hand on. Resumable; forty blocks under one record take seconds.""",
     tables=("blocks.csv",),
-    others=("blocks.html", "findings.txt"),
+    others=("findings.txt", "blocks.html"),
     captions={
         "blocks": (
             "Blocks ranked by the factor on a record that overturns them first; a line from the "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -10,6 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.blocks.report import first_words, ranked, read
+from studies.drawing.kept import Pictures
 from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS
 
 MOST_DRAWN = 60
@@ -89,3 +92,10 @@ def _handle(record: str, place: int) -> Line2D:
 
 def _short(name: str) -> str:
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the ranking of a folder's blocks from its blocks.csv alone."""
+    rows = read(folder)
+    lines = ranked(rows)
+    return {"blocks": draw_blocks(rows, lines, first_words(lines))}

@@ -12,8 +12,8 @@ from typing import Any
 import pandas as pd
 from jinja2 import Environment, PackageLoader
 
-from studies.blocks import strength
-from studies.drawing.kept import Pictures, tell
+from studies.blocks import STUDY, strength
+from studies.drawing.kept import tell
 from studies.kit import provenance
 from studies.measures.words import capital, listed, out_of
 from studies.sources.registry import resolve
@@ -43,7 +43,7 @@ def report(folder: Path) -> str:
     counts, doubt = counted(rows), doubts(rows)
     finding = f"{headline(folder)} {capital('; '.join(counts))}. {capital(listed(doubt))}."
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
-    text = tell(folder, pictures(folder), finding, {title: table})
+    text = tell(STUDY, folder, {title: table}, finding)
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
     environment.filters["shown"] = shown
     page = environment.get_template("page.html.jinja").render(
@@ -134,15 +134,6 @@ def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mappin
     said = " ".join(f"--{name} {value}" for name, value in known.items())
     record = shlex.quote(str(line["record"]))
     return f"rocking compare {said} --record {record} --sources {' '.join(sources)}"
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the ranking of a folder's blocks from its blocks.csv alone."""
-    from studies.blocks.figure import draw_blocks
-
-    rows = read(folder)
-    lines = ranked(rows)
-    return {"blocks": draw_blocks(rows, lines, first_words(lines))}
 
 
 def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:

@@ -16,28 +16,29 @@ from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.blocks import STUDY
 from studies.blocks.cabinets import Cabinet, read_cabinets
-from studies.blocks.report import headline, pictures, report
+from studies.blocks.report import headline, report
 from studies.blocks.strength import strength
 from studies.cases.accelerograms import Baseline, Units, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
 from studies.kit.arguments import (
+    Out,
     Place,
     Positive,
-    check_sources,
+    Yes,
     one_of,
     refuse_repeats,
     several,
 )
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running, slides
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.posing import refuse_endless
 from studies.measures.differences import conditioning_of_one
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "report"]
 
 ANSWERS, MARGINS = "answers", "margins"
 """What a row of the journal is: a source's answer, or how strong a record overturns a block."""
@@ -52,18 +53,15 @@ def command(
     /,
     *,
     record: Annotated[tuple[Place, ...], several],
-    out: Place,
+    out: Out,
     scale: Annotated[tuple[Positive, ...], several] = (1.0,),
     units: Annotated[Units, one_of(Units)] | None = None,
     baseline: Annotated[Baseline, one_of(Baseline)] | None = None,
-    sources: Annotated[tuple[str, ...], several_sources] = ("exact",),
+    sources: Sources = ("exact",),
     running: Running = DEFAULT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Put a list of blocks to recorded ground motions.
-
-    The exact block neither slides nor lifts off its pivot: where its friction is less than it
-    needs, its row says so.
 
     Parameters
     ----------
@@ -72,8 +70,6 @@ def command(
         friction, for engines, and its tilt, the rotation that it starts from in units of α.
     record
         Recorded accelerograms, files as `rocking compare --record` takes them.
-    out
-        Folder for the results; made if there is none.
     scale
         Factors on the records' acceleration.
     units
@@ -81,12 +77,7 @@ def command(
     baseline
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).
-    sources
-        Who is asked.
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     refuse_repeats("--scale", scale)
     refuse_repeats("--record", [Path(path.name) for path in record])
     grounds = {
@@ -190,7 +181,8 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
     A factor that was asked for and overturns counts for the margin, too: it may lie in a sliver
     that the search did not see.
     """
-    facts = {_case(row): row for row in rows if _is_exact(row)}
+    of_exact = (ANSWERS, "exact")
+    facts = {_case(row): row for row in rows if (row["table"], row["source"]) == of_exact}
     margins = {_case(row)[:2]: row for row in rows if row["table"] == MARGINS}
     falls: dict[tuple[Any, ...], float] = {}
     for (name, record, scale), row in facts.items():
@@ -212,10 +204,6 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
             }
         )
     return pd.DataFrame(table)
-
-
-def _is_exact(row: Row) -> bool:
-    return bool(row["table"] == ANSWERS and row["source"] == "exact")
 
 
 def _case(row: Row) -> tuple[Any, ...]:

@@ -1,1 +1,1 @@
-"""What is asked: the paper's cases, extreme ones, windows of maps, motions, accelerograms."""
+"""What is asked: the paper's cases, extreme ones, windows of maps, accelerograms."""

@@ -11,17 +11,185 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from analytic.cart import CartBlock
+from analytic.cart_forces import cart_demands
+from analytic.frame import RockingFrame
+from analytic.frame_forces import frame_demands
 from analytic.motion import Motion, SinePulse, Still
+from analytic.response import Outcome, Response
 from analytic.simulate import strongest
-from engines.layouts import System
+from analytic.slide import SlidingBlock
+from engines.layouts import BEAM_DEPTH, SPACING, System
+from engines.run.drive import LAG
 from studies.cases.paper import PULSES
-from studies.compare.columns import columns_of, duration, first_line, meanings, valid
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
 from studies.measures.carts import place_error
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
+from studies.measures.words import duration
+
+Columns = dict[str, list[Any]]
+
+OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
+"""Observable of a frame -> its column."""
+
+OF_A_CART = {"momentum_error": "momentum", "cart_m": "cart [m]"}
+"""The same of a cart."""
+
+SEEN_M = 1e-6
+"""Of a floor's lag, what is shown [m]."""
+
+UNKNOWN = "unknown: there is no exact solution to tell"
+
+
+def first_line(system: System, degrees: bool) -> str:
+    """Return the sizes of what stands on the base."""
+    sizes = f"B = {system.width:g} m, H = {system.height:g} m"
+    if isinstance(system, SlidingBlock):
+        return f"slide   {sizes}, friction {system.friction:g}"
+    alpha = f"{math.degrees(system.alpha):.5g}°" if degrees else f"{system.alpha:.5g} rad"
+    numbers = f"α = θcr = {alpha}, p = {system.p:.5g} rad/s"
+    if isinstance(system, RockingFrame):
+        return f"frame   {system.columns} columns of {sizes}, load {system.load:g}: {numbers}"
+    if isinstance(system, CartBlock):
+        cart = f"m/(m+M) = {system.mass_ratio:g}, k/(m+M) = {system.stiffness:g} /s²"
+        return f"cart    {cart}, block {sizes}: {numbers}"
+    return f"block   {sizes}: {numbers}"
+
+
+def columns_of(
+    system: System, rows: list[Row], scale: float, degrees: bool, estimates: Mapping[str, list[str]]
+) -> Columns:
+    """Return the columns of a scene; rotations are in θcr times `scale`."""
+    answers = [row["response"] for row in rows]
+    errors = [row["error"] for row in rows]
+    if isinstance(system, SlidingBlock):
+        return {
+            "slips [m]": [_slips(answer) for answer in answers],
+            "vs exact": list(map(scientific, errors)),
+            "stops [s]": [
+                number(answer.slip_times[-1][1] if answer.slip_times else math.nan, ".6f")
+                for answer in answers
+            ],
+            "lift [m]": _observed(answers, "lift_m"),
+        }
+    seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
+    seen = OF_A_CART if isinstance(system, CartBlock) else seen
+    places = [place_error(answer, rows[0]["exact"]) for answer in answers]
+    perhaps = {
+        "off [m]": list(map(scientific, places)),
+        "slip/B": [scientific(answer.slip_m / system.width) for answer in answers],
+        "lag [m]": _observed(answers, LAG, SEEN_M),
+    }
+    return {
+        "θmax [°]" if degrees else "θmax/θcr": [
+            number(scale * row["peak_ratio"], ".6f") for row in rows
+        ],
+        "vs exact": [("+" if value >= 0.0 else "") + scientific(value) for value in errors],
+        "κ": [number(row["kappa"], ".2g") for row in rows],
+        "sens": [number(row["sensitivity"], ".2g") for row in rows],
+        **estimates,
+        "impacts": [row["impacts"] for row in rows],
+        "late·p": [scientific(row["impact_error"]) for row in rows],
+        "ratio": [number(row["velocity_ratio"], ".6f") for row in rows],
+        **{name: cells for name, cells in perhaps.items() if set(cells) != {"-"}},
+        **{column: _observed(answers, name) for name, column in seen.items()},
+    }
+
+
+def meanings(system: System, posed: Posed, exact: Response, window: float) -> list[str]:
+    """Return what the columns mean, and what the exact solution needs, a line each."""
+    if isinstance(system, SlidingBlock):
+        return ["vs      largest difference of a slip, over the largest slip"]
+    if isinstance(system, CartBlock):
+        whose, valid_if = "the exact", cart_validity(system, posed, window)
+    elif isinstance(system, RockingFrame):
+        whose, valid_if = "the exact", frame_validity(system, posed, exact)
+    else:
+        whose, valid_if = "Housner's", validity(exact)
+    parting = "parting largest difference of two columns' rotations; beam: its largest rotation"
+    moved = (
+        "off     largest error of the cart's place; momentum: of block and cart, over both's sizes"
+    )
+    return [
+        "κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",
+        "late    largest error of the first five impact times, times p",
+        f"ratio   velocity after over before an impact, the median; {whose} "
+        f"η = {system.restitution:.6g}",
+        *[parting] * isinstance(system, RockingFrame),
+        *[moved] * isinstance(system, CartBlock),
+        f"valid   {valid_if}",
+    ]
+
+
+def cart_validity(cart: CartBlock, posed: Posed, window: float) -> str:
+    """Say what the exact solution of a cart needs of the block's contact, or what fails in it."""
+    needs = cart_demands(cart, posed.motion, posed.start, duration=window)
+    if math.isnan(needs.friction):
+        return UNKNOWN
+    if needs.normal <= 0.0:
+        return "not here: the pivot would lift off, and an engine is right to differ"
+    least = f"the normal force stays above {needs.normal:.3g} of the weight"
+    return f"with friction of {needs.friction:.3g} or more, up to a lean of 2 α; {least}"
+
+
+def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
+    """Say what the exact solution of a frame needs of its contacts, or what fails in it."""
+    if exact.outcome is Outcome.FAILED:
+        return UNKNOWN
+    spacing, depth = SPACING * frame.height, BEAM_DEPTH * frame.height
+    needs = frame_demands(frame, posed.motion, posed.start, spacing=spacing, depth=depth)
+    if needs.spacing >= spacing:
+        return f"not here: the beam would tip: L = {spacing:g} m, needs {needs.spacing:.3g}"
+    if needs.pressing <= 0.0:
+        return "not here: a contact would open, and an engine is right to differ"
+    return (
+        f"with friction of {needs.base:.3g} at the feet and {needs.top:.3g} under the beam, or "
+        f"more; every contact presses with {needs.pressing:.3g} of its weight at least"
+    )
+
+
+def slip_error(response: Response, exact: Response) -> float:
+    """Return the largest difference of a slip over the largest; nan where their numbers differ."""
+    if not exact.slips or len(response.slips) != len(exact.slips):
+        return math.nan
+    pairs = zip(response.slips, exact.slips, strict=True)
+    return max(abs(one - other) for one, other in pairs) / max(map(abs, exact.slips))
+
+
+def _slips(response: Response) -> str:
+    shown = [f"{slip:+.6f}" for slip in response.slips[:4]]
+    more = len(response.slips) - len(shown)
+    return " ".join(shown) + (f" … {more} more" if more else "") or "-"
+
+
+def _observed(answers: list[Response], name: str, least: float = -math.inf) -> list[str]:
+    """Return what engines observed, a dash where one did not, or no more than `least`."""
+    values = [answer.observables.get(name, math.nan) for answer in answers]
+    return [scientific(value if value > least else math.nan) for value in values]
+
+
+def number(value: float, form: str) -> str:
+    """Return a number in a format, a dash where it is not finite."""
+    return format(value, form) if math.isfinite(value) else "-"
+
+
+def valid(exact: Response) -> bool | None:
+    """Say whether the pivot stays on the base in the exact solution; None if there is none."""
+    return None if math.isnan(exact.min_normal) else exact.min_normal >= 0.0
+
+
+def validity(exact: Response) -> str:
+    """Say what the exact solution needs to be one: no slip, no lift-off of the pivot."""
+    if math.isnan(exact.min_normal):
+        return UNKNOWN
+    if not valid(exact):
+        return "not here: the pivot would lift off, and an engine is right to differ"
+    least = f"the normal force stays above {exact.min_normal:.3g} of the weight"
+    return f"with friction of {exact.friction_needed:.3g} or more; {least}"
+
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 from statistics import median
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,21 +20,19 @@ from analytic.slide import SlidingBlock
 from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
-from studies.compare.columns import slip_error
-from studies.compare.rendering import draw, json_lines, records, table_text
+from studies.compare.rendering import draw, json_lines, records, slip_error, table_text
 from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
     BadInputError,
     Place,
     Positive,
     check_plot,
-    check_sources,
     refuse_given,
 )
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import (
     DEFAULT_COMPUTING,
     NOT_YOURS,
@@ -50,17 +48,18 @@ from studies.kit.posing import (
     ONE_BLOCK,
     WHERE_IT_ROCKS,
     Excitation,
+    Height,
     Posed,
     Standing,
+    Width,
     both_sizes,
+    note_unusual,
     refuse_endless,
 )
 from studies.kit.runner import exit_code, run_jobs
-from studies.kit.unusual import note_unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
-from studies.sources.groups import core_sources
-from studies.sources.registry import DEFAULT_EFFORT, Effort
+from studies.sources.registry import DEFAULT_EFFORT, Effort, core_sources
 
 EDGE = 0.01
 """An answer hangs on its amplitude where so much of it makes the difference of a fall."""
@@ -81,11 +80,11 @@ NOT_ROLLING = "only where no cylinder rolls"
 
 def command(
     *,
-    width: Positive | None = None,
-    height: Positive | None = None,
+    width: Width | None = None,
+    height: Height | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
-    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    sources: Sources = DEFAULT_SOURCES,
     duration: Positive | None = None,
     effort: EffortOptions = OWN_EFFORT,
     yours: Yours = NOT_YOURS,
@@ -98,12 +97,6 @@ def command(
 
     Parameters
     ----------
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m], or that of the cylinder.
-    sources
-        Who is asked.
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
         8/p of free rocking. A cylinder by default five turns, and fifty.
@@ -116,10 +109,10 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
+    if standing.scene in ("slide", "cart", "cylinder") and sources == DEFAULT_SOURCES:
+        sources = OF_A_SLIDE
     if standing.scene == "cylinder":
         refuse_given({"width": width, "plot": plot, "estimate": estimate or None}, NOT_ROLLING)
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
-        check_sources(sources)
         refuse_two_steps(effort.step, yours)
         return compare_rolling(
             standing.cylinder(height, excitation),
@@ -132,12 +125,9 @@ def command(
         )
     width, height = both_sizes(width, height)
     if not standing.rocks:
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_given({"plot": plot}, WHERE_IT_ROCKS)
     if standing.scene == "cart":
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
         refuse_given({"estimate": estimate or None}, "only on a base that moves as it is told")
-    check_sources(sources)
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
     posed = standing.pose(block, excitation)

@@ -23,13 +23,7 @@ LEVELS = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
 
 
 def draw_contact(lines: pd.DataFrame) -> Figure:
-    """Draw the error of the peak of the variants that matter most, and count the others.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of variants.csv.
-    """
+    """Draw the error of the peak of the variants that matter most, and count the others."""
     engines = list(lines["engine"].unique())
     shown = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
     most = max(len(ordered) for ordered, _ in shown)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -9,8 +11,9 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from studies.defaults.claims import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT
+from studies.defaults.study import CLOSE, FALSE, INVALID, MISSED, OFF, RIGHT, read
 from studies.drawing.facets import key, panels
+from studies.drawing.kept import Pictures
 from studies.drawing.styles import engine_title
 from studies.measures.words import part
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
@@ -89,3 +92,10 @@ def _map(axes: Axes, rows: pd.DataFrame) -> None:
     right_part = rows.loc[rows["verdict"] != INVALID, "verdict"].isin(RIGHT).mean()
     name = engine_title(str(rows["source"].iloc[0]))
     axes.set_title(f"{name}: {right_part:.0%} right".replace("%", " %"), fontsize=10)
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the maps of the smallest and of the largest block from a folder's defaults.csv."""
+    rows = read(folder)
+    widths = {"small": rows["width_m"].min(), "large": rows["width_m"].max()}
+    return {name: draw_maps(rows[rows["width_m"] == width]) for name, width in widths.items()}

@@ -8,6 +8,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, TypeAlias
 
 from studies.kit.provenance import write_text
+from studies.kit.study import Study
 from studies.kit.tables import in_columns
 
 if TYPE_CHECKING:
@@ -17,37 +18,36 @@ if TYPE_CHECKING:
 Pictures: TypeAlias = "dict[str, Figure]"
 """Figures by the names of their files, without .png."""
 
-FINDINGS = "findings.txt"
 WIDTH = 99
 """Letters of a line of text."""
 
 
 def tell(
+    study: Study,
     folder: Path,
-    drawn: Pictures,
-    finding: str,
     tables: Mapping[str, pd.DataFrame],
-    name: str = FINDINGS,
+    finding: str = "",
+    name: str = "",
 ) -> str:
     """Write a study's figures and its text into its folder: what it found, and short tables.
 
     Parameters
     ----------
+    study : Study
     folder : Path
-    drawn : dict
-    finding : str
-        A sentence or a paragraph.
     tables : mapping
         Title -> table; those without rows are left out.
+    finding : str, optional
+        A sentence or a paragraph, by default the study's headline.
     name : str, optional
-        Of the text's file.
+        Of the text's file, by default the first that the study writes besides.
 
     Returns
     -------
     str
         The text.
     """
-    return keep(folder, drawn, as_text(finding, tables), name)
+    return keep(study, folder, as_text(finding or study.headline(folder), tables), name)
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
@@ -56,10 +56,11 @@ def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
     return "\n\n".join([fill(finding, WIDTH), *shown])
 
 
-def keep(folder: Path, drawn: Pictures, text: str, name: str = FINDINGS) -> str:
+def keep(study: Study, folder: Path, text: str, name: str = "") -> str:
     """Write a study's figures and its text into its folder; return the text."""
-    from studies.drawing.figures import save_all
+    if drawn := study.pictures(folder):
+        from studies.drawing.figures import save_all
 
-    save_all(drawn, folder)
-    write_text(folder / name, text + "\n")
+        save_all(drawn, folder)
+    write_text(folder / (name or study.others[0]), text + "\n")
     return text

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
+from scipy.optimize import isotonic_regression
 from textalloc import allocate
 
 from analytic.motion import FloatArray
@@ -36,19 +37,12 @@ class Name:
 def spread(levels: Sequence[float], gap: float) -> FloatArray:
     """Return levels moved by as little as puts each at least `gap` from the next; order is kept.
 
-    The least squares of the moves, by pooling neighbours that are too near.
+    The least squares of the moves.
     """
     order = np.argsort(levels, kind="stable")
-    pools: list[tuple[float, int]] = []  # mean of level less its share of gaps, and how many
     gaps = gap * np.arange(len(order))
-    for level in np.asarray(levels, np.float64)[order] - gaps:
-        mean, count = float(level), 1
-        while pools and pools[-1][0] >= mean:
-            before, size = pools.pop()
-            mean, count = (before * size + mean * count) / (size + count), size + count
-        pools.append((mean, count))
     moved = np.empty(len(order))
-    moved[order] = np.concatenate([np.full(count, mean) for mean, count in pools]) + gaps
+    moved[order] = isotonic_regression(np.asarray(levels, np.float64)[order] - gaps).x + gaps
     return moved
 
 

@@ -7,20 +7,15 @@ STUDY = Study(
     help="""Many motions, blocks and intensities: single responses and their statistics.
 
 Distributions of the peak, fragility curves with their bounds, and the agreement of each source with
-the exact solution case by case and in distribution. Writes ensemble.csv, stripes.csv, curves.csv,
-agreement.csv, confusion.csv, two pictures and findings.txt; resumable. The full study takes some
-five minutes on one core, --quick a quarter of one.""",
-    table="ensemble.csv",
+the exact solution case by case and in distribution. Resumable.""",
     tables=("ensemble.csv", "stripes.csv", "curves.csv", "agreement.csv", "confusion.csv"),
-    chapters=(
-        Chapter(
-            folder="ensemble",
-            question="Are statistics predicted where single responses are not?",
-            tables=("agreement.csv", "confusion.csv"),
-            minutes=(0.1, 2.7),
-            weaker="Fewer motions and intensities, and one block.",
-        ),
+    chapter=Chapter(
+        question="Are statistics predicted where single responses are not?",
+        tables=("agreement.csv", "confusion.csv"),
+        minutes=(0.1, 2.7),
+        weaker="Fewer motions and intensities, and one block.",
     ),
+    claims=("agreement",),
     captions={
         "ensemble": (
             "Share of motions that overturn a block over their intensity, by each source, and "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines.declaration import UNTUNED
+from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import line_of, name_of, style_of
-from studies.ensemble.fragility import BLOCK
+from studies.ensemble.agreement import BLOCK
+from studies.ensemble.study import read_rows
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.words import part
 
@@ -172,3 +175,12 @@ def _capacities(axes: Axes, lines: pd.DataFrame) -> None:
     axes.set(ylim=(len(lines) - 0.4, -0.6), xlabel="capacity / exact  [–]")
     axes.set_yticks(range(len(lines)), [*map(_called, lines["source"])], fontsize=8)
     axes.grid(axis="x", alpha=0.25)
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw a folder's figures from its tables alone; single responses where it holds them."""
+    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
+    drawn = {"ensemble": draw_fragility(*tables)}
+    if (folder / "ensemble.csv").is_file():
+        drawn["singles"] = draw_singles(read_rows(folder))
+    return drawn

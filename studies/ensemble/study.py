@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,17 +13,27 @@ import pandas as pd
 
 from analytic.block import RigidBlock
 from analytic.record import Record
+from analytic.synthetic import kanai_tajimi, near_fault, ricker
 from studies.cases.accelerograms import Baseline, Units, recorded
-from studies.cases.motions import FAMILIES
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.ensemble import STUDY
-from studies.ensemble.agreement import BOUNDS, CLOSE, DIGITS, LEVEL, confusion, settled
-from studies.ensemble.fragility import BLOCK, Fragilities, bounds, share_bounds
+from studies.ensemble.agreement import (
+    BLOCK,
+    BOUNDS,
+    CLOSE,
+    DIGITS,
+    LEVEL,
+    Fragilities,
+    bounds,
+    confusion,
+    settled,
+    share_bounds,
+)
 from studies.kit.arguments import (
     Count,
     Out,
     Place,
-    check_sources,
+    Yes,
     one_of,
     refuse_given,
     refuse_repeats,
@@ -34,7 +45,35 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
 from studies.measures.words import listed
-from studies.sources.groups import core_sources
+from studies.sources.registry import core_sources
+
+
+def noise(seed: int) -> Record:
+    """Return 12 s of noise on firm soil, strong for 3 s."""
+    return kanai_tajimi(seed, peak=1.0, duration=12.0, omega=12.0, rise=2.0, fall=5.0)
+
+
+def pulses(seed: int) -> Record:
+    """Return a near-fault pulse of 0.5 to 2 Hz, of 1.2 to 3 cycles and any phase."""
+    draw = np.random.default_rng(seed)
+    frequency = math.exp(draw.uniform(math.log(0.5), math.log(2.0)))
+    gamma, phase = draw.uniform(1.2, 3.0), draw.uniform(0.0, 2.0 * math.pi)
+    return near_fault(1.0, frequency, gamma, phase).scaled_to(1.0)
+
+
+def wavelets(seed: int) -> Record:
+    """Return a Ricker wavelet of 0.5 to 4 Hz."""
+    draw = np.random.default_rng(seed)
+    return ricker(1.0, math.exp(draw.uniform(math.log(0.5), math.log(4.0))))
+
+
+FAMILIES: Mapping[str, Callable[[int], Record]] = {
+    "noise": noise,
+    "near-fault": pulses,
+    "ricker": wavelets,
+}
+"""Name -> the motion of a seed, its largest absolute acceleration being 1 m/s2."""
+
 
 Family = Literal["noise", "near-fault", "ricker"]
 
@@ -101,7 +140,7 @@ def command(
     sources: Annotated[tuple[str, ...], BESIDE] = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Shake blocks by many motions of rising intensity, through every named source.
 
@@ -126,10 +165,7 @@ def command(
         Who is asked beside the exact solution.
     quick
         One block and three intensities.
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     sizes, intensities = (QUICK_SIZES_M, QUICK_INTENSITIES) if quick else (SIZES_M, INTENSITIES)
     if records is not None:
         refuse_given({"family": family, "motions": motions, "seed": seed}, "only without --records")
@@ -206,29 +242,12 @@ def report(folder: Path) -> str:
         f"{motions} motions of {rows['family'].iloc[0]!r} at {len(levels)} intensities "
         f"(PGA over g tan α: {', '.join(f'{level:g}' for level in levels)})."
     )
-    return tell(folder, pictures(folder), f"{headline(folder)} {head}", shown)
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw a folder's figures from its tables alone; single responses where it holds them."""
-    from studies.ensemble.figure import draw_fragility, draw_singles
-
-    tables = (pd.read_csv(folder / f"{name}.csv") for name in ("stripes", "curves", "agreement"))
-    drawn = {"ensemble": draw_fragility(*tables)}
-    if (folder / "ensemble.csv").is_file():
-        drawn["singles"] = draw_singles(read_rows(folder))
-    return drawn
-
-
-def headline(folder: Path) -> str:
-    """Say whose statistics tests tell from the exact ones, and whose they do not."""
-    agreed = pd.read_csv(folder / "agreement.csv")
-    return first_claim(agreed[agreed["source"] != "exact"])
+    return tell(STUDY, folder, shown, f"{first_claim(agreed)} {head}")
 
 
 def first_claim(agreed: pd.DataFrame) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
-    tests = told(agreed).set_index("source")
+    tests = told(agreed[agreed["source"] != "exact"]).set_index("source")
     any_does = tests[["capacity_off", "mcnemar_rejected", "ks_rejected"]].any(axis=1)
     found, untold = (listed(list(tests.index[some])) for some in (any_does, ~any_does))
     if not any_does.any():

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.styles import engine_title, style_of
+from studies.estimate.study import CALIBRATE
 from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import part
 
@@ -24,11 +25,9 @@ LINE = 0.062
 def draw_estimates(lines: pd.DataFrame) -> Figure:
     """Draw the part of each source's errors within a multiple of its estimates, by preset.
 
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of estimates.csv.
+    Of the cases that calibrate.
     """
+    lines = lines[lines["set"] == CALIBRATE]
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
     drawing = Figure(figsize=(3.2 * len(names) + 0.6, 4.2), layout="constrained")

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import asdict, replace
+from itertools import islice
 from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.drawn import Drawn
-from studies.drawing.kept import Pictures, tell
+from analytic import simulate
+from analytic.response import Outcome
+from studies.cases.drawn import Drawn, RandomCase, draw
+from studies.drawing.kept import tell
 from studies.estimate import STUDY
-from studies.estimate.calibration import CALIBRATE, beside_errors, both_sets, factors
-from studies.kit.arguments import BadInputError, Count, Place, check_sources, one_of
+from studies.kit.arguments import BadInputError, Count, Out, Yes, one_of
 from studies.kit.jobs import Job
-from studies.kit.naming import sources_option
+from studies.kit.naming import Sources
 from studies.kit.options import (
     DEFAULT_RUNNING,
     NOT_YOURS,
@@ -26,31 +30,32 @@ from studies.kit.options import (
 )
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
-from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, halved
+from studies.measures.differences import with_reference, with_reference_of_frames
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, estimates_of, halved
 from studies.measures.words import alike, listed, out_of, part
-from studies.sources.groups import core_sources
-from studies.sources.registry import Effort
+from studies.measures.wrongness import FALL, REST, wrong_in
+from studies.sources.registry import Effort, core_sources
+
+DEFAULT_SOURCES = core_sources("", "fixed", "naive")
 
 
 def command(
     *,
-    out: Place,
+    out: Out,
     cases: Count = 300,
     tests: Count = 100,
     seed: Count = 1,
     scene: Annotated[Drawn, one_of(Drawn)] = "block",
-    sources: Annotated[tuple[str, ...], sources_option()] = core_sources("", "fixed", "naive"),
+    sources: Sources = DEFAULT_SOURCES,
     effort: EffortOptions = OWN_EFFORT,
     yours: Yours = NOT_YOURS,
     running: Running = DEFAULT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Hold the difference of every run from that at half its step against the true error.
 
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     cases
         Number of random cases that calibrate: from them come the factors.
     tests
@@ -62,10 +67,7 @@ def command(
         block: one block that rocks. frame: a beam on 2 to 5 columns.
     sources
         Engines, as they are declared; those that choose their own steps have none to halve.
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     # at a step and at half of it, which takes twice as long
     everyone = ("exact", *3 * sources)
     asked = f"--cases is {cases}, --tests {tests}"
@@ -126,20 +128,7 @@ def report(folder: Path) -> str:
     for name, kept in (("estimates", lines), ("factors", table)):
         write_table(folder / f"{name}.csv", kept)
     title = "Estimates, errors, and the factors between them"
-    return tell(folder, pictures(folder), first_claim(table), {title: table})
-
-
-def headline(folder: Path) -> str:
-    """Say whose estimates bound the error, and whose give no bound."""
-    return first_claim(pd.read_csv(folder / "factors.csv"))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the errors of the cases that calibrate, from a folder's estimates.csv alone."""
-    from studies.estimate.figure import draw_estimates
-
-    lines = pd.read_csv(folder / "estimates.csv")
-    return {"estimate": draw_estimates(lines[lines["set"] == CALIBRATE])}
+    return tell(STUDY, folder, {title: table})
 
 
 def first_claim(table: pd.DataFrame) -> str:
@@ -157,3 +146,132 @@ def first_claim(table: pd.DataFrame) -> str:
     if not blind.empty:
         said += [f"{' it' if said else ''} gives {NO_BOUND} with {listed(list(blind['source']))}"]
     return f"{claim}{';'.join(said)}."
+
+
+CALIBRATE, TEST = "calibrate", "test"
+"""What a case is for: to find the factors, or to hold them against errors that they never saw."""
+
+RESOLVED = 1e-9
+"""Errors below are as good as none: no estimate has to bound them."""
+
+CONFIDENCE = 0.95
+"""Of the interval of a factor."""
+
+
+def survivors(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
+    """Yield without end the random cases in which the exact solution rocks and survives."""
+    kept = (
+        drawn
+        for drawn in draw(seed, scene)
+        if simulate(drawn.block, drawn.motion).outcome is Outcome.ROCKED
+    )
+    for number, drawn in enumerate(kept):
+        yield replace(drawn, case=number)
+
+
+def both_sets(
+    cases: int, tests: int, seed: int, scene: Drawn = "block"
+) -> Iterator[tuple[str, RandomCase]]:
+    """Yield so many cases that test and so many that calibrate, each with what it is for.
+
+    Those that test are drawn with the seed, those that calibrate with the next one.
+    """
+    for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
+        for case in islice(survivors(first, scene), count):
+            yield use, case
+
+
+def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each case and source: its estimate beside its error.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The columns of estimate.csv, half being 1 for the runs at half the step.
+
+    Returns
+    -------
+    DataFrame
+        The rows at the whole step with the columns of `with_reference`, estimate, and over: the
+        error over the estimate, 0 where there is no error to speak of; nan unless both rocked.
+    """
+    held = with_reference_of_frames if "load" in rows else with_reference
+    whole = held(rows[rows["half"] == 0]).reset_index(drop=True)
+    whole["estimate"] = math.nan
+    for _, mine in whole.groupby("set"):
+        finer = rows[(rows["half"] == 1) & (rows["set"] == mine["set"].iloc[0])]
+        whole.loc[mine.index, "estimate"] = estimates_of(mine, finer)
+    errors = whole["error"].abs()
+    over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
+    return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))
+
+
+def factors(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: by how much its estimates are to be multiplied.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        From `beside_errors`.
+
+    Returns
+    -------
+    DataFrame
+        The columns of factors.csv; those from cases to told are of the cases that calibrate.
+    """
+    table = []
+    for source, rows in lines.groupby("source", sort=False):
+        found = _found(rows[rows["set"] == CALIBRATE])
+        other = rows.loc[rows["set"] == TEST, "over"].dropna()
+        bounded = int((other <= found["factor_95_high"]).sum())
+        table.append({"source": source, **found, "tested": len(other), "bounded": bounded})
+    return pd.DataFrame(table)
+
+
+def _found(rows: pd.DataFrame) -> dict[str, float]:
+    """Return what one source's cases that calibrate tell."""
+    over = rows["over"].dropna()
+    kept = rows.loc[over.index]
+    wrong = rows[wrong_in(rows).isin((FALL, REST))]
+    low, high = interval(over, BOUNDED)
+    return {
+        "cases": len(rows),
+        "survivors": len(kept),
+        "median_estimate": kept["estimate"].median(),
+        "median_error": kept["error"].abs().median(),
+        "factor_50": _quantile(over, 0.5),
+        "factor_95": _quantile(over, BOUNDED),
+        "factor_95_low": low,
+        "factor_95_high": high,
+        "factor_all": _quantile(over, 1.0),
+        "within_3": (over <= 3.0).mean(),
+        "within_10": (over <= 10.0).mean(),
+        "wrong": len(wrong),
+        "told": int((wrong["estimate"] == math.inf).sum()),
+    }
+
+
+def interval(values: pd.Series[float], level: float) -> tuple[float, float]:
+    """Return the ends of the interval that holds a quantile with `CONFIDENCE`, whatever is drawn.
+
+    How many of n values are below the quantile is binomial, so that its ends are values themselves
+    (Conover, "Practical Nonparametric Statistics", 1999, section 3.2); the upper is inf where the
+    values are too few for one.
+    """
+    from scipy.stats import binom
+
+    ordered = values.sort_values(ignore_index=True)
+    if ordered.empty:
+        return 0.0, math.inf
+    below = binom(len(ordered), level)
+    first = max(int(below.ppf(0.5 * (1.0 - CONFIDENCE))) - 1, 0)
+    last = int(below.ppf(0.5 * (1.0 + CONFIDENCE)))
+    return float(ordered[first]), float(ordered[last]) if last < len(ordered) else math.inf
+
+
+def _quantile(values: pd.Series[float], level: float) -> float:
+    """Return the smallest value that so much of all are not above; nan without any."""
+    ordered = values.sort_values(ignore_index=True)
+    if ordered.empty:
+        return math.nan
+    return float(ordered[max(math.ceil(level * len(ordered)) - 1, 0)])

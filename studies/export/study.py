@@ -1,14 +1,22 @@
 """A scene written out for an engine alone: files, and the peak to expect of them."""
 
+import inspect
+import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from analytic import RigidBlock, RockingFrame, SlidingBlock
+from analytic.motion import Motion
 from analytic.response import Response
-from analytic.slide import SlidingBlock
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
+from engines.parts.script import Script
+from engines.run import ground
+from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
-from studies.export.writing import CALLED, Exported, files
 from studies.kit.arguments import BadInputError, Place, Positive, Step
 from studies.kit.drafts import write_all
 from studies.kit.executors import Local
@@ -19,18 +27,22 @@ from studies.kit.posing import (
     DEFAULT_EXCITATION,
     ONE_BLOCK,
     Excitation,
+    Height,
     Standing,
+    Width,
     refuse_endless,
 )
+from studies.kit.provenance import project_version, version_of
 from studies.kit.runner import exit_code, run_jobs
+from studies.measures.words import listed
 
 
 def command(
     *,
     engine: str,
     out: Place,
-    width: Positive,
-    height: Positive,
+    width: Width,
+    height: Height,
     preset: str | None = None,
     excitation: Excitation = DEFAULT_EXCITATION,
     standing: Standing = ONE_BLOCK,
@@ -47,10 +59,6 @@ def command(
     out
         Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
         library reads one.
-    width
-        Full width B of the block or of each column [m].
-    height
-        Its full height H [m].
     preset
         One of the engine's with equal steps: naive or fixed; fixed by default.
     step
@@ -135,3 +143,102 @@ def _check_folder(out: Path) -> None:
         empty = False
     if not empty:
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
+
+
+CALLED = {
+    RigidBlock: "A rocking block",
+    RockingFrame: "A rocking frame",
+    SlidingBlock: "A sliding block",
+}
+"""Class of a system -> what it is, in words."""
+
+BLOCK, GROUND = "block.py", "ground.py"
+"""Files of every exported scene."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exported:
+    """What an exported script is to be told of its run.
+
+    Attributes
+    ----------
+    engine, preset : Engine, Preset
+    scene : Scene
+    watched_s : float
+        How long it is watched [s].
+    expected, exact : float or tuple of float
+        Largest rotation over the critical one, or the slips [m] where nothing rocks: the engine's
+        and the exact one.
+    """
+
+    engine: Engine
+    preset: Preset
+    scene: Scene
+    watched_s: float
+    expected: float | tuple[float, ...]
+    exact: float | tuple[float, ...]
+
+    @property
+    def called(self) -> str:
+        """What it is, in words."""
+        return CALLED[type(self.scene.system)]
+
+
+def files(what: Exported) -> dict[str, str]:
+    """Return the name and text of every file.
+
+    Raises
+    ------
+    ValueError
+        If the engine writes no scripts.
+    """
+    script = script_of(what.engine, what.preset, what.scene)
+    return {
+        BLOCK: block_text(what, script),
+        GROUND: ground_text(what.scene.motion),
+        **script.files,
+    }
+
+
+def script_of(engine: Engine, preset: Preset, scene: Scene) -> Script:
+    """Return a scene in the library's own words.
+
+    Raises
+    ------
+    ValueError
+        If the engine has none.
+    """
+    if engine.script is None:
+        raise ValueError(f"{engine.title} writes no scripts")
+    settings = preset.chosen(scene)
+    return engine.script(preset.posed(scene), settings, preset.ordinary_step_s(scene))
+
+
+def block_text(what: Exported, script: Script) -> str:
+    """Return the script."""
+    environment = Environment(
+        loader=PackageLoader("studies.export", "."),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template(f"{BLOCK}.jinja").render(
+        what=what,
+        posed=what.preset.posed(what.scene),
+        dt_s=what.preset.ordinary_step_s(what.scene),
+        script=script,
+        version=project_version(),
+        packages={name: version_of(name) for name in what.engine.packages},
+        listed=listed,
+        slow=SLIP_RATE * math.sqrt(what.scene.system.gravity * what.scene.system.width),
+        short=LEAST_SLIP * what.scene.system.width,
+    )
+
+
+def ground_text(motion: Motion) -> str:
+    """Return the ground motion as a module: the numbers, and the one function of them."""
+    rows = "".join(f"    {tuple(map(float, row))},\n" for row in motion.segments())
+    return (
+        f"{inspect.getsource(ground)}\n\n"
+        f"SEGMENTS = (\n{rows})\n\nmean_velocity = mean_velocity_of(SEGMENTS)\n"
+    )

@@ -6,18 +6,17 @@ STUDY = Study(
     name="free",
     help="""Free rocking: quarter periods and decay of each source against the closed forms.
 
-Over the rotation from which the block falls and over H/B. Writes free.csv, free.png and
-findings.txt; resumable. Less than a minute.""",
-    table="free.csv",
+A block is released at rest from a tilt, on ground that does not move. Its first impact comes after
+the quarter period of that tilt; the time between two impacts is twice the quarter period of the
+rotation between them, which follows from the one before by the velocity ratio at the impact. What
+the errors of many impacts add up to is the drift: how much too late the 20th comes. Resumable.""",
     tables=("free.csv",),
-    chapters=(
-        Chapter(
-            folder="free",
-            question="Is free rocking as the closed forms say?",
-            minutes=(0.1, 0.3),
-            weaker="Fewer blocks and tilts.",
-        ),
+    chapter=Chapter(
+        question="Is free rocking as the closed forms say?",
+        minutes=(0.1, 0.3),
+        weaker="Fewer blocks and tilts.",
     ),
+    drawings={"free": ("draw_free", "free")},
     captions={
         "free": (
             "Errors of the time between impacts, of the rotation after an impact and of the time "

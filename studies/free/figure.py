@@ -10,13 +10,7 @@ from studies.drawing.styles import LOWEST, line_of, name_of, style_of
 
 
 def draw_free(rows: pd.DataFrame) -> Figure:
-    """Draw the errors of period and decay and the drift over the tilt, a line for each source.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        The columns of free.csv.
-    """
+    """Draw the errors of period and decay and the drift over the tilt, a line for each source."""
     drawing = Figure(figsize=(9.2, 4.2), layout="constrained")
     panels = drawing.subplots(1, 3, sharex=True, sharey=True)
     titles = {

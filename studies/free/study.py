@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 import pandas as pd
 
 from analytic import RigidBlock, Still
 from analytic.criteria import quarter_period
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.free import STUDY
 from studies.free.errors import IMPACTS, SWINGS, reduce, swing_times
-from studies.kit.arguments import Out, check_sources
+from studies.kit.arguments import Out
 from studies.kit.jobs import Job
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import read_table
 from studies.measures.words import part
-from studies.sources.groups import core_sources
-from studies.sources.registry import resolve
+from studies.sources.registry import core_sources, resolve
 
 ASPECTS = (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
 TILTS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -36,25 +33,16 @@ def command(
     *,
     out: Out,
     quick: bool = False,
-    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    sources: Sources = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Hold free rocking of each source against the closed forms of its model.
-
-    The block is released at rest from a tilt, on ground that does not move. Its first impact comes
-    after the quarter period of that tilt; the time between two impacts is twice the quarter period
-    of the rotation between them, and that rotation follows from the one before by the velocity
-    ratio at the impact. What the errors of many impacts add up to is the drift: by how much the
-    20th impact comes too late.
 
     Parameters
     ----------
     quick
         Two aspect ratios and two tilts.
-    sources
-        Who is asked.
     """
-    check_sources(sources)
     return carry_out(STUDY, plan(sources, quick), out, running, report)
 
 
@@ -101,12 +89,12 @@ def released(aspect: float, tilt: float, source: str) -> Job:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's free.csv; write and return the text."""
-    rows = read_table(folder / "free.csv")
+    rows = STUDY.read(folder, "free")
     tables = {
         f"Largest relative error of the time between impacts and of the next rotation, and drift "
         f"over up to {IMPACTS} impacts [1/p]": errors(rows, ["source", "tilt"]).reset_index()
     }
-    return tell(folder, pictures(folder), headline(folder), tables)
+    return tell(STUDY, folder, tables)
 
 
 def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
@@ -117,15 +105,8 @@ def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
 
 def headline(folder: Path) -> str:
     """Say to what each source follows the closed forms of its model, at worst."""
-    worst = errors(read_table(folder / "free.csv"), ["source"])[
-        ["period_error", "decay_error"]
-    ].max(axis=1)
+    worst = errors(STUDY.read(folder, "free"), ["source"])[["period_error", "decay_error"]].max(
+        axis=1
+    )
     words = [f"{name} {part(value)}" for name, value in worst.items()]
     return f"Free rocking follows the closed forms, at worst to: {', '.join(words)}."
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the errors of a folder from its free.csv alone."""
-    from studies.free.figure import draw_free
-
-    return {"free": draw_free(read_table(folder / "free.csv"))}

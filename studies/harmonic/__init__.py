@@ -9,17 +9,12 @@ STUDY = Study(
 The exact solution from a grid of starts, rotations by rates, at every point, and each orbit that it
 finds followed to the points beside it: every attractor with its largest rotation to either side,
 its period and impacts, and the share of the starts that end on it or overturn. Engines start on the
-exact orbit at some points. Writes harmonic.csv, engines.csv, harmonic.png and findings.txt. About
-a minute.""",
-    table="harmonic.csv",
+exact orbit at some points.""",
     tables=("harmonic.csv", "engines.csv"),
-    chapters=(
-        Chapter(
-            folder="harmonic",
-            question="Which steady states does a block settle on under sustained shaking?",
-            minutes=(0.2, 1.5),
-            weaker="Fewer frequencies.",
-        ),
+    chapter=Chapter(
+        question="Which steady states does a block settle on under sustained shaking?",
+        minutes=(0.2, 1.5),
+        weaker="Fewer frequencies.",
     ),
     captions={
         "harmonic": (

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analytic.response import Outcome
+from studies.drawing.kept import Pictures
 from studies.drawing.styles import name_of, style_of
+from studies.harmonic.study import settings_of
+from studies.kit.tables import table_in
 
 LABELS = {
     "frequency": "frequency of the shaking  ω/p  [–]",
@@ -68,3 +73,9 @@ def _shares(axes: Axes, table: pd.DataFrame) -> None:
     drawn = {kind: look for kind, look in looks.items() if kind in shares}
     colours, names = zip(*drawn.values(), strict=True)
     axes.stackplot(shares.index, shares[[*drawn]].T, colors=colours, labels=names)
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the diagram of a folder from its tables alone."""
+    swept, over = table_in(folder, "harmonic"), settings_of(folder)["over"]
+    return {"harmonic": draw_harmonic(swept, table_in(folder, "engines"), over)}

@@ -5,29 +5,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
-from typing import Annotated, Literal
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 
 from analytic.block import RigidBlock
-from analytic.response import Response
+from analytic.response import Outcome, Response
+from studies.drawing.kept import tell
 from studies.harmonic import STUDY
 from studies.harmonic.attractors import Attractor, Shaking, State, attractors
-from studies.harmonic.report import headline, pictures, report
-from studies.kit.arguments import BadInputError, Count, Out, Positive, check_sources, refuse_given
-from studies.kit.estimates import refuse_days, refuse_excess
+from studies.kit import provenance
+from studies.kit.arguments import (
+    BadInputError,
+    Count,
+    Out,
+    Positive,
+    Yes,
+    refuse_given,
+)
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
-from studies.kit.naming import several_engines
-from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.naming import CORE, EngineSources
+from studies.kit.options import DEFAULT_RUNNING, Running, refuse_days, refuse_excess
 from studies.kit.plan import Plan, Tables, by_label, carry_out
-from studies.kit.posing import posed_block
+from studies.kit.posing import Height, Width, posed_block
+from studies.kit.tables import table_in
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
-from studies.sources.groups import core_sources
+from studies.measures.words import out_of
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "report"]
 
 Over = Literal["frequency", "amplitude"]
 RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}
@@ -63,8 +72,8 @@ class Branch:
 def command(
     *,
     out: Out,
-    width: Positive = 0.5,
-    height: Positive = 1.5,
+    width: Width = 0.5,
+    height: Height = 1.5,
     over: Over = "frequency",
     low: Positive | None = None,
     high: Positive | None = None,
@@ -73,19 +82,15 @@ def command(
     points: Count | None = None,
     starts: Count | None = None,
     periods: Count | None = None,
-    sources: Annotated[tuple[str, ...], several_engines] = core_sources(),
+    sources: EngineSources = CORE,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Shake a block harmonically from many starts, and read the steady states.
 
     Parameters
     ----------
-    width
-        Width B of the block [m].
-    height
-        Height H of the block [m].
     over
         What is swept: the frequency of the motion, or its amplitude.
     low
@@ -108,10 +113,7 @@ def command(
         Engines that start on the exact orbit at some points.
     quick
         Fewer points, periods and runs of engines.
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     for name in sources:
         if resolve(name).kind == "model":
             raise BadInputError(f"--sources names {name}; it must name engines, peers or solvers")
@@ -231,3 +233,79 @@ def reduce(job: Job, response: Response) -> Row:
         orbit = orbit_of(job.block, job.motion, response)  # type: ignore[arg-type]
         row |= {"larger_ratio": orbit.right / alpha, "smaller_ratio": orbit.left / alpha}
     return {**row, "steps": response.steps, "message": response.message}
+
+
+NOUNS = {"frequency": "At {} frequencies", "amplitude": "At {} amplitudes"}
+KIND, SPANNED = ["outcome", "period", "impacts"], ["x", "larger_ratio", "start_share"]
+"""Columns that tell attractors apart, and those that change along one."""
+
+
+def report(folder: Path) -> str:
+    """Draw a folder's tables; write and return the text."""
+    table, asked = table_in(folder, "harmonic"), settings_of(folder)
+    side = asked["starts"]
+    tables = {
+        f"Abscissae: all, those with several steady states, with one longer than a forcing period, "
+        f"from which some of {side} rotations by {side} rates overturn and others do not, and all "
+        "do": pd.DataFrame([counts(table)]),
+        "Attractors of the exact solution, run by run (mirror images are one, and so are all that "
+        "do not repeat, period 0; without a start: found by following the orbit from the next "
+        "point)": branches(table),
+        "Engines after some time on the exact orbit, difference of its larger rotation": (
+            engine_errors(table_in(folder, "engines"))
+        ),
+    }
+    return tell(STUDY, folder, tables)
+
+
+def settings_of(folder: Path) -> dict[str, Any]:
+    """Return what a folder's sweep was asked for, from its provenance."""
+    return dict(provenance.record_of(folder)["settings"])
+
+
+def branches(table: pd.DataFrame) -> pd.DataFrame:
+    """Return each kind of attractor with its sizes and shares of the starts.
+
+    A line for every run of neighbouring abscissae; all orbits that do not repeat are of one kind.
+    """
+    known = table.assign(
+        impacts=table["impacts"].where(table["period"] > 0, 0),
+        place=table["x"].rank(method="dense"),
+    ).sort_values("x", kind="stable")
+    run = known.groupby(KIND)["place"].transform(lambda place: (place.diff() > 1).cumsum())
+    found = known.groupby([*KIND, run], sort=False)[SPANNED].agg(["min", "max"])
+    found.columns = found.columns.map("_".join)
+    return found.reset_index(KIND)
+
+
+def counts(table: pd.DataFrame) -> dict[str, int]:
+    """Count abscissae: of several steady states, of a longer period, of some and all overturned."""
+    steady = table["outcome"].isin([Outcome.ROCKED.value, Outcome.AT_REST.value])
+    states = steady.groupby(table["x"]).sum()
+    fallen = (table["outcome"] == Outcome.OVERTURNED.value).groupby(table["x"]).any()
+    return {
+        "all": len(states),
+        "several": int((states > 1).sum()),
+        "longer": table.loc[table["period"] > 1, "x"].nunique(),
+        "both": int((fallen & (states > 0)).sum()),
+        "fallen": int((fallen & (states == 0)).sum()),
+    }
+
+
+def engine_errors(engines: pd.DataFrame) -> pd.DataFrame:
+    """Return how far each engine is from the exact orbit on which it started."""
+    if engines.empty:
+        return engines
+    error = (engines["larger_ratio"] / engines["larger_exact"] - 1.0).abs()
+    by = error.groupby(engines["source"], sort=False)
+    return by.agg(orbits="size", kept="count", median_error="median", max_error="max").reset_index()
+
+
+def headline(folder: Path) -> str:
+    """Say at how many abscissae several steady states live, and where the start decides a fall."""
+    found = counts(table_in(folder, "harmonic"))
+    several, both = (out_of(found[name], found["all"]) for name in ("several", "both"))
+    return (
+        f"{NOUNS[settings_of(folder)['over']].format(several)} a block has more than one steady "
+        f"state, and at {both} its start decides whether it overturns."
+    )

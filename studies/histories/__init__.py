@@ -6,17 +6,14 @@ STUDY = Study(
     name="histories",
     help="""The paper's time histories, figures 2, 4 and 5.
 
-Writes for each figure its samples (CSV), its drawing (PNG) and what was found (text).""",
+For each figure its samples, its drawing, and whether what the paper says of it holds.""",
     table="figure-[245].csv",
     tables=("figure-2.csv", "figure-4.csv", "figure-5.csv", "findings.csv"),
     others=("figure-2.txt", "figure-4.txt", "figure-5.txt"),
-    chapters=(
-        Chapter(
-            folder="histories",
-            question="Do the paper's time histories come out, and its words on them?",
-            quick=(),
-            minutes=(0.1, 0.1),
-        ),
+    chapter=Chapter(
+        question="Do the paper's time histories come out, and its words on them?",
+        quick=(),
+        minutes=(0.1, 0.1),
     ),
     captions={
         "figure-2": (

@@ -11,22 +11,21 @@ import pandas as pd
 
 from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import Pictures, as_text
 from studies.histories import STUDY
-from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
-from studies.kit.digests import seal
+from studies.kit.arguments import Out, figures, refuse_repeats
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, blaming_its_rows, fill
+from studies.kit.provenance import seal, write_text
 from studies.kit.runner import exit_code
-from studies.measures.claims import TABLE, Claim, Finding, read_findings, tally, write_findings
+from studies.measures.claims import TABLE, Finding, claim, read_findings, tally, write_findings
 from studies.measures.samples import samples
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
 
 DEFAULT_SOURCES = {
     2: ("exact", "rk4", "average-acceleration"),
@@ -57,8 +56,6 @@ def command(
 ) -> int:
     """Draw the paper's time histories and test what it says about them.
 
-    Writes, for each figure, its samples (CSV), its drawing (PNG) and the findings (text).
-
     Parameters
     ----------
     figure
@@ -68,8 +65,6 @@ def command(
         housner and modified in 4 and 5. Any other source may be named.
     """
     refuse_repeats("--figure", figure)
-    if sources is not None:
-        check_sources(sources)
     with blaming_its_rows(out):
         rows = fill(STUDY, plan(figure, sources), out, running)
         print(report(out, rows))
@@ -149,15 +144,18 @@ def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
 
 def report(folder: Path, rows: Sequence[Row]) -> str:
     """Draw and judge the figures of some rows; write and return the texts."""
+    from studies.drawing.figures import save_all
+
     tables, texts, found = tabulate(rows), [], []
+    save_all(pictures(folder), folder)
     for number, told in by_figure(rows).items():
         name = f"figure-{number}"
-        drawings = {name: drawn(folder, number)} if name in tables else {}
         said = judge(number, told, tables.get(name, pd.DataFrame()))
         found.append(said)
         finding = f"{TITLES[number]}. {said.verdict}: {said.statement}; {said.numbers}"
         peaks = pd.DataFrame(told)[["panel", "source", "outcome", "peak_ratio"]]
-        texts.append(tell(folder, drawings, finding, {"Largest rotations": peaks}, f"{name}.txt"))
+        texts.append(as_text(finding, {"Largest rotations": peaks}))
+        write_text(folder / f"{name}.txt", texts[-1] + "\n")
     held = read_findings(folder) if (folder / TABLE).is_file() else []
     new = {item.statement for item in found}
     # what it holds about figures that were not drawn now stays
@@ -193,6 +191,11 @@ def judge(figure: int, rows: Sequence[Row], samples: pd.DataFrame) -> Finding:
     return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
 
 
+@claim(
+    "Runge–Kutta and average acceleration coincide (within 0.001 of θcr)",
+    "average-acceleration",
+    "rk4",
+)
 def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
     """Compare the samples of both solvers."""
     lines = table.pivot(index=["panel", "time_s"], columns="source", values="theta_ratio")
@@ -201,6 +204,12 @@ def solvers_coincide(table: pd.DataFrame) -> tuple[bool, str]:
     return bool((apart < 1e-3).all()), f"largest difference of θ/θcr: {words}"
 
 
+@claim(
+    "Housner's error grows as H/B falls, and the modified linearization's stays smaller",
+    "exact",
+    "housner",
+    "modified",
+)
 def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
     """Compare the errors of both linearizations from panel to panel."""
     peaks = rows.pivot(index="panel", columns="source", values="peak_ratio")
@@ -211,6 +220,12 @@ def housner_strays(rows: pd.DataFrame) -> tuple[bool, str]:
     return holds, f"error of the peak in 4-a, b, c (H/B 6, 3, 2): {'; '.join(words)}"
 
 
+@claim(
+    "In 5-b and 5-c the block overturns by Housner alone, and survives otherwise",
+    "exact",
+    "housner",
+    "modified",
+)
 def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
     """Look at the outcomes in 5-b and 5-c."""
     table = rows.pivot(index="panel", columns="source", values="outcome")
@@ -223,21 +238,5 @@ def housner_overturns(rows: pd.DataFrame) -> tuple[bool, str]:
     return holds, "; ".join(words)
 
 
-CLAIMS = {
-    2: Claim(
-        "Runge–Kutta and average acceleration coincide (within 0.001 of θcr)",
-        solvers_coincide,
-        ("average-acceleration", "rk4"),
-    ),
-    4: Claim(
-        "Housner's error grows as H/B falls, and the modified linearization's stays smaller",
-        housner_strays,
-        ("exact", "housner", "modified"),
-    ),
-    5: Claim(
-        "In 5-b and 5-c the block overturns by Housner alone, and survives otherwise",
-        housner_overturns,
-        ("exact", "housner", "modified"),
-    ),
-}
+CLAIMS = {2: solvers_coincide, 4: housner_strays, 5: housner_overturns}
 """Figure -> what the paper says about it."""

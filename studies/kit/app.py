@@ -38,7 +38,7 @@ def make_app(studies: Sequence[Study]) -> App:
         suppress_keyboard_interrupt=False,
     )
     for study in studies:
-        app.command(f"{study.module}:command", name=study.name, help=study.help)
+        app.command(f"{study.module}:command", name=study.name, help=study.about)
     return app
 
 

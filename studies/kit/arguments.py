@@ -114,6 +114,9 @@ Place = Annotated[Path, _read("a path; one that begins with a dash is written ./
 Out = Annotated[Place, Parameter(help="Folder for the results; made if there is none.")]
 """Where a study leaves what it made."""
 
+Yes = Annotated[bool, Parameter(help="Begin even what takes longer than a day.")]
+"""Whether somebody has the time."""
+
 
 def figures(*allowed: int) -> Parameter:
     """Return what makes an argument take some of the paper's figures, separated by spaces."""
@@ -139,31 +142,6 @@ several = Parameter(consume_multiple=True, show_default=_spaced)
 
 several_or_none = Parameter(consume_multiple=1)
 """Values separated by spaces, at least one; None where the option is not given."""
-
-
-def check_sources(names: Sequence[str]) -> None:
-    """Raise BadInputError if there is no source, an unknown one, or one named twice."""
-    from studies.sources.registry import UnknownSourceError, allowed, resolve
-
-    if not names:
-        raise BadInputError(f"--sources is empty; it must name at least one of {allowed()}")
-    for name in names:
-        try:
-            resolve(name)
-        except UnknownSourceError as error:
-            raise BadInputError(f"--sources: {error}") from error
-    refuse_repeats("--sources", names)
-
-
-def check_engines(names: Sequence[str]) -> None:
-    """Raise BadInputError if there is no engine, an unknown one, or one named twice."""
-    from engines import ENGINES
-
-    for name in names:
-        if name not in ENGINES:
-            allowed = ", ".join(ENGINES)
-            raise BadInputError(f"--engines is {name!r}; it must be among {allowed}")
-    refuse_repeats("--engines", names)
 
 
 def refuse_repeats(argument: str, values: Iterable[Any]) -> None:

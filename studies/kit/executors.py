@@ -1,22 +1,138 @@
-"""Where jobs are run: on the machine at hand, or on a cluster that is named."""
+"""Where jobs are run: on the machine at hand, or on a cluster that is named.
 
+In processes of their own, where engines are concerned, and many at once where an engine can answer
+so: which jobs make up a batch, how a process asks about it, and what came of each.
+"""
+
+import math
 import sys
-from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Generator, Hashable, Iterable, Mapping, Sequence
+from concurrent.futures import CancelledError, Future, as_completed
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
 
 from analytic.kernels.compiled import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
-from analytic.response import Response
+from analytic.response import Reason, Response
+from engines import ENGINES
+from engines.declaration import BatchEngine
 from engines.parts.compiled import PACKAGE
-from studies.kit.jobs import Job, ask
-from studies.kit.pool import Pool, StartError, TaskError
-from studies.kit.processes import ask_apart, compile_ahead, outcome_of
-from studies.kit.refusing import say
-from studies.kit.together import ask_together, batches
-from studies.sources.registry import Source
+from engines.run.batch import alike, run_together
+from engines.run.look import compile_look
+from engines.scene import Scene
+from studies.kit.jobs import Job, ask, short
+from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
+from studies.kit.refusing import one_line, say
+from studies.sources.registry import Source, run_engine, scene_of
+
+
+def batches(jobs: Mapping[int, Job], workers: int) -> list[list[int]]:
+    """Return the numbers of the jobs that are answered at once, two or more a batch.
+
+    They share their source and what else is `alike`. Each worker gets a part of every such group,
+    as large as another's, so that none waits for long; an engine may want smaller ones.
+    """
+    groups: dict[tuple[str, Hashable], list[int]] = {}
+    for number, job in jobs.items():
+        scene = _scene(job)
+        common = None if scene is None else alike(job.asked.declared, scene)
+        if common is not None:
+            groups.setdefault((job.source, common), []).append(number)
+    parts: list[list[int]] = []
+    for numbers in groups.values():
+        engine = jobs[numbers[0]].asked.declared
+        most = engine.most_worlds if isinstance(engine, BatchEngine) else 1
+        count = workers * math.ceil(len(numbers) / (workers * most))
+        parts += [numbers[first::count] for first in range(count)]
+    return [part for part in parts if len(part) > 1]
+
+
+def ask_together(jobs: Sequence[Job]) -> list[Response]:
+    """Put the jobs of a batch to their source, in a process of its own."""
+    compile_all()
+    scenes = [scene for job in jobs if (scene := _scene(job)) is not None]
+    return run_together(jobs[0].asked.engine, scenes)
+
+
+def _scene(job: Job) -> Scene | None:
+    """Return the scene that a job puts to an engine that batches; None for any other job."""
+    call = job.asked.call
+    if not isinstance(call, partial) or call.func is not run_engine:
+        return None
+    if not isinstance(ENGINES.get(job.asked.engine), BatchEngine):
+        return None
+    preset = call.keywords["preset"]
+    posed = {"duration": job.duration, "times": job.times, **job.options}
+    return scene_of(job.block, job.motion, preset, **posed)
+
+
+COMPILING_S = 1800.0
+"""Nothing takes longer to compile [s]."""
+
+_loaded: set[str] = set()
+"""Sources whose kernels this process has loaded."""
+
+
+def compile_ahead(
+    pool: Pool, ask_: Callable[[Job, Source], Response], asked: Iterable[tuple[Job, Source]]
+) -> None:
+    """Compile what engines need on a machine, before any time limit holds.
+
+    Parameters
+    ----------
+    pool : Pool
+        One of its processes compiles; the others load what was compiled.
+    ask_ : callable
+        How a job is put to its source.
+    asked : iterable of (Job, Source)
+        A job of each source.
+    """
+    tasks: list[Future[Any]] = []
+    for job, source in asked:
+        if source.engine not in ENGINES or not source.declared.installed:
+            continue
+        if not tasks:
+            tasks.append(pool.schedule(compile_look, (), COMPILING_S))
+        if source.declared.compiles:
+            tasks.append(pool.schedule(ask_apart, (ask_, short(job), source, True), COMPILING_S))
+    for task in tasks:
+        with suppress(Exception):  # the cases will say what is wrong
+            task.result()
+
+
+def ask_apart(
+    ask_: Callable[[Job, Source], Response], job: Job, source: Source, many: bool
+) -> Response:
+    """Put a job to its source in a process of its own; one of a few need not be compiled.
+
+    A job that is long is not asked twice: what loads the compiled kernels is a short one.
+    """
+    if many:
+        compile_all()
+        if source.kind != "engine" and job.source not in _loaded:
+            _loaded.add(job.source)
+            ask(short(job), source)
+    response = ask_(job, source)
+    if response.message.startswith(MemoryError.__name__):
+        words = f"{response.message.rstrip(': ')}; a process may take {MEMORY_BYTES / 1e9:g} GB"
+        return replace(response, message=words)
+    return response
+
+
+def outcome_of(task: Future[Response], time_limit_s: float) -> Response:
+    """Return what came of a job in a process, its failure if that is to blame for it."""
+    try:
+        return task.result()
+    except (CancelledError, StartError):
+        raise
+    except OvertimeError:
+        words = f"no result within the time limit of {time_limit_s:g} s"
+        return Response.failure(words, reason=Reason.UNDECIDED)
+    except Exception as error:
+        return Response.failure(str(error) if isinstance(error, TaskError) else one_line(error))
+
 
 FEW = 32
 """Jobs up to which to interpret what they need takes less time than to compile or to load it."""

@@ -187,18 +187,15 @@ def why(stale: Iterable[Stale]) -> str:
         (source, tuple(_said(name, then, now) for name in changed(then, now)))
         for source, then, now in stale
     )
-    return "; ".join(
-        f"{source}: {count} {'row' if count == 1 else 'rows'} made by {_listed(reasons)}"
-        for (source, reasons), count in counts.items()
-    )
+    said = []
+    for (source, reasons), count in counts.items():
+        more = [f"{len(reasons) - SHOWN} more"] if len(reasons) > SHOWN else []
+        rows = f"{count} {'row' if count == 1 else 'rows'}"
+        said.append(f"{source}: {rows} made by {', '.join([*reasons[:SHOWN], *more])}")
+    return "; ".join(said)
 
 
 def _said(name: str, then: Maker, now: Maker) -> str:
     if name.endswith(".py") or name.startswith("declaration"):
         return f"another {name}"
     return f"{name} {then.get(name, 'none')}, not {now.get(name, 'none')}"
-
-
-def _listed(reasons: tuple[str, ...]) -> str:
-    more = len(reasons) - SHOWN
-    return ", ".join([*reasons[:SHOWN], *([f"{more} more"] if more > 0 else [])])

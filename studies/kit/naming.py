@@ -1,16 +1,49 @@
-"""How a command is told which sources it asks: names and words for several, listed in its help."""
+"""How a command is told whom it asks: sources and engines by name, and words for several.
+
+A name that nobody has, or one given twice, is refused where the argument is read.
+"""
 
 from collections.abc import Iterable, Sequence
+from typing import Annotated
 
-from cyclopts import Parameter, Token
+from cyclopts import Parameter
 
-from engines import ENGINES
-from studies.sources.groups import GROUPS, expanded
-from studies.sources.registry import SOURCES, all_presets
+from engines import ENGINES, core_engines
+from studies.kit.arguments import BadInputError, refuse_repeats
+from studies.sources.registry import (
+    GROUPS,
+    SOURCES,
+    UnknownSourceError,
+    all_presets,
+    allowed,
+    expanded,
+    resolve,
+)
+
+CORE = core_engines()
+"""The engines that the published studies ask."""
 
 
-def _expanded(type_: type, tokens: Sequence[Token]) -> tuple[str, ...]:
-    return tuple(expanded(token.value for token in tokens))
+def _check_sources(_: type, names: Sequence[str] | None) -> None:
+    if names is None:  # they are not given
+        return
+    if not names:
+        raise BadInputError(f"--sources is empty; it must name at least one of {allowed()}")
+    for name in names:
+        try:
+            resolve(name)
+        except UnknownSourceError as error:
+            raise BadInputError(f"--sources: {error}") from error
+    refuse_repeats("--sources", names)
+
+
+def _check_engines(_: type, names: Sequence[str] | None) -> None:
+    for name in names or ():
+        if name not in ENGINES:
+            among = ", ".join(ENGINES)
+            raise BadInputError(f"--engines is {name!r}; it must be among {among}")
+    if names is not None:  # they are given
+        refuse_repeats("--engines", names)
 
 
 def sources_option(
@@ -31,7 +64,8 @@ def sources_option(
     return Parameter(
         consume_multiple=True,
         show_default=" ".join if default else False,
-        converter=_expanded,
+        converter=lambda _, tokens: tuple(expanded(token.value for token in tokens)),
+        validator=_check_sources,
         help=(
             f"{first}{' '.join(names)}; an engine takes a preset after a colon: "
             f"{' '.join(all_presets())}; {words} stand for those of the published studies and for "
@@ -40,8 +74,18 @@ def sources_option(
     )
 
 
-several_sources = sources_option()
+Sources = Annotated[tuple[str, ...], sources_option()]
 """Names of any sources."""
 
-several_engines = sources_option("Engines: ", ENGINES)
-"""Names of engines."""
+EngineSources = Annotated[tuple[str, ...], sources_option("Engines: ", ENGINES)]
+"""Names of engines, each perhaps with a preset."""
+
+Engines = Annotated[
+    tuple[str, ...],
+    Parameter(
+        consume_multiple=True,
+        show_default=lambda names: " ".join(names or ("all",)),
+        validator=_check_engines,
+    ),
+]
+"""Names of engines alone."""

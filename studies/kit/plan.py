@@ -16,11 +16,11 @@ from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from studies.kit import elsewhere, provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.digests import seal
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Row, open_journal
 from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.provenance import seal
 from studies.kit.refusing import one_line
 from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study

@@ -5,14 +5,15 @@ The data need no more than the standard library, so that a list of the commands 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import InitVar, dataclass, field, replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    import pandas as pd
     from matplotlib.figure import Figure
 
 
@@ -22,9 +23,9 @@ class Chapter:
 
     Attributes
     ----------
-    folder : str
-        Where a report keeps its results.
     question : str
+    folder : str
+        Where a report keeps its results; by default called as the study.
     tables : tuple of str
         Tables short enough to be read.
     quick, full : tuple of str
@@ -35,8 +36,8 @@ class Chapter:
         In what the quick form falls short of the full one.
     """
 
-    folder: str
     question: str
+    folder: str = ""
     tables: tuple[str, ...] = ()
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
@@ -44,27 +45,9 @@ class Chapter:
     weaker: str = ""
 
 
-class Command(Protocol):
-    """A module with a command of the command line."""
-
-    @property
-    def command(self) -> Callable[..., int]:
-        """The function whose parameters are the command's, and which returns the exit code."""
-
-
-class StudyModule(Command, Protocol):
-    """The module of a study that leaves tables behind."""
-
-    def headline(self, folder: Path) -> str:
-        """Return what a folder's tables show first, as a claim of one sentence."""
-
-    def pictures(self, folder: Path) -> dict[str, Figure]:
-        """Draw a folder's figures from its CSVs alone, by name."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """A study.
+    """A study: what its folder says of it, in words and pictures, is made of its tables alone.
 
     Attributes
     ----------
@@ -72,32 +55,53 @@ class Study:
         Its command.
     help : str
         What its command's help says first.
-    table : str
-        Pattern of the table by which its results folder is known; empty if it leaves none.
     tables : tuple of str
         Tables that it writes into its folder.
-    chapters : tuple of Chapter
-        Its places in a report.
+    table : str
+        Pattern of the table by which its folder is known; by default the first, where there is
+        something to draw or to claim.
+    texts : tuple of str
+        Columns of its tables that are words though they may look like numbers.
+    claims : tuple of str
+        Tables of which its module's `first_claim` makes what they show first, as one sentence. A
+        module without it has a `headline` of the folder.
+    drawings : mapping
+        Name of a picture -> the function of its module `figure` that draws it, and the tables that
+        this takes. Where captions name others, one of the two modules has `pictures` of the folder,
+        by name.
     captions : mapping
         Name of a picture -> what is seen in it, for those who read and those who are read to.
+    chapter, chapters : Chapter, tuple of Chapter
+        Its place or places in a report.
     others : tuple of str
         Files that it writes besides.
     module : str
-        Where its `command` is, and of a study with tables all of `StudyModule`.
+        Where its `command` is, the function whose parameters are the command's, and which returns
+        the exit code.
     """
 
     name: str
     help: str
-    table: str = ""
     tables: tuple[str, ...] = ()
-    chapters: tuple[Chapter, ...] = ()
+    table: str = ""
+    texts: tuple[str, ...] = ()
+    claims: tuple[str, ...] = ()
+    drawings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     captions: Mapping[str, str] = field(default_factory=dict)
+    chapter: InitVar[Chapter | None] = None
+    chapters: tuple[Chapter, ...] = ()
     others: tuple[str, ...] = ("findings.txt",)
     module: str = ""
 
-    def __post_init__(self) -> None:
-        if not self.module:
-            object.__setattr__(self, "module", f"studies.{self.name}.study")
+    def __post_init__(self, chapter: Chapter | None) -> None:
+        places = (chapter,) if chapter else self.chapters
+        known = {
+            "chapters": tuple(replace(each, folder=each.folder or self.name) for each in places),
+            "table": self.table or (self.tables[0] if self.captions or self.claims else ""),
+            "module": self.module or f"studies.{self.name}.study",
+        }
+        for name, value in known.items():
+            object.__setattr__(self, name, value)
 
     @property
     def products(self) -> tuple[str, ...]:
@@ -105,9 +109,42 @@ class Study:
         pictures = (f"{name}.png" for name in self.captions)
         return (*self.tables, *pictures, *self.others) if self.tables else ()
 
-    def load(self) -> StudyModule:
-        """Import the module of a study that leaves tables."""
-        return cast(StudyModule, import_module(self.module))
+    @property
+    def about(self) -> str:
+        """What its command's help says: what it is for, what it writes, and how long that takes."""
+        writes = [*self.tables, *["pictures"] * bool(self.captions), *self.others]
+        said = [self.help, f"Writes {', '.join(writes)}."] if self.tables else [self.help]
+        for place in self.chapters[:1]:
+            quick = f", {place.minutes[0]:g} with {' '.join(place.quick)}" if place.quick else ""
+            said[-1] += f" About {place.minutes[1]:g} minutes on two cores{quick}."
+        return "\n\n".join(said)
+
+    def load(self) -> Any:
+        """Import its module."""
+        return import_module(self.module)
+
+    def read(self, folder: Path, name: str) -> pd.DataFrame:
+        """Read a table of a folder, packed or not; return none as empty."""
+        from studies.kit.tables import table_in
+
+        return table_in(folder, name, *self.texts)
+
+    def headline(self, folder: Path) -> str:
+        """Return what a folder's tables show first, as a claim of one sentence."""
+        if not self.claims:
+            return str(self.load().headline(folder))
+        return str(self.load().first_claim(*(self.read(folder, name) for name in self.claims)))
+
+    def pictures(self, folder: Path) -> dict[str, Figure]:
+        """Draw a folder's figures from its tables alone, by name."""
+        figures = f"{self.module.rpartition('.')[0]}.figure"
+        if self.captions and not self.drawings:
+            known = getattr(self.load(), "pictures", None)
+            return dict((known or import_module(figures).pictures)(folder))
+        return {
+            picture: getattr(import_module(figures), draw)(*(self.read(folder, n) for n in tables))
+            for picture, (draw, *tables) in self.drawings.items()
+        }
 
     def command_line(self, chapter: Chapter, folder: Path, full: bool) -> list[str]:
         """Return the words after `rocking` that fill a folder for a chapter."""

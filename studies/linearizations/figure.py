@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
+from studies.linearizations.study import CODES, VARIANTS, key
 
 ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
 """What a variant takes as the onset -> its colour, and what that is."""
@@ -17,21 +16,10 @@ NAMED_AT = 0.9
 """Part of the cases at which a line is named: at its end, the worst case, lines lie together."""
 
 
-def draw_distributions(
-    quantiles: pd.DataFrame, titles: Mapping[str, str], names: Mapping[str, str]
-) -> Figure:
+def draw_distributions(quantiles: pd.DataFrame) -> Figure:
     """Draw by how much a part of the cases errs at most, a panel for each grid.
 
     The colour of a line is its onset, its dash its frequency, its width its saddle.
-
-    Parameters
-    ----------
-    quantiles : DataFrame
-        Columns grid, changed, quantile, error.
-    titles : mapping
-        What the variants take, by `changed`.
-    names : mapping
-        What variants are called that have a name.
     """
     grids = list(quantiles["grid"].unique())
     drawing = Figure(figsize=(9.4, 5.2), layout="constrained")
@@ -39,23 +27,22 @@ def draw_distributions(
     for axes, name in zip(panels, grids, strict=True):
         part = quantiles[quantiles["grid"] == name]
         ends = [
-            _one_variant(axes, str(changed), rows, titles[str(changed)], names.get(str(changed)))
+            _one_variant(axes, str(changed), rows)
             for changed, rows in part.groupby("changed", sort=False)
         ]
         axes.set(yscale="log", xlim=(0.0, 1.0), ylim=(1e-4, 1e1), title=f"{name} grid")
         axes.set_xlabel("part of the surviving cases  [–]")
         axes.grid(alpha=0.25)
-    for key, (colour, words) in ONSETS.items():
-        panels[0].text(0.97, 0.1 - 0.05 * int(key), words, color=colour, ha="right",
+    for onset, (colour, words) in ONSETS.items():
+        panels[0].text(0.97, 0.1 - 0.05 * int(onset), words, color=colour, ha="right",
                        transform=panels[0].transAxes)  # fmt: skip
     beside(panels[-1], ends)
     panels[0].set_ylabel("relative error of the peak, at most  [–]")
     return drawing
 
 
-def _one_variant(
-    axes: Axes, changed: str, rows: pd.DataFrame, title: str, known: str | None
-) -> Name:
+def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame) -> Name:
+    title, known = VARIANTS[key(changed)].title, CODES.get(changed)
     onset, frequency, saddle = tuple(changed)
     colour = ONSETS[onset][0]
     axes.plot(

@@ -14,7 +14,7 @@ from analytic import peak_ratios
 from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.kit.arguments import Out
 from studies.kit.journal import Row
 from studies.kit.options import DEFAULT_RUNNING
@@ -92,18 +92,14 @@ def grid(name: str) -> pd.DataFrame:
 
 
 def command(*, out: Out) -> int:
-    """Take a linearization apart: onset, frequency and saddle, each changed alone.
-
-    All eight combinations of Housner's and the modified choices, against the exact solution, on
-    the paper's cases and on a wider grid; what the paper concludes, with the numbers.
-    """
+    """Take a linearization apart: onset, frequency and saddle, each changed alone."""
     return carry_out(STUDY, Plan(tabulate=tabulate), out, DEFAULT_RUNNING, report)
 
 
 def tabulate(_: Sequence[Row] = ()) -> Tables:
     """Return the summary and the quantiles of all errors."""
     errors = all_errors()
-    return {STUDY.name: summarize(errors), "quantiles": quantiles(errors)}
+    return {"linearizations": summarize(errors), "quantiles": quantiles(errors)}
 
 
 @functools.cache
@@ -178,7 +174,7 @@ def key(word: str) -> tuple[int, int, int]:
 
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
-    table, errors = read(folder, "linearizations"), all_errors()
+    table, errors = STUDY.read(folder, "linearizations"), all_errors()
     write_findings(folder, conclusions(table, errors))
     tables = {
         "What the paper concludes": read_table(folder / TABLE),
@@ -187,20 +183,7 @@ def report(folder: Path) -> str:
             by_slenderness(errors).reset_index()
         ),
     }
-    return tell(folder, pictures(folder), headline(folder), tables)
-
-
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table of a folder back."""
-    return pd.read_csv(folder / f"{name}.csv", dtype={"changed": str})
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw how the errors of the variants are distributed, from quantiles.csv alone."""
-    from studies.linearizations.figure import draw_distributions
-
-    titles = {"".join(map(str, changed)): model.title for changed, model in VARIANTS.items()}
-    return {"linearizations": draw_distributions(read(folder, "quantiles"), titles, CODES)}
+    return tell(STUDY, folder, tables)
 
 
 def headline(folder: Path) -> str:

@@ -8,20 +8,20 @@ STUDY = Study(
 
 Steady states under harmonic shaking and their limits of stability, least accelerations that
 overturn a block, the end of a mode, a drop without friction, measured velocity ratios: each with
-its source, the printed value and its digits, and why where it does not come out. Also tests of
-engines by their authors, and their exact numbers. Writes literature.csv, agreement.csv, peers.csv,
-literature.png and findings.txt; resumable. Less than a minute.""",
-    table="literature.csv",
+its source, the printed value and its digits, and why where it does not come out. An engine joins
+where the printed block has ideally inelastic impacts, as the engine's has, and the print is a
+threshold; and in its authors' own tests, whose bounds are held against exact numbers.
+Resumable.""",
     tables=("literature.csv", "agreement.csv", "peers.csv"),
-    chapters=(
-        Chapter(
-            folder="literature",
-            question="Do the numbers printed in the literature come out?",
-            tables=("agreement.csv",),
-            quick=(),
-            minutes=(0.1, 0.5),
-        ),
+    chapter=Chapter(
+        question="Do the numbers printed in the literature come out?",
+        tables=("agreement.csv",),
+        quick=(),
+        minutes=(0.1, 0.5),
     ),
+    texts=("measured", "agrees", "printed", "why"),
+    claims=("agreement",),
+    drawings={"literature": ("draw_literature", "agreement")},
     captions={
         "literature": (
             "Answers beside the numbers printed in the literature, a line for each; inside the "

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import pandas as pd
 
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import Out, check_sources
+from studies.drawing.kept import tell
+from studies.kit.arguments import Out
 from studies.kit.jobs import Job
-from studies.kit.naming import several_engines
+from studies.kit.naming import EngineSources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import read_table, write_table
+from studies.kit.tables import write_table
 from studies.literature import STUDY
 from studies.literature.peers import PEERS, peers, put, read_off
 from studies.literature.prints import PROBLEMS
 from studies.literature.problems import Drop, ModeEnd, OrbitLimit, Problem, Restitution
 from studies.literature.readings import NAMED, times_of
 from studies.measures.words import out_of
-from studies.sources.groups import core_sources
-from studies.sources.registry import resolve
+from studies.sources.registry import core_sources, resolve
 
 DEFAULT_SOURCES = core_sources()
 AFTER_A_RELEASE = 3.0
@@ -31,21 +30,16 @@ AFTER_A_RELEASE = 3.0
 def command(
     *,
     out: Out,
-    sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
+    sources: EngineSources = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Hold printed numbers against the models that they are about, and the engines beside.
-
-    An engine joins where the printed block has ideally inelastic impacts, as the engine's has, and
-    the print is a threshold; and in its authors' own tests, whose bounds are held against exact
-    numbers, too.
 
     Parameters
     ----------
     sources
         Engines, beside the printed model and the exact one.
     """
-    check_sources(sources)
     jobs = [
         literature_job(problem, source)
         for problem in PROBLEMS
@@ -96,7 +90,7 @@ def _observed(problem: Problem) -> float | None:
 
 def report(folder: Path) -> str:
     """Reduce and draw a folder's literature.csv; write and return the text."""
-    rows = _read(folder, "literature")
+    rows = STUDY.read(folder, "literature")
     tests = rows["problem"].isin([test.name for test in PEERS])
     table, tested = agreement(rows[~tests]), peers(rows[tests])
     write_table(folder / "agreement.csv", table)
@@ -111,26 +105,14 @@ def report(folder: Path) -> str:
             ["test", "says", "work"]
         ].drop_duplicates(),
     }
-    return tell(folder, pictures(folder), headline(folder), shown)
+    return tell(STUDY, folder, shown)
 
 
-def headline(folder: Path) -> str:
+def first_claim(table: pd.DataFrame) -> str:
     """Say how many printed numbers come out to their digits, by the models that they are about."""
-    table = _read(folder, "agreement")
     mine = table[(table["source"] == table["model"]) & (table["of"] == "theory")]
     right = int((mine["agrees"] == "True").sum())
     return f"Of the printed numbers of the literature {out_of(right, len(mine))} come out."
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw how far each answer is from the print, from a folder's agreement.csv alone."""
-    from studies.literature.figure import draw_literature
-
-    return {"literature": draw_literature(_read(folder, "agreement"))}
-
-
-def _read(folder: Path, name: str) -> pd.DataFrame:
-    return read_table(folder / f"{name}.csv", "measured", "agrees", "printed", "why")
 
 
 def agreement(rows: pd.DataFrame) -> pd.DataFrame:

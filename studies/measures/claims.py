@@ -58,6 +58,11 @@ class Claim:
         return Finding(self.statement, *self.check(table))
 
 
+def claim(statement: str, *needs: str) -> Callable[[Check], Claim]:
+    """Return what makes of a check the claim of a statement, which needs some sources."""
+    return lambda check: Claim(statement, check, needs)
+
+
 def tally(items: Sequence[Finding], whose: str) -> str:
     """Say how many of somebody's statements hold, and name those that do not."""
     tested = [item for item in items if item.holds is not None]

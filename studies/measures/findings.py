@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import pandas as pd
 
-from studies.measures.claims import Claim, Finding
+from studies.measures.claims import Finding, claim
 
 PAPER_PAIR = ("housner", "modified")
 MODELS = ("exact", *PAPER_PAIR, "onset-matched")
@@ -20,10 +20,11 @@ def findings(compared: pd.DataFrame) -> list[Finding]:
     compared : DataFrame
         From `studies.measures.differences.with_reference`.
     """
-    tested = [claim.finding(compared) for claim in CONCLUSIONS]
+    tested = [each.finding(compared) for each in CONCLUSIONS]
     return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
 
 
+@claim("Housner's linearization overturns blocks that survive, even at H/B = 3", "housner")
 def false_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     """Count the falsely overturned, and look for them at H/B = 3."""
     housner = _of(compared, "housner")
@@ -34,6 +35,7 @@ def false_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     )
 
 
+@claim("The modified linearization never lets a block survive that overturns", "modified")
 def missed_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     """Count the overturnings that are missed."""
     modified = _of(compared, "modified")
@@ -44,6 +46,7 @@ def missed_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     )
 
 
+@claim("The modified linearization stays closer to the exact solution than Housner's", *PAPER_PAIR)
 def modified_is_closer(compared: pd.DataFrame) -> tuple[bool, str]:
     """Compare the errors of both linearizations over what survives in both."""
     housner, modified = (_by_case(_of(compared, name)) for name in PAPER_PAIR)
@@ -59,6 +62,10 @@ def modified_is_closer(compared: pd.DataFrame) -> tuple[bool, str]:
     )
 
 
+@claim(
+    "Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)",
+    *PAPER_PAIR,
+)
 def agreement_at_high_frequency(compared: pd.DataFrame) -> tuple[bool, str]:
     """Look at the errors at high and at middle frequencies."""
     medians, words = [], []
@@ -75,6 +82,10 @@ def agreement_at_high_frequency(compared: pd.DataFrame) -> tuple[bool, str]:
     return (max(medians) < 0.05, "; ".join(words))
 
 
+@claim(
+    "The smaller the aspect ratio, the larger Housner's error in the median of its figure",
+    "housner",
+)
 def squat_blocks_differ_more(compared: pd.DataFrame) -> tuple[bool, str]:
     """Look whether the median errors fall as blocks become slender."""
     housner = _of(compared, "housner")
@@ -89,6 +100,11 @@ def squat_blocks_differ_more(compared: pd.DataFrame) -> tuple[bool, str]:
     return (falling, "; ".join(words))
 
 
+@claim(
+    "Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment",
+    "housner",
+    "onset-matched",
+)
 def onset_explains(compared: pd.DataFrame) -> tuple[bool, str]:
     """See how much of the error is left where the onset is matched."""
     housner, matched = (_by_case(_of(compared, name)) for name in ("housner", "onset-matched"))
@@ -104,36 +120,12 @@ def onset_explains(compared: pd.DataFrame) -> tuple[bool, str]:
 
 
 CONCLUSIONS = (
-    Claim(
-        "Housner's linearization overturns blocks that survive, even at H/B = 3",
-        false_overturnings,
-        ("housner",),
-    ),
-    Claim(
-        "The modified linearization never lets a block survive that overturns",
-        missed_overturnings,
-        ("modified",),
-    ),
-    Claim(
-        "The modified linearization stays closer to the exact solution than Housner's",
-        modified_is_closer,
-        PAPER_PAIR,
-    ),
-    Claim(
-        "Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)",
-        agreement_at_high_frequency,
-        PAPER_PAIR,
-    ),
-    Claim(
-        "The smaller the aspect ratio, the larger Housner's error in the median of its figure",
-        squat_blocks_differ_more,
-        ("housner",),
-    ),
-    Claim(
-        "Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment",
-        onset_explains,
-        ("housner", "onset-matched"),
-    ),
+    false_overturnings,
+    missed_overturnings,
+    modified_is_closer,
+    agreement_at_high_frequency,
+    squat_blocks_differ_more,
+    onset_explains,
 )
 """The paper's conclusions, and what explains them."""
 

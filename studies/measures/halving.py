@@ -10,12 +10,11 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines.declaration import Stepping
-from studies.kit.digests import check
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.provenance import check
 from studies.measures.published import PUBLISHED
 from studies.sources.registry import resolve
 
@@ -53,14 +52,10 @@ def step_of(job: Job) -> float:
     """Return p dt of an engine's job."""
     if "step" in job.options:
         return float(job.options["step"])
-    preset, block = job.asked.used, job.block
-    return _declared(preset.step_s, block) or preset.ordinary_step(
-        str(job.options.get("accuracy", "standard"))
-    )
-
-
-def _declared(step_s: float, block: RigidBlock) -> float:
-    return 0.0 if math.isnan(step_s) else step_s * block.p
+    preset = job.asked.used
+    if not math.isnan(preset.step_s):
+        return float(preset.step_s * job.block.p)
+    return preset.ordinary_step(str(job.options.get("accuracy", "standard")))
 
 
 def estimate(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:

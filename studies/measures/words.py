@@ -78,6 +78,13 @@ def part(value: float) -> str:
     return f"{value:.0%}".replace("%", " %") if abs(value) >= WHOLE else f"{100.0 * value:.2g} %"
 
 
+def signed(error: float) -> str:
+    """Return an error with its sign, in whole per cent; below 0.1 % its size as a power of ten."""
+    if abs(error) < 1e-3:
+        return power(abs(error))
+    return f"{error:+.0%}".replace("-", "−").replace("%", " %")
+
+
 def per_cent(error: float) -> str:
     """Return an error that is asked for, in per cent."""
     return f"{100.0 * error:g} %"

@@ -7,23 +7,19 @@ STUDY = Study(
     help="""Overturning maps: which pulses overturn a block, after how many impacts.
 
 Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
-beside the edges; where each differs from the exact solution. Writes map.csv, boundaries.csv,
-differences.csv, checks.csv, the engines' tables, PNGs and findings.txt; the engines' runs are
-resumable. The full study takes about two minutes on one core, --quick a quarter of one.""",
+beside the edges; where each differs from the exact solution. The engines' runs are resumable.""",
     table="boundaries.csv",
     tables=(
         *("map.csv", "boundaries.csv", "conditioning.csv", "engines.csv", "edges.csv"),
         *("thresholds.csv", "differences.csv", "checks.csv"),
     ),
-    chapters=(
-        Chapter(
-            folder="overturning",
-            question="Which pulses overturn a block, and who draws that map wrongly?",
-            tables=("differences.csv", "checks.csv"),
-            minutes=(0.1, 5.0),
-            weaker="A coarser map, 64 cells for each engine, and one place on each edge.",
-        ),
+    chapter=Chapter(
+        question="Which pulses overturn a block, and who draws that map wrongly?",
+        tables=("differences.csv", "checks.csv"),
+        minutes=(0.1, 5.0),
+        weaker="A coarser map, 64 cells for each engine, and one place on each edge.",
     ),
+    claims=("differences",),
     captions={
         "map": (
             "Amplitude over frequency: which pulses overturn a block at once, which after an "

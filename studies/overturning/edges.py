@@ -76,7 +76,9 @@ def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFra
     fine = 0
     for _ in range(ROUNDS):
         edges = bisect(solve, points, origin)
-        ends = _ends(edges)
+        # both sides of edges may show modes that the grid does not
+        sides = ("column", "low", "below"), ("column", "high", "above")
+        ends = join(*(Points(*(edges[name].to_numpy() for name in side)) for side in sides))
         points, origin = ordered(join(points, ends), np.append(origin, np.tile(edges["found"], 2)))
         new, name = mode_changes(solve, points), "mode"
         if len(new.mode) == 0 and fine < FINE_ROUNDS:
@@ -112,13 +114,6 @@ def beside_edges(solve: Solve, points: Points, edges: pd.DataFrame) -> Points:
 
 def _keys(column: IntArray, amplitude: FloatArray) -> NDArray[np.complex128]:
     return column + 1j * amplitude
-
-
-def _ends(edges: pd.DataFrame) -> Points:
-    """Return the points on both sides of edges, which may show modes that the grid does not."""
-    low = Points(*(edges[name].to_numpy() for name in ("column", "low", "below")))
-    high = Points(*(edges[name].to_numpy() for name in ("column", "high", "above")))
-    return join(low, high)
 
 
 def join(first: Points, second: Points) -> Points:

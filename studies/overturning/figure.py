@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from textwrap import fill
 
 import numpy as np
@@ -17,10 +18,12 @@ from scipy.ndimage import distance_transform_edt
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.facets import key, panels
+from studies.drawing.kept import Pictures
 from studies.drawing.styles import name_of, style_of
+from studies.kit.tables import table_in
 from studies.measures.differences import conditioning_of
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
-from studies.overturning.areas import modes_at, no_impact_line, with_verdicts
+from studies.overturning.report import modes_at, no_impact_line, window_of, with_verdicts
 
 AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
 LETTERS = 32
@@ -188,3 +191,16 @@ def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True)
         axes.tick_params(labelbottom=True)
     if left:
         axes.set_ylabel(AMPLITUDE)
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the figures of a folder from its CSVs alone."""
+    areas, engines = table_in(folder, "map"), table_in(folder, "engines")
+    window = window_of(folder)
+    drawn = {
+        "map": draw_map(areas, window),
+        "conditioning": draw_conditioning(table_in(folder, "conditioning"), window),
+    }
+    if areas["model"].nunique() > 1 or len(engines):
+        drawn["differences"] = draw_differences(areas, engines, window)
+    return drawn

@@ -18,15 +18,14 @@ from studies.kit.arguments import (
     Count,
     Out,
     Positive,
+    Yes,
     as_bad_input,
-    check_sources,
     refuse_given,
 )
-from studies.kit.estimates import refuse_days, refuse_excess
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import sources_option
-from studies.kit.options import PATIENT_RUNNING, PatientRunning
+from studies.kit.options import PATIENT_RUNNING, PatientRunning, refuse_days, refuse_excess
 from studies.kit.plan import Plan, Tables, by_label, carry_out
 from studies.kit.provenance import usable_cores
 from studies.overturning import STUDY
@@ -38,10 +37,10 @@ from studies.overturning.engine_edges import (
     grid_jobs,
     reduce,
 )
-from studies.overturning.report import headline, pictures, report
-from studies.sources.groups import core_sources
+from studies.overturning.report import first_claim, report
+from studies.sources.registry import core_sources
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "first_claim", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
 DEFAULT_SOURCES = (
@@ -84,7 +83,7 @@ def command(
     sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
     quick: bool = False,
     running: PatientRunning = PATIENT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Map which pulses overturn a block.
 
@@ -114,10 +113,7 @@ def command(
         exact, and linear models or engines.
     quick
         A coarser map and fewer runs of the engines: less than a minute on 2 cores.
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     check_mapped(sources)
     beside = {"aspect": aspect, "omega-over-p": omega_over_p, "pulse-hz": pulse_hz}
     for name, axes in APPLIES.items():

@@ -14,13 +14,13 @@ from engines.declaration import AT_REST, RECOMMENDED, Help, Preset, Stepping
 from engines.parts.factors import AS_BEST, BEST, DEFAULT
 from engines.registry import OWN
 from engines.troubles import TROUBLES
-from studies.contact.report import changed, frames, name_of, prices, rules
-from studies.contact.report import read as read_variants
+from studies import contact
+from studies.contact.study import changed, frames, name_of, prices, rules
 from studies.measures.presets import preset_of, told
-from studies.measures.slippery import needed
+from studies.measures.published import needed
 from studies.measures.words import capital, listed, part, right_of
 from studies.page.facts import table
-from studies.scenes.findings import LATE_M
+from studies.scenes.told import LATE_M
 
 
 def helps(published: Path) -> str:
@@ -77,7 +77,7 @@ def frames_of_engines(published: Path) -> str:
 
 
 def _variants(published: Path) -> pd.DataFrame:
-    return read_variants(published / "contact" / "variants.csv")
+    return contact.STUDY.read(published / "contact", "variants")
 
 
 def documented() -> str:
@@ -122,14 +122,16 @@ def random_fixed(published: Path) -> str:
 def troubles() -> str:
     """Return what goes wrong in each engine, by which mechanism, and the script that shows it."""
     rows = [
-        (ENGINES[each.engine].title, each.title, each.kind, each.mechanism, _script(each.script))
+        (
+            ENGINES[each.engine].title,
+            each.title,
+            each.kind,
+            each.mechanism,
+            f"[{each.script}](../../engines/troubles/{each.script})",
+        )
         for each in sorted(TROUBLES, key=lambda each: list(ENGINES).index(each.engine))
     ]
     return table(("engine", "what happens", "kind", "mechanism", "script"), rows)
-
-
-def _script(name: str) -> str:
-    return f"[{name}](../../engines/troubles/{name})"
 
 
 SHOWN = 2
@@ -150,7 +152,7 @@ def objections(published: Path, presets: pd.DataFrame) -> str:
     presets : DataFrame
         A line for each preset over the paper's cases.
     """
-    variants = read_variants(published / "contact" / "own-steps.csv")
+    variants = contact.STUDY.read(published / "contact", "own-steps")
     steps = pd.read_csv(published / "precision" / "work-precision.csv")
     blocks = pd.read_csv(published / "scenes" / "block-summary.csv")
     rows = []
@@ -212,7 +214,7 @@ def _settings(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
     alike = best["median_error"].map("{:.3e}".format)  # two names of one thing
     for line in _rows(best[~alike.duplicated() & ~best["factor"].duplicated()].head(SHOWN)):
         name = name_of(pd.Series(line)).replace(AS_BEST, f"as `:{BEST}`")
-        yield name, _some(without["cases"]), _of_variant(without), _of_variant(line)
+        yield name, f"{without['cases']} of them", _of_variant(without), _of_variant(line)
 
 
 def _of_variant(line: Line) -> str:
@@ -230,7 +232,7 @@ def _finest(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
             _errors(each["median_error"], each["max_error"], each["failed"])
             for each in (coarsest, finest)
         )
-        yield said, _some(finest["cases"]), before, after
+        yield said, f"{finest['cases']} of them", before, after
 
 
 def _floor(blocks: pd.DataFrame, engine: str) -> Iterator[Tried]:
@@ -239,10 +241,6 @@ def _floor(blocks: pd.DataFrame, engine: str) -> Iterator[Tried]:
         if line["floor_lag_m"] > LATE_M:
             tried, cases = "exact answer on the floor as it moved", f"{line['blocks']} pulses"
             yield tried, cases, part(line["median_error"]), part(line["median_own_error"])
-
-
-def _some(cases: int) -> str:
-    return f"{cases} of them"
 
 
 def _rows(lines: pd.DataFrame) -> list[Line]:

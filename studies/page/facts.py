@@ -8,13 +8,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
+from analytic.block import GRAVITY, RigidBlock
+from analytic.motion import SinePulse
+from analytic.response import Response
 from engines import ENGINES
 from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
+from studies.cases.paper import free_rocking_window
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
+from studies.kit.jobs import Job, ask
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings
@@ -30,12 +36,12 @@ from studies.measures.words import (
     out_of,
     part,
     per_cent,
-    power,
+    signed,
 )
 from studies.measures.wrongness import KINDS, WORDS
-from studies.page import hero
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
 from studies.scenes.told import SCENES, lines_of
+from studies.sources.registry import core_sources, resolve
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -67,11 +73,11 @@ class Told:
 
 def told(published: Path, study: Study, chapter: Chapter) -> Told:
     """Return a chapter in words, and the names of what it left in its folder."""
-    folder, module = published / chapter.folder, study.load()
+    folder = published / chapter.folder
     return Told(
         folder=chapter.folder,
         question=chapter.question,
-        claim=module.headline(folder),
+        claim=study.headline(folder),
         command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
         pictures=tuple(
             (path.name, study.captions.get(path.stem, path.stem))
@@ -300,19 +306,13 @@ def _typical(chosen: Mapping[str, Any] | None) -> tuple[str, str, str, str]:
 
 def hero_lines(published: Path) -> dict[str, str]:
     """Return the outcome of each source of the first picture, or how far its peak is off."""
-    lines = hero.summary(pd.read_csv(published / "hero" / "hero.csv"))
+    lines = hero_summary(pd.read_csv(published / "hero" / "hero.csv"))
     return {
-        str(row["source"]): _off(float(row["error"]))
+        str(row["source"]): signed(float(row["error"]))
         if row["outcome"] == "rocked"
         else str(row["outcome"])
         for _, row in lines.iterrows()
     }
-
-
-def _off(error: float) -> str:
-    if abs(error) < 1e-3:
-        return power(abs(error))
-    return f"{error:+.0%}".replace("%", " %").replace("-", "−")
 
 
 def counts(published: Path) -> dict[str, int]:
@@ -332,7 +332,8 @@ def counts(published: Path) -> dict[str, int]:
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
     sweep = provenance.record_of(published / "sweep")
-    machine = sweep["machine"]
+    machine, first = sweep["machine"], published / "sweep" / FIRST
+    others = [json.loads(first.read_text(encoding="utf-8"))] if first.is_file() else []
     versions = provenance.engines_of(provenance.record_of(_with_presets(published)[0]))
     asked = presets(published)["engine"].unique()
     packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
@@ -340,17 +341,12 @@ def made(published: Path) -> dict[str, str]:
         "engines": listed([f"{name} {versions[name]}" for name in packages]),
         "machine": f"{machine['cpu']}, {machine['cores']} cores",
         "date": sweep["runs"][-1]["start"][:10],
-        "sweep": lasts(sweep, *_first_of(published)),
+        "sweep": lasts(sweep, *others),
     }
 
 
 FIRST = "first.json"
 """Provenance of the sweep in another folder, where it was the first run after an installation."""
-
-
-def _first_of(published: Path) -> list[dict[str, Any]]:
-    path = published / "sweep" / FIRST
-    return [json.loads(path.read_text(encoding="utf-8"))] if path.is_file() else []
 
 
 def lasts(*records: Mapping[str, Any]) -> str:
@@ -389,3 +385,44 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table of cells that are text; a bar in a cell would end it."""
     lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
     return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)
+
+
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
+SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+SAMPLES = 401
+
+
+def measure_hero(path: Path) -> None:
+    """Ask every source for its history of the case, and write one table of them."""
+    window = free_rocking_window(BLOCK, PULSE)
+    times = np.linspace(0.0, window, SAMPLES)
+    parts = []
+    for name in SOURCES:
+        source = resolve(name)
+        job = Job(labels={}, block=BLOCK, motion=PULSE, source=name, duration=window, times=times)
+        parts.append(_samples(name, ask(job, source)))
+    text = pd.concat(parts, ignore_index=True).to_csv(index=False, na_rep="nan")
+    provenance.write_text(path, text)
+
+
+def _samples(name: str, response: Response) -> pd.DataFrame:
+    if response.history is None:
+        raise ValueError(f"{name} has no history: {response.message or response.outcome.value}")
+    return pd.DataFrame(
+        {
+            "source": name,
+            "outcome": response.outcome.value,
+            "peak_ratio": response.peak_ratio,
+            "time_s": response.history.time.round(9),
+            "theta_ratio": (response.history.theta / BLOCK.alpha).round(9),
+        }
+    )
+
+
+def hero_summary(samples: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: its outcome, its peak and the error of that."""
+    lines = samples.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
+    exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
+    survived = lines["outcome"] == "rocked"
+    return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))

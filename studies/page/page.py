@@ -18,12 +18,11 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.catalogue import CHAPTERS
-from studies.defaults.claims import INVALID
-from studies.defaults.study import read
+from studies.defaults.study import INVALID, read
 from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
-from studies.kit.tables import read_table
+from studies.kit.tables import SMALL, read_table
 from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import in_kinds, meant, part
@@ -100,11 +99,10 @@ def _unbroken(words: str) -> str:
 
 
 def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
-    module = study.load()
     return {
         "folder": chapter.folder,
         "question": chapter.question,
-        "claim": module.headline(folder),
+        "claim": study.headline(folder),
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
@@ -112,10 +110,10 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
         "pictures": [
             (study.captions.get(name, name), embedded(drawn))
-            for name, drawn in module.pictures(folder).items()
+            for name, drawn in study.pictures(folder).items()
         ],
         "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
-        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, module)],
+        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, study.load())],
         "failures": failures(folder, study.table),
     }
 
@@ -129,8 +127,6 @@ def prose(text: str) -> list[tuple[bool, list[str]]]:
     ]
 
 
-SMALL = 1e-2
-"""Numbers below are shown as powers of ten."""
 LARGE = 150_000
 """Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
 
@@ -232,7 +228,12 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
     order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
-    found = {str(name): [_short(peak) for peak in wide[name]] for name in rows["source"].unique()}
+    found = {
+        str(name): [
+            float(f"{peak:.{DIGITS}g}") if math.isfinite(peak) else None for peak in wide[name]
+        ]
+        for name in rows["source"].unique()
+    }
     slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
     judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
     rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
@@ -243,7 +244,3 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         "rests": rests.tolist(),
         "written": list(filter(written_out, found)),
     }
-
-
-def _short(value: float) -> float | None:
-    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

@@ -11,11 +11,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.digests import check, seal
 from studies.kit.journal import PROVENANCE
-from studies.measures.columns import dictionary
+from studies.kit.provenance import check, seal
+from studies.measures.published import dictionary
 from studies.measures.words import capital, meant
-from studies.page import engine_facts, facts, hero
+from studies.page import engine_facts, facts
 from studies.page.engine_facts import objections, slippery
 from studies.sweep.study import verdict
 
@@ -32,9 +32,8 @@ def command(*, root: Path = Path()) -> int:
     root
         The project's folder.
     """
-    from studies.drawing.block import draw_block
+    from studies.drawing.block import draw_block, draw_hero
     from studies.drawing.figures import save_all
-    from studies.drawing.hero import draw_hero
 
     folder = root / PUBLISHED / "hero"
     if not (root / PUBLISHED).is_dir():
@@ -42,12 +41,15 @@ def command(*, root: Path = Path()) -> int:
     for study, chapter in CHAPTERS:
         check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
     folder.mkdir(exist_ok=True)
-    hero.measure(folder / "hero.csv")
+    facts.measure_hero(folder / "hero.csv")
     made_with = {**provenance.subject("readme"), **provenance.versions()}
     provenance.write_text(folder / PROVENANCE, json.dumps(made_with, indent=2) + "\n")
     seal(folder)
     samples = pd.read_csv(folder / "hero.csv")
-    drawn = {"block": draw_block(), "hero": draw_hero(hero.BLOCK, samples, hero.summary(samples))}
+    drawn = {
+        "block": draw_block(),
+        "hero": draw_hero(facts.BLOCK, samples, facts.hero_summary(samples)),
+    }
     save_all(drawn, folder)
     for path, text in pages(root).items():
         provenance.write_text(path, text)

@@ -8,7 +8,7 @@ from typing import Literal
 from studies.catalogue import STUDIES
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError, Place
-from studies.kit.digests import check
+from studies.kit.provenance import check
 from studies.kit.refusing import one_line
 from studies.kit.study import Study
 
@@ -58,7 +58,7 @@ def draw(study: Study, folder: Path, suffix: str) -> list[Path]:
             if table.read_bytes().count(b"\n") < 2:
                 raise ValueError(f"{table.name} has no rows")
         with _no_words_for_numbers():
-            return save_all(study.load().pictures(folder), folder, suffix)
+            return save_all(study.pictures(folder), folder, suffix)
     except OSError:
         raise
     except Exception as error:

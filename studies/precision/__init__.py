@@ -6,20 +6,24 @@ STUDY = Study(
     name="precision",
     help="""Error against run time: every method along its own setting, on the same cases.
 
-Writes precision.csv, work-precision.csv, a work-precision diagram (PNG) and findings.txt;
-resumable. The full study takes some eight minutes on one core, --quick one and a half.""",
-    table="precision.csv",
+Every method along its own setting (tolerance, step, solver iterations) on 12 cases of the paper
+whose peaks lie before or after impacts, and 12 near overturning. Timing is serial, on one thread,
+warm, the best of five runs or more, until the shortest two agree, or of fewer where these take
+longer than half a second: how many is a column, and so is who takes the steps of an engine, a
+compiled loop or Python. Building and compiling are apart. Resumable.""",
     tables=("precision.csv", "work-precision.csv", "shares.csv", "scenes.csv", "reference.csv"),
     others=("findings.txt", "cost.txt"),
-    chapters=(
-        Chapter(
-            folder="precision",
-            question="Which error does which run time buy, and what is not needed?",
-            tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
-            minutes=(1.6, 8.2),
-            weaker="Fewer cases and settings of each method, one timing of each.",
-        ),
+    chapter=Chapter(
+        question="Which error does which run time buy, and what is not needed?",
+        tables=("work-precision.csv", "scenes.csv", "shares.csv", "reference.csv"),
+        minutes=(1.6, 8.2),
+        weaker="Fewer cases and settings of each method, one timing of each.",
     ),
+    claims=("work-precision",),
+    drawings={
+        "precision": ("draw_precision", "work-precision"),
+        "cost": ("draw_scenes", "scenes"),
+    },
     captions={
         "precision": (
             "Median error of the peak over run time, a panel for each engine and a line for each "
@@ -39,10 +43,11 @@ COST = Study(
     help="""What a scene costs, and what each thing left out of it would cost and change.
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
-history, ... measured by putting them back. Writes shares.csv, scenes.csv and reference.csv, and,
-with --starts, how long whole commands take, starts.csv, and, with --batches, what it is worth to
-run many scenes at once, batches.csv.""",
-    table="shares.csv",
+history, ... measured by putting them back, on the block and pulse of the paper's figure 5-b: of one
+thread, warm, the best of five or more, the scenes of an engine in turn. With --starts how long
+whole commands take, too, and with --batches what it is worth to run many scenes at once.""",
     tables=("shares.csv", "scenes.csv", "reference.csv", "starts.csv", "batches.csv"),
-    others=("cost.png", "cost.txt"),
+    claims=("shares",),
+    drawings={"cost": ("draw_scenes", "scenes")},
+    others=("cost.txt", "cost.png"),
 )

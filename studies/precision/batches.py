@@ -17,8 +17,8 @@ from engines.declaration import BatchEngine
 from engines.run.batch import alike, run_together
 from engines.run.drive import run
 from studies.cases.paper import sweep_cases
+from studies.kit.executors import COMPILING_S
 from studies.kit.pool import Pool
-from studies.kit.processes import COMPILING_S
 from studies.precision.repeats import enough
 
 WORLDS, QUICK_WORLDS = 48, 4

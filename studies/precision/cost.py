@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,15 +17,16 @@ from analytic import peak_ratios, simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
-from engines import ENGINES, Scene, core_engines
+from engines import ENGINES, Scene
 from engines.run.drive import build, run
 from studies.cases.paper import free_rocking_window, sweep_cases
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import Place, check_engines, several
+from studies.drawing.kept import tell
+from studies.kit.arguments import Out
+from studies.kit.executors import COMPILING_S
+from studies.kit.naming import CORE, Engines
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.pool import Pool
-from studies.kit.processes import COMPILING_S
 from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed
@@ -69,21 +70,16 @@ def omissions(block: RigidBlock, motion: SinePulse) -> list[Omission]:
 
 def command(
     *,
-    out: Place,
-    engines: Annotated[tuple[str, ...], several] = core_engines(),
+    out: Out,
+    engines: Engines = CORE,
     quick: bool = False,
     starts: bool = False,
     batches: bool = False,
 ) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
-    On the block and pulse of the paper's figure 5-b. Times are of one thread, warm, the best of
-    five or more, the scenes of an engine in turn.
-
     Parameters
     ----------
-    out
-        Folder for the tables; made if there is none.
     engines
         Names of engines, without a preset.
     quick
@@ -93,7 +89,6 @@ def command(
     batches
         What it is worth to run many scenes at once, too, with the engines that can.
     """
-    check_engines(engines)
 
     def tabulate(_: object) -> Tables:
         more = {"starts": start_table(quick)} if starts else {}
@@ -252,19 +247,12 @@ def report(folder: Path) -> str:
         "batches": "Many scenes at once and one by one, in CPU time of a step of a world",
     }
     tables |= {title: table_in(folder, name) for name, title in asked_for.items()}
-    return tell(folder, pictures(folder), headline(folder), tables, "cost.txt")
+    return tell(COST, folder, tables)
 
 
-def pictures(folder: Path) -> Pictures:
-    """Draw a folder's scenes.csv: time and error of each thing put back."""
-    from studies.precision.figure import draw_scenes
-
-    return {"cost": draw_scenes(table_in(folder, "scenes"))}
-
-
-def headline(folder: Path) -> str:
+def first_claim(shares: pd.DataFrame) -> str:
     """Say how long a step takes with each loop, and how much of that is the engine's own."""
-    shares = table_in(folder, "shares").dropna(subset=["step_s"])
+    shares = shares.dropna(subset=["step_s"])
     words = [
         f"{listed([_step(line) for _, line in lines.iterrows()])} with {engine}"
         for engine, lines in shares.groupby("engine", sort=False)

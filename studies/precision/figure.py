@@ -69,13 +69,7 @@ def style_of(method: str) -> Style:
 
 
 def draw_precision(table: pd.DataFrame) -> Figure:
-    """Draw the largest error of the peak against the run time of a case.
-
-    Parameters
-    ----------
-    table : DataFrame
-        The columns of work-precision.csv.
-    """
+    """Draw the largest error of the peak against the run time of a case."""
     lines = placed(table)
     engine = lines["method"].map(lambda method: engine_in(method)[0])
     engines = [name for name in engine.unique() if name]
@@ -166,13 +160,7 @@ def _names(lines: pd.DataFrame) -> Sequence[Name]:
 
 
 def draw_scenes(scenes: pd.DataFrame) -> Figure:
-    """Draw what each thing put back into a scene costs and changes, a dot for each engine.
-
-    Parameters
-    ----------
-    scenes : DataFrame
-        The columns of scenes.csv.
-    """
+    """Draw what each thing put back into a scene costs and changes, a dot for each engine."""
     names = list(scenes["scene"].unique())
     engines = list(scenes["engine"].unique())
     drawing = Figure(figsize=(9.6, 1.4 + 0.4 * len(names)), layout="constrained")

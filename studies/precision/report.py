@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,16 +15,16 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed, times
-from studies.precision import cost
+from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 STRICT = "RK4"
@@ -52,12 +53,7 @@ def report(folder: Path) -> str:
         f"Its cost over that of the {EXACT} at its tightest": over_targets(costs, "cost"),
         "Typical cases at the setting with the smallest median error": finest(typical),
     }
-    return tell(folder, {"precision": drawn(folder)}, first_claim(table), tables)
-
-
-def headline(folder: Path) -> str:
-    """Return what a folder's work-precision.csv says first."""
-    return first_claim(pd.read_csv(folder / "work-precision.csv"))
+    return tell(STUDY, folder, tables)
 
 
 def first_claim(table: pd.DataFrame) -> str:
@@ -82,36 +78,24 @@ def first_claim(table: pd.DataFrame) -> str:
     )
 
 
-def pictures(folder: Path) -> Pictures:
-    """Draw the work-precision diagram of a folder, and what a scene costs, from the CSVs."""
-    return {"precision": drawn(folder), **cost.pictures(folder)}
-
-
-def drawn(folder: Path) -> Figure:
-    """Draw the work-precision diagram of a folder's work-precision.csv."""
-    from studies.precision.figure import draw_precision
-
-    return draw_precision(pd.read_csv(folder / "work-precision.csv"))
-
-
 def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
     """Add to every row its errors: of the peak, against its method's own finest run, of impacts.
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    exact = {
-        tuple(getattr(case, name) for name in CASE): (case, _windowed(case))
-        for cases in chosen_cases(quick=False).values()
-        for case in cases
-    }
+    exact = {}
+    for case in chain(*chosen_cases(quick=False).values()):
+        window = free_rocking_window(case.block, case.motion)
+        found = simulate(case.block, case.motion, duration=window)
+        exact[tuple(getattr(case, name) for name in CASE)] = case, found
     posed = [exact[case] for case in rows[list(CASE)].itertuples(index=False, name=None)]
     peaks = np.array([response.peak_ratio for _, response in posed])
     failed = rows["outcome"] == Outcome.FAILED.value
     error = (rows["peak_ratio"] / peaks - 1.0).abs()
     finest = rows.groupby(["method", "figure", "aspect", "set"])["peak_ratio"].transform("last")
     own = (rows["peak_ratio"] / finest - 1.0).abs()
-    found = map(json.loads, rows["impact_times"])
-    late = [_impact_error(each, *asked) for each, asked in zip(found, posed, strict=True)]
+    impacts = map(json.loads, rows["impact_times"])
+    late = [_impact_error(each, *asked) for each, asked in zip(impacts, posed, strict=True)]
     return rows.assign(
         error=error.mask(failed),
         own_error=own.mask(failed),
@@ -119,11 +103,6 @@ def with_errors(rows: pd.DataFrame) -> pd.DataFrame:
         failed=failed,
         pulse_s=[case.motion.duration for case, _ in posed],
     )
-
-
-def _windowed(case: Case) -> Response:
-    window = free_rocking_window(case.block, case.motion)
-    return simulate(case.block, case.motion, duration=window)
 
 
 def _impact_error(found: list[float], case: Case, exact: Response) -> float:

@@ -8,28 +8,27 @@ from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Annotated
 
 import numpy as np
 import pandas as pd
 
 from analytic.response import Outcome, Response
-from engines import core_engines
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Out, Positive, check_engines, several
+from studies.kit.arguments import Out, Positive
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
+from studies.kit.naming import CORE, Engines
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
-from studies.precision.report import headline, pictures, report
+from studies.precision.report import first_claim, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "first_claim", "report"]
 
 BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 """Time [s] spent at most on timing one case with one setting."""
@@ -38,17 +37,11 @@ BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 def command(
     *,
     out: Out,
-    engines: Annotated[tuple[str, ...], several] = core_engines(),
+    engines: Engines = CORE,
     quick: bool = False,
     time_limit: Positive = 60.0,
 ) -> int:
     """Report error against run time, and what a scene does not need.
-
-    Every method along its own setting (tolerance, step, solver iterations) on 12 cases of the
-    paper whose peaks lie before or after impacts, and 12 near overturning. Timing is serial, on
-    one thread, warm, the best of five runs or more, until the shortest two agree, or of fewer where
-    these take longer than half a second: how many is a column, and so is who takes the steps of an
-    engine, a compiled loop or Python. Building and compiling are apart.
 
     Parameters
     ----------
@@ -59,14 +52,12 @@ def command(
     time_limit
         Wall-clock time [s] after which one case with one setting is given up.
     """
-    check_engines(engines)
     alone = Running(jobs=1, time_limit=time_limit)
-    return carry_out(STUDY, plan(out, engines, quick), out, alone, both_reports)
 
+    def both(folder: Path) -> str:
+        return f"{report(folder)}\n\n{cost.report(folder)}"
 
-def both_reports(folder: Path) -> str:
-    """Write and return what a folder says of errors, and of what a scene costs."""
-    return f"{report(folder)}\n\n{cost.report(folder)}"
+    return carry_out(STUDY, plan(out, engines, quick), out, alone, both)
 
 
 def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:

@@ -6,13 +6,14 @@ STUDY = Study(
     name="restitution",
     help="""What each engine makes of a coefficient of restitution, and what setting gives which.
 
-A block that turns about a corner strikes its base with the other: the speed of that corner after
-over before, for coefficients from 0 to 1, over steps, rates, sizes, slenderness and where in a step
-the impact falls; and what the block keeps of its angular rate, beside
-1 - 3/2 (1 + e) sin^2(alpha). Writes restitution.csv, corners.csv, rates.csv, two pictures and
-findings.txt; a minute.""",
-    table="restitution.csv",
+A block of 0.5 by 1 m in the preset "fixed" turns about a corner at half of alpha p and strikes its
+base with the other, in steps of 1e-3/p: the speed of that corner after over before, for
+coefficients from 0 to 1, wherever in a step the impact falls, and at another step, rate, height or
+slenderness; and what the block keeps of its angular rate, beside 1 - 3/2 (1 + e) sin^2(alpha).""",
     tables=("restitution.csv", "corners.csv", "rates.csv"),
+    texts=("way", "varied", "literal"),
+    claims=("corners",),
+    drawings={"corners": ("draw_corners", "restitution"), "rates": ("draw_rates", "restitution")},
     captions={
         "corners": (
             "How far the speed upwards of a corner that strikes the base, over that of its "
@@ -27,13 +28,10 @@ findings.txt; a minute.""",
             "sin² α, of a corner that bounces and does not slide."
         ),
     },
-    chapters=(
-        Chapter(
-            folder="restitution",
-            question="Which setting gives which coefficient of restitution?",
-            tables=("corners.csv", "rates.csv"),
-            quick=(),
-            minutes=(0.4, 0.2),
-        ),
+    chapter=Chapter(
+        question="Which setting gives which coefficient of restitution?",
+        tables=("corners.csv", "rates.csv"),
+        quick=(),
+        minutes=(0.4, 0.2),
     ),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from textwrap import wrap
 
 import numpy as np
@@ -54,13 +55,8 @@ class Shown:
     top: float
 
 
-SHOWN = {
-    "corners": Shown(
-        measure=CORNER, label="Speed of the corner, after over before", low=-0.05, top=1.35
-    ),
-    "rates": Shown(measure=RATE, label="Angular rate, after over before", low=-0.75, top=1.15),
-}
-"""Name of a picture -> what it shows."""
+SPEEDS = Shown(measure=CORNER, label="Speed of the corner, after over before", low=-0.05, top=1.35)
+RATES = Shown(measure=RATE, label="Angular rate, after over before", low=-0.75, top=1.15)
 
 USUAL = f"p dt {BASE.step:.0e}, {BASE.rate:g} α p, in the engine's colour"
 VARIED = {"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":")}
@@ -92,6 +88,9 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
         fontsize=12,
     )
     return drawing
+
+
+draw_corners, draw_rates = (partial(draw_restitution, shown=shown) for shown in (SPEEDS, RATES))
 
 
 def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:

@@ -91,11 +91,7 @@ def lines(rows: pd.DataFrame, measure: Measure) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        engine, way; off: the largest difference of what is found from what is right, wherever in a
-        step the impact falls; off_p_dt, ...: the same over what is varied; off_over_all: the
-        largest of these; broken: strikes that the library did not survive; slide: the largest speed
-        of the corner along the base, over that of its approach; literal: what is set for 0.6, what
-        follows the step being a formula of DT, the step [s].
+        The columns of corners.csv and of rates.csv.
     """
     table = []
     for (engine, name), group in rows.groupby(["engine", "way"], sort=False):

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import pandas as pd
 
 from engines import installed_engines
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import BadInputError, Out, check_engines, several
+from studies.drawing.kept import tell
+from studies.kit.arguments import BadInputError, Out
+from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import read_table
 from studies.measures.words import listed
 from studies.restitution import STUDY, strikes
 from studies.restitution.strikes import BASE, VARIED
@@ -39,19 +38,14 @@ RANGES = listed(
 """Over what strikes are varied."""
 
 
-def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -> int:
+def command(*, out: Out, engines: Engines = ASKED) -> int:
     """Hold what a rocking block keeps at an impact against what was asked.
-
-    Coefficients from 0 to 1, wherever in a step the impact falls: a block of 0.5 by 1 m in the
-    preset "fixed" that turns about a corner at half of alpha p and strikes with the other, in steps
-    of 1e-3/p, and at another step, rate, height or slenderness.
 
     Parameters
     ----------
     engines
         Names of engines, without a preset.
     """
-    check_engines(engines)
     mute = [name for name in engines if name not in WAYS]
     if mute:
         able = ", ".join(WAYS)
@@ -71,7 +65,7 @@ def command(*, out: Out, engines: Annotated[tuple[str, ...], several] = ASKED) -
 
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return them as text."""
-    corners, rates = _read(folder, "corners"), _read(folder, "rates")
+    corners, rates = STUDY.read(folder, "corners"), STUDY.read(folder, "rates")
     said = "^(engine|way|off)"
     tables = {
         f"Largest difference of the speed upwards of a corner that strikes the base, over that of "
@@ -84,16 +78,11 @@ def report(folder: Path) -> str:
         "Largest difference of the angular rate of the block, after over before, from 1 - 3/2 (1 + "
         "e) sin^2(alpha), of the same strikes": rates.filter(regex=said),
     }
-    return tell(folder, pictures(folder), headline(folder), tables)
+    return tell(STUDY, folder, tables)
 
 
-def _read(folder: Path, name: str) -> pd.DataFrame:
-    return read_table(folder / f"{name}.csv", "way", "varied", "literal")
-
-
-def headline(folder: Path) -> str:
+def first_claim(corners: pd.DataFrame) -> str:
     """Say how well the engines keep a coefficient at best, and who does not as first asked."""
-    corners = _read(folder, "corners")
     best = corners.loc[corners.groupby("engine", sort=False)["off_over_all"].idxmin()]
     first = corners.drop_duplicates("engine")
     lost = list(first.loc[first["off"] > 10.0 * GOOD, "engine"])
@@ -108,11 +97,3 @@ def headline(folder: Path) -> str:
 def _ends(best: pd.DataFrame, column: str) -> str:
     ends = best.sort_values(column).iloc[[0, -1]][[column, "engine"]].to_numpy()
     return " to ".join(dict.fromkeys(f"{value:.3f} in {engine}" for value, engine in ends))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw what is found against what is wanted, from a folder's table of rows alone."""
-    from studies.restitution.figure import SHOWN, draw_restitution
-
-    rows = _read(folder, "restitution")
-    return {name: draw_restitution(rows, shown) for name, shown in SHOWN.items()}

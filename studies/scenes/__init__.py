@@ -8,27 +8,23 @@ STUDY = Study(
     name="scenes",
     help="""A frame, a slide, a moving floor, a cart, a rolling cylinder; their exact solutions.
 
-The frame is a beam on two or three free columns; the slide is friction alone: two slips under a
-pulse, a launch, and a hold below the onset; the floor is moved in each way that an engine has, and
-should carry a block along; a block that rocks on it is held against the exact answer on the floor
-as it should move, and as it moved; the cart, free or on a spring, is pushed and feels its block; a
-cylinder rolls on its rim in space, five turns and fifty.
-Writes frame.csv, slide.csv, floor.csv, block.csv, cart.csv, cylinder.csv, their summaries and
-pictures, cart-steps.csv and findings.txt; resumable.""",
+The frame is a beam on two or three free columns, which turn as a block of another size and
+restitution does; the slide is friction alone: two slips under a pulse, a launch, and a hold below
+the onset; the floor is moved in each way that an engine has, and should carry a block along; a
+block that rocks on it is held against the exact answer on the floor as it should move, and as it
+moved; the cart, free or on a spring, is pushed and feels its block; a cylinder rolls on its rim in
+space, five turns and fifty. What an engine is not built for is a row that says so. Resumable.""",
     table="frame-summary.csv",
     tables=(
         *(f"{kind}.csv" for kind in KINDS),
         *(f"{kind}-summary.csv" for kind in KINDS),
         "cart-steps.csv",
     ),
-    chapters=(
-        Chapter(
-            folder="scenes",
-            question="Does it hold for frames, friction alone, floors, carts, a rolling cylinder?",
-            tables=(*(f"{kind}-summary.csv" for kind in KINDS), "cart-steps.csv"),
-            minutes=(0.5, 12.0),
-            weaker="One frame, one slide, one cart, two places of the steps.",
-        ),
+    chapter=Chapter(
+        question="Does it hold for frames, friction alone, floors, carts, a rolling cylinder?",
+        tables=(*(f"{kind}-summary.csv" for kind in KINDS), "cart-steps.csv"),
+        minutes=(0.5, 12.0),
+        weaker="One frame, one slide, one cart, two places of the steps.",
     ),
     captions={
         "frame-scene": (
@@ -43,18 +39,14 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
             "A block on a cart that leans to the right about its right corner; dashed, where it is "
             "at rest. The cart rolls freely, or on a spring."
         ),
-        "frame-time": (
-            "Frames: for each engine and preset a line from the median to the largest error of the "
-            "peak, against the run time of a case, both on logarithmic scales."
-        ),
-        "slide-time": (
-            "Slides: for each engine and preset a line from the median to the largest error of a "
-            "slip, against the run time of a case, both on logarithmic scales."
-        ),
-        "cart-time": (
-            "Carts: for each engine and preset a line from the median to the largest error of the "
-            "peak, against the run time of a case, both on logarithmic scales."
-        ),
+        **{
+            f"{scene}-time": (
+                f"{scene.capitalize()}s: for each engine and preset a line from the median to the "
+                f"largest error of {what}, against the run time of a case, both on logarithmic "
+                "scales."
+            )
+            for scene, what in (("frame", "the peak"), ("slide", "a slip"), ("cart", "the peak"))
+        },
         "floor": (
             "How far a floor carries a block of what it should, for each engine and each way of "
             "moving the floor, when it moves at once and when it moves after a second of rest."

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.drawing.block import draw_scene
 from studies.drawing.facets import key, preset_dots
+from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, around
-from studies.drawing.styles import title_of
-from studies.measures.presets import engine_of, in_order, preset_of, told
+from studies.drawing.styles import name_of, title_of
+from studies.measures.presets import engine_of, in_order, preset_of
+from studies.measures.presets import told as as_told
 from studies.measures.wrongness import KINDS
+from studies.scenes.told import SCENES, Told, found_in, lines_of
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
@@ -65,7 +71,7 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     for row in lines.dropna(subset="median_error").to_dict("records"):
         engine, preset = engine_of(row["source"]), preset_of(row["source"])
         ends = [max(row[name], LOWEST) for name in ("median_error", "largest_error")]
-        colour = told(preset).colour
+        colour = as_told(preset).colour
         axes.plot([row["ms"]] * 2, ends, color=colour, linewidth=1.5, alpha=0.5)
         axes.plot(row["ms"], ends[0], "o", color=colour, markersize=6)
         wrong = sum(row[kind] for kind in KINDS)
@@ -76,3 +82,23 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     axes.set_title(title, fontsize=11)
     around(axes, names)
     return figure
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw each scene, its engines' errors against their times, and what there is of floors."""
+    drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
+    for name, told in SCENES.items():
+        if len(lines := lines_of(folder / f"{name}.csv", name)):
+            drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
+    floors = found_in(folder / "floor-summary.csv")
+    return drawn | ({} if floors.empty else {"floor": draw_floors(floors)})
+
+
+def _finding(told: Told, lines: pd.DataFrame) -> str:
+    """Say between which median errors the engines of a scene lie, and whose these are."""
+    ranked = lines.dropna(subset="median_error").sort_values("median_error")
+    low, high = (
+        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
+        for end in (0, -1)
+    )
+    return f"{told.title.capitalize()}: median errors from {low} to {high}"

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Response
 from engines.run.drive import LAG
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import Place, check_sources
+from studies.drawing.kept import tell
+from studies.kit.arguments import Out
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.again import WORST_AGAIN, worst_again
@@ -25,13 +25,20 @@ from studies.measures.rolling import reduced
 from studies.scenes import KINDS, STUDY
 from studies.scenes.carts import cart_row, cart_steps, cart_summary, carts
 from studies.scenes.cases import jobs
-from studies.scenes.findings import cart_sentence, floor_sentence, frame_sentence, slide_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table
-from studies.scenes.told import again, drawings, found_in, shown
-from studies.sources.groups import core_sources
+from studies.scenes.told import (
+    again,
+    cart_sentence,
+    floor_sentence,
+    found_in,
+    frame_sentence,
+    shown,
+    slide_sentence,
+)
+from studies.sources.registry import core_sources
 
-__all__ = ["again", "command", "headline", "pictures", "report", "shown"]
+__all__ = ["again", "command", "headline", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
@@ -40,28 +47,21 @@ SEEN_OF_A_SLIDE = ("place_m", "lift_m", "turn_rad")
 
 def command(
     *,
-    out: Place,
+    out: Out,
     quick: bool = False,
-    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    sources: Sources = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Hold a frame, a slide, a moving floor, a cart and a cylinder against their exact solutions.
 
-    The frame's columns turn as a block of another size and restitution does; the block that slides
-    has a closed form; on the floor a block should ride; the cart feels its block. What an engine is
-    not built for is a row that says so.
-
     Parameters
     ----------
-    out
-        Folder for the results; made if there is none.
     quick
         One frame, one slide, one cart, one cylinder, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
     """
-    check_sources(sources)
     plan = Plan(
         jobs=lambda: [*jobs(sources, quick), *carts(sources, quick)],
         settings={"quick": quick},
@@ -241,7 +241,7 @@ def report(folder: Path) -> str:
     worst = again(folder).groupby("scene", sort=False)
     asked = {f"{WORST_AGAIN}: {name}": worst_again(lines) for name, lines in worst}
     tables |= {**shown(folder), **asked}
-    return tell(folder, pictures(folder), headline(folder), tables)
+    return tell(STUDY, folder, tables)
 
 
 def engines_in(folder: Path) -> list[pd.DataFrame]:
@@ -259,11 +259,3 @@ def headline(folder: Path) -> str:
     of_bodies = frame_sentence(frames), slide_sentence(slides), floor_sentence(floors)
     said = (*of_bodies, cart_sentence(on_carts), cylinder_sentence(rolling))
     return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the scenes, and what there is of floors, from the tables alone."""
-    from studies.scenes.figure import draw_floors
-
-    floors = found_in(folder / "floor-summary.csv")
-    return drawings(folder) | ({} if floors.empty else {"floor": draw_floors(floors)})

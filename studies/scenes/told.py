@@ -11,14 +11,13 @@ import pandas as pd
 
 from analytic import CartBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome
+from engines import ENGINES
 from engines.layouts import System
-from studies.drawing.kept import Pictures
-from studies.drawing.styles import name_of
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
-from studies.measures.presets import is_engine
-from studies.measures.words import part
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
 from studies.scenes.carts import carts
 from studies.scenes.cases import jobs
@@ -182,23 +181,50 @@ def _called(row: dict[str, object]) -> frozenset[tuple[str, object]]:
     return frozenset(row.items())
 
 
-def drawings(folder: Path) -> Pictures:
-    """Draw each scene, and its engines' errors against their times."""
-    from studies.drawing.block import draw_scene
-    from studies.scenes.figure import draw_times
+LATE_M = 1e-4
+"""From which lag on a floor is late [m]."""
 
-    drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
-    for name, told in SCENES.items():
-        if len(lines := lines_of(folder / f"{name}.csv", name)):
-            drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
-    return drawn
+RIDES = 0.9
+"""Part of a floor's way over which a block that rides on it is carried at least."""
 
 
-def _finding(told: Told, lines: pd.DataFrame) -> str:
-    """Say between which median errors the engines of a scene lie, and whose these are."""
-    ranked = lines.dropna(subset="median_error").sort_values("median_error")
-    low, high = (
-        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
-        for end in (0, -1)
+def frame_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the engines' frames are; empty without any."""
+    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
+    return f"The peak of a rocking frame is off by up to {listed(said)}." if said else ""
+
+
+def cart_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the peaks on carts are; empty without any."""
+    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
+    return f"The peak of a block on a cart is off by up to {listed(said)}." * bool(said)
+
+
+def slide_sentence(lines: pd.DataFrame) -> str:
+    """Say for each preset how far off the slips are; empty without any."""
+    largest = _largest(lines, "largest_slip_error_m")
+    said = [f"{float(f'{1e3 * most:.2g}'):g} mm {words}" for words, most in largest]
+    return f"The slips of a block are off by up to {listed(said)}." if said else ""
+
+
+def _largest(lines: pd.DataFrame, column: str) -> list[tuple[str, float]]:
+    presets = lines["source"].map(preset_of)
+    return [
+        (in_words(preset), float(lines.loc[presets == preset, column].max()))
+        for preset in in_order(presets)
+    ]
+
+
+def floor_sentence(lines: pd.DataFrame) -> str:
+    """Say which ways of moving a floor carry a block, and which not; empty without any."""
+    if lines.empty:
+        return ""
+    alone = lines["floor"] == "position"
+    left = lines[~alone & (lines["carried"] > RIDES) & ~(lines["carried_after_rest"] > RIDES)]
+    asleep = [ENGINES[str(name)].title for name in left["engine"].unique()]
+    slept = f"; after a second of rest it sleeps on in {listed(asleep)}" if asleep else ""
+    most, least = lines.loc[alone, "carried"].abs().max(), lines.loc[~alone, "carried"].min()
+    return (
+        f"A floor that is moved by position alone carries a block by no more than {part(most)} of "
+        f"its way, one moved by the other ways by {part(least)} and more{slept}."
     )
-    return f"{told.title.capitalize()}: median errors from {low} to {high}"

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, Style
 from studies.measures.words import listed
 from studies.precision.choices import engines_of, joint
 from studies.precision.figure import called, style_of
+from studies.score.report import ladder, published, table_of
+from studies.stability.figure import draw_matrix
 
 BACKGROUND = "#b5b5b5"
 """Colour of the published engines."""
@@ -61,3 +66,11 @@ def _line(axes: Axes, name: str, line: pd.DataFrame, style: Style) -> Name:
     axes.plot(line["wall_s"], error, **look)
     last = int(np.argmax(line["wall_s"]))
     return Name(called(name), float(line["wall_s"].iloc[last]), float(error.iloc[last]), colour)
+
+
+def pictures(folder: Path) -> Pictures:
+    """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
+    return {
+        "score": draw_score(ladder(folder), published()),
+        "extremes": draw_matrix(table_of(folder, "extremes")),
+    }

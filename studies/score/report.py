@@ -9,9 +9,9 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Engine
 from studies.advise.evidence import LADDER
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.kit import provenance
-from studies.kit.digests import check
+from studies.kit.provenance import check
 from studies.kit.tables import read_table
 from studies.measures.differences import summarize, with_reference
 from studies.measures.posed import posed
@@ -20,8 +20,9 @@ from studies.measures.words import listed, part, right_but
 from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
 from studies.precision.report import with_errors, work_precision
 from studies.scenes.told import SCENES, lines_of
+from studies.score import STUDY
 from studies.score.moments import accusation, judged
-from studies.stability.report import failures, verdicts
+from studies.stability.study import failures, verdicts
 
 
 def report(folder: Path) -> str:
@@ -49,7 +50,7 @@ def report(folder: Path) -> str:
     )
     tables |= beyond(folder)
     finding = " ".join(filter(None, (accusation(moments), introduction(engine), headline(folder))))
-    return tell(folder, pictures(folder), finding, tables, "score.txt")
+    return tell(STUDY, folder, tables, finding)
 
 
 def headline(folder: Path) -> str:
@@ -59,17 +60,6 @@ def headline(folder: Path) -> str:
         f"{best['source']} gets {right_but(best, best['cases'])} outcomes right, "
         f"and peaks to {part(best['max_error'])}."
     )
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the error-time diagram and the matrix of extremes, from the tables alone."""
-    from studies.score.figure import draw_score
-    from studies.stability.figure import draw_matrix
-
-    return {
-        "score": draw_score(ladder(folder), published()),
-        "extremes": draw_matrix(table_of(folder, "extremes")),
-    }
 
 
 def beyond(folder: Path) -> dict[str, pd.DataFrame]:

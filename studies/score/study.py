@@ -26,14 +26,14 @@ from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
 from studies.score.moments import BLOCK, UNFELT, accusation, ask_for_moment, reduced
-from studies.score.report import headline, pictures, published, report, table_of
+from studies.score.report import headline, published, report, table_of
 from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
 from studies.sweep.study import sweep_jobs
 
-__all__ = ["command", "headline", "pictures", "report"]
+__all__ = ["command", "headline", "report"]
 
 FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11
@@ -61,10 +61,6 @@ def command(
     running: Running = DEFAULT_RUNNING,
 ) -> int:
     """Score one engine.
-
-    With a requirement or an earlier result, the exit code is 1 where a requirement falls short,
-    and 0 whatever else failed; it is 1 where the engine's world declares another `Moment` than the
-    one at which its velocities hold.
 
     Parameters
     ----------

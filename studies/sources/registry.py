@@ -1,7 +1,7 @@
 """Who answers: the models, the paper's solvers and the engines, each by its name."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, Literal
@@ -12,7 +12,7 @@ from analytic.cylinder import RollingCylinder
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
-from engines import ENGINES
+from engines import ENGINES, core_engines, installed_engines
 from engines.cart import carrying, ride
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
@@ -271,3 +271,31 @@ class Effort:
 
 DEFAULT_EFFORT = Effort()
 """Every source as finely as it sees fit."""
+
+
+GROUPS = {"core": core_engines, "engines": installed_engines}
+"""Word -> the names of the engines for which it stands."""
+
+
+def core_sources(*presets: str) -> tuple[str, ...]:
+    """Return the core engines by name, each with some presets; "" is its best."""
+    return tuple(
+        f"{name}:{preset}" if preset else name
+        for name in core_engines()
+        for preset in presets or ("",)
+    )
+
+
+def expanded(names: Iterable[str]) -> Iterator[str]:
+    """Yield the names with those of engines in place of a group's; "engines:fixed" has a preset.
+
+    Engines of a group that have no such preset are left out, unless none has it.
+    """
+    for name in names:
+        group, colon, preset = name.partition(":")
+        if group not in GROUPS:
+            yield name
+            continue
+        engines = GROUPS[group]()
+        having = [e for e in engines if not colon or preset in presets_of(resolve(e))]
+        yield from (f"{engine}{colon}{preset}" for engine in having or engines)

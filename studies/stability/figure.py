@@ -68,13 +68,7 @@ MANY = 14
 
 
 def draw_matrix(rows: pd.DataFrame) -> Figure:
-    """Draw the cases as rows and the methods as columns.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        The columns of stability.csv.
-    """
+    """Draw the cases as rows and the methods as columns."""
     cases, sources = rows.drop_duplicates("case"), list(rows["source"].unique())
     names = list(cases["case"])
     many = len(sources) > MANY

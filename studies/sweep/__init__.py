@@ -10,14 +10,11 @@ STUDY = Study(
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
 240 cases a figure, which are 120 problems in two sizes that similarity makes alike, through every
-named source. Writes sweep.csv (a row for each case and source), a
-PNG for each figure, summary.csv, findings.txt and provenance.json. Finished cases are stored at
-once: a run that was interrupted goes on where it stopped when the same command is given again.""",
-    table="sweep.csv",
+named source. Finished cases are stored at once: a run that was interrupted goes on where it stopped
+when the same command is given again.""",
     tables=("sweep.csv", "summary.csv", "findings.csv"),
     chapters=(
         Chapter(
-            folder="sweep",
             question="Do the engines and the linearizations get the paper's cases right?",
             tables=("summary.csv",),
             quick=("--accuracy", "loose"),

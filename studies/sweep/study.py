@@ -10,11 +10,11 @@ from typing import Annotated
 import pandas as pd
 
 from studies.cases.paper import Case, sweep_cases
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.drawing.styles import engine_title
-from studies.kit.arguments import Out, check_sources, figures, refuse_repeats
+from studies.kit.arguments import Out, figures, refuse_repeats
 from studies.kit.jobs import Job
-from studies.kit.naming import several_sources
+from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
@@ -32,8 +32,7 @@ from studies.measures.words import (
     part,
 )
 from studies.measures.wrongness import KINDS
-from studies.sources.groups import core_sources
-from studies.sources.registry import Effort, resolve
+from studies.sources.registry import Effort, core_sources, resolve
 from studies.sweep import STUDY
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
@@ -43,7 +42,7 @@ def command(
     *,
     out: Out,
     figure: Annotated[tuple[int, ...], figures(6, 7, 8, 9)] = (6, 7, 8, 9),
-    sources: Annotated[tuple[str, ...], several_sources] = DEFAULT_SOURCES,
+    sources: Sources = DEFAULT_SOURCES,
     effort: EffortOptions = OWN_EFFORT,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -53,11 +52,8 @@ def command(
     ----------
     figure
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
-    sources
-        Who is asked.
     """
     refuse_repeats("--figure", figure)
-    check_sources(sources)
     return carry_out(STUDY, plan(figure, sources, effort), out, running, report)
 
 
@@ -101,29 +97,7 @@ def report(folder: Path) -> str:
             }
         ),
     }
-    return tell(folder, drawn(compared, table), headline(folder), tables)
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw every figure of a folder from its sweep.csv alone."""
-    compared = with_reference(read(folder))
-    return drawn(compared, summarize(compared))
-
-
-def drawn(compared: pd.DataFrame, summary: pd.DataFrame) -> Pictures:
-    """Draw every figure of the rows beside the exact solution, and of their summary.
-
-    Engines with several presets each are drawn preset by preset, and all of them in one figure.
-    """
-    from studies.sweep.figure import draw_sweep
-    from studies.sweep.presets import draw_by_preset, draw_overview
-
-    table = preset_table(over_all(summary))
-    each = {str(n): rows for n, rows in compared.groupby("figure", sort=False)}
-    if table.empty or table["preset"].nunique() < 2:
-        return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
-    by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
-    return {"overview": draw_overview(table), **by_preset}
+    return tell(STUDY, folder, tables)
 
 
 def again(folder: Path) -> pd.DataFrame:

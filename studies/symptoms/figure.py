@@ -43,13 +43,7 @@ LETTERS = 40
 
 
 def draw_symptoms(lines: pd.DataFrame) -> Figure:
-    """Draw the size of each symptom: engines as rows, by default and with what mends it as dots.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of symptoms.csv.
-    """
+    """Draw the size of each symptom: engines as rows, by default and with what mends it as dots."""
     groups = list(lines.groupby("symptom", sort=False))
     engines = list(lines["engine"].unique())
     drawing, grid = panels(

@@ -3,38 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from textwrap import fill, indent
-from typing import Annotated, Any
+from typing import Any
 
 import pandas as pd
 
 from engines import ENGINES
-from studies.drawing.kept import WIDTH, Pictures, as_text, keep
+from studies.drawing.kept import WIDTH, as_text, keep
 from studies.kit.arguments import (
     BadInputError,
     NotNegative,
     Place,
     Positive,
     as_bad_input,
-    check_engines,
-    several_or_none,
 )
+from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import read_table
-from studies.measures.columns import column_of
-from studies.measures.published import published_in
-from studies.measures.slippery import too_slippery
+from studies.measures.published import column_of, published_in, too_slippery
 from studies.measures.words import listed, part
 from studies.symptoms import STUDY
-from studies.symptoms.lines import NUMBERS, TABLES, VARIANTS, lines_of
-from studies.symptoms.patch import BLOCK, named
+from studies.symptoms.lines import BLOCK, NUMBERS, TABLES, VARIANTS, lines_of, named
 
 
 def command(
     *,
-    engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    engines: Engines | None = None,
     published: Place | None = None,
     dt: Positive | None = None,
     friction: NotNegative | None = None,
@@ -42,16 +36,11 @@ def command(
 ) -> int:
     """Say what users see, what it measures by default, and which setting leaves how much of it.
 
-    Of the settings changed one at a time from a library's defaults the one that helps most, if it
-    halves what there is and gets no more outcomes wrong, at the p dt of all and at the library's
-    own step; and what is left where all are tuned, with equal steps and with steps that land on
-    impacts.
-
     Parameters
     ----------
     engines
-        Names of engines, without a preset; by default all in the published tables. Of one alone
-        what its settings change is written out.
+        Names of engines, without a preset, of those in the published tables. Of one alone what
+        its settings change is written out.
     published
         Folder of the published tables; by default those that come with this project.
     dt
@@ -65,7 +54,6 @@ def command(
     check_written(dt)
     tables = published_in(published, TABLES)
     asked = tuple(ENGINES) if engines is None else engines
-    check_engines(asked)
     with as_bad_input():
         lines = lines_of(tables, asked, dt, friction)
     if lines.empty:
@@ -79,27 +67,7 @@ def command(
     settings = {"engines": list(lines["engine"].unique()), "dt": dt}
     settings |= {} if friction is None else {"friction": friction}
     plan = Plan(settings=settings, tabulate=lambda _: {"symptoms": lines})
-
-    return carry_out(
-        STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(folder, pictures(folder), text)
-    )
-
-
-def _read(folder: Path) -> pd.DataFrame:
-    texts = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
-    return read_table(folder / "symptoms.csv", *texts)
-
-
-def headline(folder: Path) -> str:
-    """Say which setting helps most against a wrong peak."""
-    return first_claim(_read(folder))
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the size of each symptom from a folder's symptoms.csv alone."""
-    from studies.symptoms.figure import draw_symptoms
-
-    return {"symptoms": draw_symptoms(_read(folder))}
+    return carry_out(STUDY, plan, out, DEFAULT_RUNNING, lambda folder: keep(STUDY, folder, text))
 
 
 SHORT = 28

@@ -22,7 +22,7 @@ from studies.cases.paper import PULSES
 from studies.cases.window import Window
 from studies.drawing.kept import tell
 from studies.kit import provenance
-from studies.kit.arguments import BadInputError, Count, Place
+from studies.kit.arguments import BadInputError, Count, Out
 from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, carry_out
 from studies.throughput import STUDY
@@ -35,18 +35,11 @@ RUNS = 3
 """The shortest of so many is reported of the models; peers take too long for more than one."""
 
 
-def command(*, out: Place, quick: bool = False, threads: Count | None = None) -> int:
+def command(*, out: Out, quick: bool = False, threads: Count | None = None) -> int:
     """Report how many cases of an overturning map are solved in a second.
-
-    The models on all threads and on one, SciPy's DOP853 and, where it is installed, heyoka.py on
-    a sample of the same cases, on one, alone and in its batch mode. All but one find the outcome
-    only: no peaks, nothing after the pulse but its energy; SciPy follows the free rocking to its
-    turning point.
 
     Parameters
     ----------
-    out
-        Folder for the table; made if there is none.
     quick
         Fewer cases: a few seconds.
     threads
@@ -192,4 +185,4 @@ def report(folder: Path) -> str:
         "steps are Taylor steps of exact and evaluations of the linear closed forms, busy is the "
         "part of their time that the cores of all threads worked"
     )
-    return tell(folder, {}, finding, {title: table})
+    return tell(STUDY, folder, {title: table}, finding)

@@ -8,24 +8,22 @@ STUDY = Study(
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
 case: its condition number κ, and its sensitivity to errors of 1e-6 and 1e-4. And what landing steps
-lean on: the first cases with false hints; and with --estimate what each engine says of its own
-error. Writes validate.csv, errors.csv, drawn.csv, bands.csv, hints.csv, leaning.csv, halves.csv and
-provenance.json; resumable.""",
-    table="validate.csv",
+lean on: the first cases with false hints about when an uplift is to be expected, about which
+corner, and how fast the block falls; and with --estimate what each engine says of its own error.
+Resumable.""",
     tables=(
         *("validate.csv", "errors.csv", "drawn.csv", "bands.csv", "hints.csv", "leaning.csv"),
         *("halves.csv",),
     ),
-    chapters=(
-        Chapter(
-            folder="validate",
-            question="And cases that nothing was tuned on?",
-            tables=("drawn.csv", "bands.csv", "leaning.csv"),
-            quick=("--cases", "100"),
-            minutes=(0.2, 0.3),
-            weaker="Fewer random cases.",
-        ),
+    chapter=Chapter(
+        question="And cases that nothing was tuned on?",
+        tables=("drawn.csv", "bands.csv", "leaning.csv"),
+        quick=("--cases", "100"),
+        minutes=(0.2, 0.3),
+        weaker="Fewer random cases.",
     ),
+    claims=("errors",),
+    drawings={"validate": ("draw_conditioning", "errors")},
     captions={
         "validate": (
             "Errors of random cases in bands of S, how far small errors of the pulse or of the "

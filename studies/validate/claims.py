@@ -1,14 +1,18 @@
-"""What random cases say, in tables and a sentence, and what was left out of them."""
+"""What random cases say, in tables and a sentence, with bounds, and what was left out of them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, replace
 from itertools import pairwise
 from math import inf
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from analytic.response import Outcome
+from engines.hints import TRUE, Hints
 from studies.cases.drawn import (
     FRICTION,
     KEPT,
@@ -21,9 +25,15 @@ from studies.cases.drawn import (
     everything,
     fate_of,
 )
+from studies.kit.jobs import Job
 from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
+from studies.measures.halving import estimates_of, halved, published_trust
 from studies.measures.words import NAMED, gathered, listed, part, right_of
 from studies.measures.wrongness import counted, wrong_in
+from studies.sources.registry import Effort, resolve
+
+if TYPE_CHECKING:
+    from studies.cases.drawn import RandomCase
 
 PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
 """Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
@@ -142,8 +152,7 @@ def bands(compared: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        source, by (peak or κ), band, cases, right (outcomes), median_error and max_error, which
-        are divided by nothing.
+        The columns of bands.csv.
     """
     rocked = compared[compared["exact_outcome"] == "rocked"]
     ways = {"peak": (rocked["exact_peak"], PEAKS), "κ": (conditioning_of(rocked), KAPPAS)}
@@ -169,3 +178,133 @@ def _in_bands(rows: pd.DataFrame) -> pd.DataFrame:
         max_error=("size", "max"),
     ).reset_index()
     return table.astype({"band": str})
+
+
+HALVES = "halves"
+"""Table of the rows at half the step."""
+
+
+def half_jobs(jobs: Iterable[Job]) -> list[Job]:
+    """Return the jobs at half their steps, of those sources that have a step to halve."""
+    finer = (halved(job) for job in jobs)
+    return [
+        replace(job, labels={**job.labels, "table": HALVES}) for job in finer if job is not None
+    ]
+
+
+def with_bounds(compared: pd.DataFrame, finer: pd.DataFrame) -> pd.DataFrame:
+    """Add estimate, and bound: the estimate times the published factor, nan where none was.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        With the columns of `studies.measures.differences.with_reference`.
+    finer : DataFrame
+        The same cases at half the step.
+    """
+    found = compared.assign(estimate=estimates_of(compared, finer))
+    return found.assign(bound=found["estimate"] * found["source"].map(_factors(found)))
+
+
+def bounded(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return of every source with estimates its factor, and how many errors that bounds.
+
+    The factor is nan of a source whose estimates were never held against errors.
+    """
+    known = compared.dropna(subset=["error", "estimate"])
+    known = known.assign(
+        factor=known["source"].map(_factors(known)), within=known["error"].abs() <= known["bound"]
+    )
+    groups = known.groupby("source", sort=False)
+    return groups.agg(
+        factor=("factor", "first"), survivors=("within", "size"), bounded=("within", "sum")
+    ).reset_index()
+
+
+def _factors(rows: pd.DataFrame) -> dict[str, float]:
+    trusts = {source: published_trust(str(source)) for source in rows["source"].unique()}
+    return {source: math.nan if trust is None else trust.factor for source, trust in trusts.items()}
+
+
+HINTED = 30
+"""Cases, the first ones, that are asked with false hints and with a calm motion."""
+
+CALM = 0.9
+"""Amplitude of the calm motion, over the acceleration that lifts the block."""
+
+KNOWN = "true"
+"""The hint of the rows that the others are held against."""
+
+FALSE: Mapping[str, Hints] = {
+    "onset 2 % low": Hints(onset=0.98),
+    "onset 2 % high": Hints(onset=1.02),
+    "onset 20 % low": Hints(onset=0.8),
+    "onset 20 % high": Hints(onset=1.2),
+    "sides swapped": Hints(swapped=True),
+    "fall half as fast": Hints(fall=0.5),
+    "fall twice as fast": Hints(fall=2.0),
+}
+"""Name -> what the steps are told."""
+
+
+def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
+    """Return a job for each case, false hint, and engine whose steps land on impacts."""
+    landing = [source for source in sources if resolve(source).lands]
+    asked = [
+        (posed, name, hints)
+        for case in cases
+        for posed, told in ((case, FALSE), (calm(case), {KNOWN: TRUE, **FALSE}))
+        for name, hints in told.items()
+    ]
+    return [
+        Job(
+            labels={"table": "hints", "hint": name, **asdict(case)},
+            block=case.block,
+            motion=case.motion,
+            source=source,
+            options={**effort.options(source), "hints": hints},
+        )
+        for case, name, hints in asked
+        for source in landing
+    ]
+
+
+def calm(case: RandomCase) -> RandomCase:
+    """Return a case with a pulse too weak to lift its block."""
+    return replace(case, amplitude_g=CALM / case.aspect)
+
+
+def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> pd.DataFrame:
+    """Hold rows with false hints beside those of the same cases and sources with true ones.
+
+    Parameters
+    ----------
+    known, hinted : DataFrame
+        Rows with the columns of `studies.measures.differences.with_reference`, and hint in the
+        second.
+
+    Returns
+    -------
+    DataFrame
+        The columns of leaning.csv.
+    """
+    same = known["case"].isin(hinted["case"]) & known["source"].isin(hinted["source"])
+    rows = pd.concat([known[same].assign(hint=KNOWN), hinted], ignore_index=True)
+    rows = rows.iloc[pd.factorize(rows["source"])[0].argsort(kind="stable")]
+    lifts, size = rows["exact_outcome"] != "at rest", rows["error"].abs()
+    rows = rows.assign(
+        lifts=lifts,
+        right=lifts & rows["agrees"],
+        still=~lifts & rows["agrees"],
+        size=size,
+        scaled=size / sensitivity_of(rows),
+    )
+    groups = rows.groupby(["source", "hint"], sort=False)
+    return groups.agg(
+        cases=("lifts", "sum"),
+        right=("right", "sum"),
+        still=("still", "sum"),
+        median_error=("size", "median"),
+        max_error=("size", "max"),
+        over_kappa=("scaled", "max"),
+    ).reset_index()

@@ -19,13 +19,7 @@ BANDS = (0.0, 3.0, 10.0, 100.0, inf)
 
 
 def draw_conditioning(compared: pd.DataFrame) -> Figure:
-    """Draw the errors of cases by how far small errors move their peaks.
-
-    Parameters
-    ----------
-    compared : DataFrame
-        The columns of errors.csv.
-    """
+    """Draw the errors of cases by how far small errors move their peaks."""
     sizes = compared.assign(s=sensitivity_of(compared), size=compared["error"].abs())
     sizes = sizes[sizes["size"].notna() & sizes["s"].notna()]
     sources = list(compared["source"].unique())

@@ -11,12 +11,11 @@ from typing import Annotated
 import pandas as pd
 
 from studies.cases.drawn import KINDS, Drawn, draw
-from studies.drawing.kept import Pictures, tell
+from studies.drawing.kept import tell
 from studies.kit import provenance
-from studies.kit.arguments import Count, Out, check_sources, one_of
+from studies.kit.arguments import Count, Out, Yes, one_of
 from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.naming import several_sources
+from studies.kit.naming import CORE, Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
@@ -28,12 +27,24 @@ from studies.measures.differences import (
     with_reference_of_frames,
 )
 from studies.measures.halving import ELSEWHERE
-from studies.sources.groups import core_sources
 from studies.sources.registry import Effort
 from studies.validate import STUDY
-from studies.validate.bounds import HALVES, bounded, half_jobs, with_bounds
-from studies.validate.claims import bands, census, first_claim, quantiles, width, worst
-from studies.validate.hints import CALM, HINTED, hint_jobs, leanings
+from studies.validate.claims import (
+    CALM,
+    HALVES,
+    HINTED,
+    bands,
+    bounded,
+    census,
+    first_claim,
+    half_jobs,
+    hint_jobs,
+    leanings,
+    quantiles,
+    width,
+    with_bounds,
+    worst,
+)
 
 S_IS = (
     "S is the largest of κ, κη and the sensitivity: by how many per cent a peak moves for one of "
@@ -47,16 +58,13 @@ def command(
     cases: Count = 500,
     seed: Count = 1,
     scene: Annotated[Drawn, one_of(Drawn)] = "block",
-    sources: Annotated[tuple[str, ...], several_sources] = core_sources(),
+    sources: Sources = CORE,
     effort: EffortOptions = OWN_EFFORT,
     estimate: bool = False,
     running: Running = DEFAULT_RUNNING,
-    yes: bool = False,
+    yes: Yes = False,
 ) -> int:
     """Hold the sources against the exact solution on random cases.
-
-    The first cases are asked of engines whose steps land on impacts with false hints, too: about
-    when an uplift is to be expected, about which corner, and how fast the block falls.
 
     Parameters
     ----------
@@ -66,15 +74,10 @@ def command(
         Seed of the random numbers, a positive whole number; another one draws other cases.
     scene
         block: one block that rocks. frame: a beam on 2 to 5 columns.
-    sources
-        Who is asked.
     estimate
         Run every engine at half the step, too: the relative difference of the two peaks, and how
         many of the errors it bounds, times the published factor (`rocking estimate`).
-    yes
-        Begin even what takes longer than a day.
     """
-    check_sources(sources)
     # the exact solution is asked, too, whether a case is kept
     everyone = ("exact", *(3 if estimate else 1) * sources)
     running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)
@@ -113,27 +116,13 @@ def plan(
         settings={"seed": seed, **asdict(effort), **({} if scene == "block" else {"scene": scene})},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
-        needed=without_hints,
+        # what becomes of a false hint is an answer, and half a step that failed is no estimate
+        needed=lambda rows: [row for row in rows if row["table"] == STUDY.name],
     )
 
 
-def without_hints(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of validate.csv: what becomes of a false hint is an answer.
-
-    A run at half the step that failed leaves a row without an estimate.
-    """
-    return [row for row in rows if row["table"] == STUDY.name]
-
-
 def report(folder: Path) -> str:
-    """Hold a folder's tables against the exact solution; write four more, return the text.
-
-    errors.csv has, for each row of validate.csv, the exact peak and outcome, the error, κ and the
-    sensitivity, and where halves.csv is there the estimate of the error and its bound;
-    bands.csv has the errors in bands of peak and κ; leaning.csv has a row for each source and
-    hint, where hints.csv is there; drawn.csv says how many cases were drawn, kept and left out,
-    and what share of each overturns.
-    """
+    """Hold a folder's tables against the exact solution; write four more, return the text."""
     settings = provenance.record_of(folder)["settings"]
     compared = compare(folder, "validate")
     if halves := (folder / f"{HALVES}.csv").exists():
@@ -164,7 +153,7 @@ def report(folder: Path) -> str:
     tables["Cases that were drawn"] = left
     for name, table in kept.items():
         write_table(folder / f"{name}.csv", table)
-    return tell(folder, pictures(folder), f"{first_claim(compared)} {S_IS}", tables)
+    return tell(STUDY, folder, tables, f"{first_claim(compared)} {S_IS}")
 
 
 def again(folder: Path) -> pd.DataFrame:
@@ -178,15 +167,3 @@ def compare(folder: Path, table: str) -> pd.DataFrame:
     """Read a table back, and hold it against the exact solution."""
     rows = pd.read_csv(folder / f"{table}.csv", dtype={"message": str})
     return with_reference_of_frames(rows) if "load" in rows else with_reference(rows)
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the errors of a folder against what they are judged by, from its errors.csv alone."""
-    from studies.validate.figure import draw_conditioning
-
-    return {"validate": draw_conditioning(pd.read_csv(folder / "errors.csv"))}
-
-
-def headline(folder: Path) -> str:
-    """Say how many outcomes each source gets right, and its largest errors."""
-    return first_claim(pd.read_csv(folder / "errors.csv"))

@@ -7,19 +7,15 @@ STUDY = Study(
     help="""Where the reference is valid, and what engines do beyond: slide, lift off.
 
 The smallest normal force and the friction needed over amplitude, frequency and H/B, and the engines
-on squat blocks and with low friction. Writes validity.csv, map.csv, compared.csv, a
-picture and findings.txt; resumable. The full study takes about a minute on one core, --quick a
-quarter of one.""",
-    table="validity.csv",
+on squat blocks and with low friction. Resumable.""",
     tables=("validity.csv", "map.csv", "compared.csv"),
-    chapters=(
-        Chapter(
-            folder="validity",
-            question="Where is the reference itself valid, and what do engines do beyond?",
-            minutes=(0.1, 3.0),
-            weaker="Every other case of the engines, and fewer frictions.",
-        ),
+    chapter=Chapter(
+        question="Where is the reference itself valid, and what do engines do beyond?",
+        minutes=(0.1, 3.0),
+        weaker="Every other case of the engines, and fewer frictions.",
     ),
+    claims=("map",),
+    drawings={"validity": ("draw_validity", "map", "compared")},
     captions={
         "validity": (
             "Amplitude over frequency for four H/B: where the reference holds, where its pivot "

@@ -60,11 +60,7 @@ def grid(onsets: Sequence[float], omegas: Sequence[float]) -> Iterator[ValidityC
 
 
 def reference_map(cases: Sequence[ValidityCase]) -> pd.DataFrame:
-    """Return what the exact solution of each case needs to be one.
-
-    Columns aspect, onsets, omega_over_p, outcome, peak_ratio, min_normal (over weight) and
-    friction_needed (inf where the normal force is lost).
-    """
+    """Return what the exact solution of each case needs to be one: the columns of map.csv."""
     rows = []
     for case in cases:
         exact = simulate(case.block, case.motion)

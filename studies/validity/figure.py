@@ -29,13 +29,7 @@ HOLDS, ENDS = "#e8f0f5", "#f4d3bd"
 
 
 def draw_validity(table: pd.DataFrame, beside: pd.DataFrame) -> Figure:
-    """Draw over amplitude and frequency where the reference holds, and what engines do there.
-
-    Parameters
-    ----------
-    table, beside : DataFrame
-        map.csv and compared.csv.
-    """
+    """Draw over amplitude and frequency where the reference holds, and what engines do there."""
     sources = list(beside["source"].unique())
     own = beside[beside["friction_factor"].isna()]
     aspects = sorted(table["aspect"].unique())

@@ -5,24 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
-from studies.drawing.kept import Pictures, tell
-from studies.kit.arguments import BadInputError, Out, check_sources
+from studies.drawing.kept import tell
+from studies.kit.arguments import BadInputError, Out
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.naming import several_engines
+from studies.kit.naming import EngineSources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import write_table
 from studies.measures.words import listed
-from studies.sources.groups import core_sources
-from studies.sources.registry import resolve
+from studies.sources.registry import core_sources, resolve
 from studies.validity import STUDY
 from studies.validity.cases import ValidityCase, grid, reference_map
 
@@ -48,7 +47,7 @@ DEFAULT_SOURCES = core_sources("fixed")
 def command(
     *,
     out: Out,
-    sources: Annotated[tuple[str, ...], several_engines] = DEFAULT_SOURCES,
+    sources: EngineSources = DEFAULT_SOURCES,
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -61,7 +60,6 @@ def command(
     quick
         Every other case of the engines, and fewer frictions.
     """
-    check_sources(sources)
     for name in sources:
         if resolve(name).kind != "engine":
             raise BadInputError(f"--sources names {name!r}; it must name engines, which can slide")
@@ -90,19 +88,15 @@ def plan(sources: Sequence[str], quick: bool) -> Plan:
         growing={"source": sources},
         reduce=_reduce,
         tabulate=tabulate,
-        needed=unanswered,
+        # a block that slid away is what was asked for
+        needed=lambda rows: [row for row in rows if row["verdict"] == "failed"],
     )
 
 
 def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the engines' table, and the map of the reference beside it."""
     reference = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
-    return {STUDY.name: pd.DataFrame(rows), "map": reference}
-
-
-def unanswered(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that failed: a block that slid away is what was asked for."""
-    return [row for row in rows if row["verdict"] == "failed"]
+    return {"validity": pd.DataFrame(rows), "map": reference}
 
 
 def _job(case: ValidityCase, source: str, factor: float, options: dict[str, float]) -> Job:
@@ -164,31 +158,14 @@ def report(folder: Path) -> str:
             beside[~own], beside.loc[~own, "friction_factor"]
         ),
     }
-    return tell(folder, pictures(folder), first_claim(table), tables)
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw the map of a folder from its tables alone."""
-    from studies.validity.figure import draw_validity
-
-    table, beside = (pd.read_csv(folder / name) for name in ("map.csv", "compared.csv"))
-    return {"validity": draw_validity(table, beside)}
-
-
-def headline(folder: Path) -> str:
-    """Say from which amplitude on the reference does not hold, by slenderness."""
-    return first_claim(pd.read_csv(folder / "map.csv"))
+    return tell(STUDY, folder, tables)
 
 
 CASE = ["aspect", "onsets", "omega_over_p"]
 
 
 def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
-    """Return the engines' rows beside the exact solution of their cases.
-
-    With the further columns exact_outcome, exact_peak, min_normal, friction_needed, agrees and
-    error (relative, of the peak where both rocked).
-    """
+    """Return the columns of compared.csv: the engines' rows beside the exact solution."""
     named = exact.rename(columns={"outcome": "exact_outcome", "peak_ratio": "exact_peak"})
     joined = rows.merge(named, on=CASE, validate="many_to_one")
     both = (joined["outcome"] == "rocked") & (joined["exact_outcome"] == "rocked")

@@ -26,13 +26,7 @@ FLOOR = 1e-8
 
 
 def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
-    """Draw the error of each preset by release; where answers changed, a line stands.
-
-    Parameters
-    ----------
-    lines, changes : DataFrame
-        The columns of releases.csv and changes.csv.
-    """
+    """Draw the error of each preset by release; where answers changed, a line stands."""
     lines = lines.assign(preset=lines["source"].str.partition(":")[2])
     engines = list(lines["engine"].unique())
     drawing, grid = panels(len(engines), COLUMNS, (9.4 / COLUMNS, 2.9), 0.0, sharey=True)

@@ -75,20 +75,11 @@ def installed(engine: str) -> Release:
 
 
 def python(*words: str, first: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a Python that looks in a folder before it looks where this one does.
-
-    Whatever ends this process ends that one in an orderly way.
-    """
+    """Run a Python that looks in a folder before it looks where this one does."""
     places = [*([first.absolute()] if first else []), ROOT, *sys.path]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, places))}
-    command, kept = [sys.executable, "-P", *words], subprocess.PIPE
-    with subprocess.Popen(command, env=env, text=True, stdout=kept, stderr=kept) as process:
-        try:
-            said = process.communicate()
-        except BaseException:
-            process.terminate()
-            raise
-    return subprocess.CompletedProcess(command, process.returncode, *said)
+    command = [sys.executable, "-P", *words]
+    return subprocess.run(command, env=env, text=True, capture_output=True)
 
 
 def pip(*words: str) -> subprocess.CompletedProcess[str]:

@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
+import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
+from itertools import islice
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import pandas as pd
 from tqdm import tqdm
 
-from engines import installed_engines
-from studies.drawing.kept import Pictures, tell
+from analytic.block import Rocker
+from analytic.motion import Motion
+from engines import ENGINES, installed_engines
+from studies.cases.drawn import RandomCase, draw
+from studies.cases.paper import Case, sweep_cases
+from studies.drawing.kept import tell
 from studies.kit.arguments import (
     BadInputError,
     Count,
     Place,
     Positive,
-    check_engines,
     refuse_repeats,
     several,
-    several_or_none,
 )
+from studies.kit.jobs import Job
 from studies.kit.journal import Row
+from studies.kit.naming import Engines
 from studies.kit.options import Running
 from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import read_table, write_table
+from studies.kit.tables import write_table
 from studies.measures.words import listed, out_of
 from studies.versions import STUDY
-from studies.versions.cases import jobs_of
 from studies.versions.releases import (
     INSTALLED,
     Asked,
@@ -41,11 +46,64 @@ from studies.versions.releases import (
 )
 from studies.versions.tables import CHANGED, answered, changes_table, is_changed, releases_table
 
+FIGURE, SEED = 8, 1
+"""Figure of the paper whose cases are asked, and the seed of the random ones."""
+
+RANDOM = 50
+"""Random cases, the first ones of `rocking validate`."""
+
+STEP = 1e-3
+"""p dt of presets with equal steps of their own choice: finer ones see no more of a change."""
+
+EVERY = 10
+"""One in so many cases is asked where it is to be quick."""
+
+
+def jobs_of(release: Release, quick: bool) -> list[Job]:
+    """Return the jobs that put every case to every preset of the release that is installed."""
+    return [
+        Job(
+            labels={"engine": release.engine, "release": release.version, **labels},
+            block=block,
+            motion=motion,
+            source=f"{release.engine}:{preset.name}",
+            options={} if math.isnan(preset.step) else {"step": STEP},
+        )
+        for labels, block, motion in posed(quick)
+        for preset in ENGINES[release.engine].presets
+    ]
+
+
+def posed(quick: bool) -> list[tuple[dict[str, Any], Rocker, Motion]]:
+    """Return labels, block and motion of every case: those of the figure, then random ones."""
+    asked: dict[str, Iterable[Case | RandomCase]] = {
+        f"figure {FIGURE}": sweep_cases([FIGURE]),
+        "random": islice(draw(SEED), RANDOM),
+    }
+    every = EVERY if quick else 1
+    return [
+        (
+            {
+                "set": name,
+                "case": number,
+                "aspect": float(case.aspect),
+                "width_m": case.width_m,
+                "half_cycles": case.motion.half_cycles,
+                "amplitude_g": case.amplitude_g,
+                "omega_over_p": case.omega_over_p,
+            },
+            case.block,
+            case.motion,
+        )
+        for name, cases in asked.items()
+        for number, case in islice(enumerate(cases), 0, None, every)
+    ]
+
 
 def command(
     *,
     out: Place,
-    engines: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    engines: Engines | None = None,
     releases: Annotated[tuple[str, ...], several] = (INSTALLED,),
     quick: bool = False,
     environments: Place | None = None,
@@ -54,15 +112,12 @@ def command(
 ) -> int:
     """Ask the releases of each engine the same cases, each in an environment of its own.
 
-    The release that is installed is always among them. The others are fetched. Without a network
-    those of which there is an environment can still be named.
-
     Parameters
     ----------
     out
         Folder for the results, with one inside for each release; made if there is none.
     engines
-        Names of engines, without a preset; by default all that are installed.
+        Names of engines, without a preset, of those that are installed.
     releases
         "installed", by default; "minor": the last one of each minor number; "all"; or some by name,
         as in mujoco==3.2.7.
@@ -76,7 +131,6 @@ def command(
         Wall-clock time [s] after which a case is given up.
     """
     engines = installed_engines() if engines is None else engines
-    check_engines(engines)
     if missing := [name for name in engines if name not in installed_engines()]:
         raise BadInputError(f"--engines is {missing[0]!r}; it must be installed")
     refuse_repeats("--releases", releases)
@@ -130,28 +184,17 @@ SHOWN = [
 
 def report(folder: Path) -> str:
     """Write what changed beside a folder's releases.csv, draw both; return them as text."""
-    lines = read(folder, "releases")
+    lines = STUDY.read(folder, "releases")
     write_table(folder / "changes.csv", changes_table(lines))
     other = lines["moved"].isna() | is_changed(lines)
     tables = {
         f"Answers that moved by more than {CHANGED:g}, or turned into another outcome": (
-            read(folder, "changes")
+            STUDY.read(folder, "changes")
         ),
         "Errors of the peak, relative, over cases that both survive, of the first release and of "
         "those that do not answer as the one before": lines.loc[other, SHOWN],
     }
-    return tell(folder, pictures(folder), headline(folder), tables)
-
-
-def read(folder: Path, name: str) -> pd.DataFrame:
-    """Read a table back, with empty words as such."""
-    words = ("release", "before", "source", "set", "note", "link")
-    return read_table(folder / f"{name}.csv", *words)
-
-
-def headline(folder: Path) -> str:
-    """Say between how many releases of each engine the answers changed."""
-    return first_claim(read(folder, "releases"), read(folder, "changes"))
+    return tell(STUDY, folder, tables)
 
 
 def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
@@ -173,10 +216,3 @@ def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
     if moved:
         words.append(f"{'some do' if still else f'answers move {bound}'} in {listed(moved)}")
     return f"From one release to the next {'; '.join(words)}."
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw errors by release from a folder's releases.csv and changes.csv alone."""
-    from studies.versions.figure import draw_versions
-
-    return {"versions": draw_versions(read(folder, "releases"), read(folder, "changes"))}

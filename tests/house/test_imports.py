@@ -96,7 +96,7 @@ FORBIDDEN = {
         "import analytic.block",
     ),
     "the floors of studies, and studies that do not know one another": (
-        "studies/contact/report.py",
+        "studies/contact/study.py",
         "import studies.validity.report",
     ),
     "no study opens an engine's folder": (

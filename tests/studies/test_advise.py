@@ -29,8 +29,8 @@ from studies.advise.evidence import (
 from studies.advise.steps import off, worth_trying
 from studies.advise.words import literal
 from studies.cases.drawn import draw
-from studies.kit.digests import seal
 from studies.kit.journal import PROVENANCE
+from studies.kit.provenance import seal
 from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS
 from studies.measures.differences import WELL_CONDITIONED
@@ -252,7 +252,7 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert run(["advise", "--engines", *CORE, "--out", str(out)]) == 0
     assert capsys.readouterr().out == (out / "findings.txt").read_text()
     assert (out / "advice.png").stat().st_size > 7_000
-    assert study.headline(out).startswith("An error of 10 % ")
+    assert study.STUDY.headline(out).startswith("An error of 10 % ")
     assert Path(out / "provenance.json").is_file()
 
 

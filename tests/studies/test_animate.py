@@ -19,9 +19,9 @@ from studies.drawing import film as film_module
 from studies.drawing.block import outlines
 from studies.drawing.film import GifWriter, Stage, verdict
 from studies.kit.arguments import BadInputError
-from studies.kit.digests import seal
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
+from studies.kit.provenance import seal
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]

@@ -10,8 +10,8 @@ import pytest
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
-from studies.contact import report as contact
-from studies.contact.report import recommendation
+from studies.contact import study as contact
+from studies.contact.study import recommendation
 from studies.ensemble import study as ensemble
 from studies.histories.study import CLAIMS
 from studies.measures.claims import (
@@ -22,11 +22,11 @@ from studies.measures.claims import (
     write_findings,
 )
 from studies.overturning import report as overturning
-from studies.overturning.areas import with_verdicts
+from studies.overturning.report import with_verdicts
 from studies.precision import report as precision
 from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
-from studies.stability import report as stability
-from studies.stability.report import mended, peers
+from studies.stability import study as stability
+from studies.stability.study import mended, peers
 from studies.validate import claims as validate
 from studies.validity import study as validity
 
@@ -279,7 +279,7 @@ def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
         {**line, "source": "rapier", "rest_wrong": 3, "no_answer": 2},
     ]
     pd.DataFrame(lines).to_csv(tmp_path / "differences.csv")
-    assert overturning.headline(tmp_path).endswith(
+    assert overturning.STUDY.headline(tmp_path).endswith(
         "the fall wrong in up to 1 (mujoco), at rest for rocked in up to 3 (rapier) and no answer "
         "in up to 2 (rapier)."
     )

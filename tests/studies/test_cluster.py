@@ -40,7 +40,7 @@ from distributed.comm import CommClosedError
 
 from analytic import simulate
 from studies.__main__ import run
-from studies.kit import cluster, worker
+from studies.kit import cluster
 from studies.kit.cluster import Cluster, ClusterError
 from studies.kit.jobs import summary
 from studies.kit.options import Running
@@ -103,12 +103,12 @@ def test_what_compiles_itself_does_so_outside_the_time_limit(station, monkeypatc
 
 def test_a_worker_of_another_version_is_refused(station, monkeypatch, tmp_path, capsys):
     """Its code is that by which a results folder knows its own."""
-    monkeypatch.setattr(worker, "everything", lambda: "other code")
-    worker.fitness.cache_clear()
+    monkeypatch.setattr(cluster, "everything", lambda: "other code")
+    cluster.fitness.cache_clear()
     try:
         line = refusal(station[0], capsys, tmp_path)
     finally:
-        worker.fitness.cache_clear()
+        cluster.fitness.cache_clear()
     assert "its worker tcp://127.0.0.1:" in line
     assert "code " in line
     assert "there, other code here" in line
@@ -220,7 +220,7 @@ def test_a_case_that_kills_every_worker_is_a_row(tmp_path, monkeypatch):
 
 def test_a_cluster_knows_nothing_of_who_chooses_it():
     graph = grimp.build_graph("studies")
-    for module in ("cluster", "worker", "processes"):
+    for module in ("cluster", "executors", "pool"):
         assert not graph.chain_exists(
             importer=f"studies.kit.{module}", imported="studies.kit.options"
         )

@@ -20,7 +20,6 @@ from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.run.drive import build, run
 from engines.run.look import Look
-from studies.contact.report import prices, recommendation, report, rules, variant_table
 from studies.contact.study import (
     QUICK_ASPECTS,
     all_variants,
@@ -28,8 +27,13 @@ from studies.contact.study import (
     job_of,
     newton_e,
     plan,
+    prices,
+    recommendation,
     reduce,
+    report,
+    rules,
     unchanged,
+    variant_table,
 )
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve

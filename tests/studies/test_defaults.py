@@ -9,7 +9,8 @@ import pytest
 from analytic import simulate
 from studies.__main__ import run
 from studies.defaults import study
-from studies.defaults.claims import (
+from studies.defaults.figure import COLOURS, LABELS, draw_maps
+from studies.defaults.study import (
     FALSE,
     INVALID,
     MISSED,
@@ -23,7 +24,6 @@ from studies.defaults.claims import (
     similarity,
     with_verdicts,
 )
-from studies.defaults.figure import COLOURS, LABELS, draw_maps
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST
 
 
@@ -144,9 +144,9 @@ def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
     assert code == 0
     rows = pd.read_csv(out / "defaults.csv")
     assert list(rows["source"].unique()) == ["exact", "pybullet:naive"]
-    assert study.headline(out) in " ".join(capsys.readouterr().out.split())
-    assert study.headline(out).startswith("As documented, outcome and peak (within 10 %)")
-    assert set(study.pictures(out)) == {"small", "large"}
+    assert study.STUDY.headline(out) in " ".join(capsys.readouterr().out.split())
+    assert study.STUDY.headline(out).startswith("As documented, outcome and peak (within 10 %)")
+    assert set(study.STUDY.pictures(out)) == {"small", "large"}
 
 
 def test_every_other_pulse_begins_after_a_rest():

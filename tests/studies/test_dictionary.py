@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from studies.measures.columns import columns
+from studies.measures.published import columns
 
 ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / "studies" / "published"

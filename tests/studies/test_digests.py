@@ -13,9 +13,9 @@ from commanding import CASE, refused
 from studies.__main__ import run
 from studies.advise.evidence import RANDOM, TABLES
 from studies.catalogue import CHAPTERS
-from studies.kit.digests import digest, seal
 from studies.kit.journal import seal as sealed_line
 from studies.kit.journal import unseal
+from studies.kit.provenance import digest, seal
 from studies.measures import halving
 from studies.page import readme
 from studies.score import report as score

@@ -225,7 +225,7 @@ def words_of(drawing):
 
 @pytest.mark.parametrize("study", ["precision", "contact", "symptoms", "validate", "restitution"])
 def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
-    drawn = next(each for each in STUDIES if each.name == study).load().pictures(PUBLISHED / study)
+    drawn = next(each for each in STUDIES if each.name == study).pictures(PUBLISHED / study)
     for drawing in drawn.values():
         found = words_of(drawing)
         titles = [title_of(name) for name in ENGINES]

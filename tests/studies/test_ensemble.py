@@ -12,23 +12,28 @@ from scipy.stats import CensoredData, binomtest, lognorm, norm
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies import respond
 from studies.__main__ import run
-from studies.cases.motions import FAMILIES
 from studies.ensemble.agreement import (
     BOUNDS,
     DIGITS,
     LEAST_RESAMPLES,
     agreement,
-    confusion,
-    settled,
-)
-from studies.ensemble.fragility import (
     bounds,
+    confusion,
     draws_of,
     fit_lognormal,
     fragilities,
+    settled,
     share_bounds,
 )
-from studies.ensemble.study import curves, drawn, ensemble_jobs, first_claim, recorded, stripes
+from studies.ensemble.study import (
+    FAMILIES,
+    curves,
+    drawn,
+    ensemble_jobs,
+    first_claim,
+    recorded,
+    stripes,
+)
 from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])

@@ -13,7 +13,7 @@ from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
 from studies.estimate import study
-from studies.estimate.calibration import (
+from studies.estimate.study import (
     CALIBRATE,
     TEST,
     beside_errors,
@@ -202,11 +202,11 @@ def test_published_factors_follow_from_the_published_rows():
 def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
     few = ["estimate", "--seed", "3", "--sources", "mujoco:naive", "--jobs", "1", "--tests", "2"]
     assert run([*few, "--cases", "4", "--out", str(tmp_path)]) == 0
-    assert study.headline(tmp_path)[:80] in capsys.readouterr().out
+    assert study.STUDY.headline(tmp_path)[:80] in capsys.readouterr().out
     rows = pd.read_csv(tmp_path / "estimate.csv")
     assert list(rows["half"]) == [0, 1] * 6
     assert list(rows["set"]) == [TEST] * 4 + [CALIBRATE] * 8
-    assert study.headline(tmp_path).startswith("The difference from half the step")
+    assert study.STUDY.headline(tmp_path).startswith("The difference from half the step")
     assert (tmp_path / "estimate.png").stat().st_size > 7_000
 
 

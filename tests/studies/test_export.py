@@ -16,7 +16,7 @@ from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
 from engines.run.drive import run
 from studies.__main__ import run as rocking
-from studies.export.writing import Exported, files, script_of
+from studies.export.study import Exported, files, script_of
 from studies.kit.provenance import project_version, version_of
 from studies.scenes.cases import ways
 

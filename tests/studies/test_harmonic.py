@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from analytic import RigidBlock
 from studies.__main__ import run
 from studies.harmonic.attractors import Shaking, attractors, settle
-from studies.harmonic.report import branches, counts, engine_errors
+from studies.harmonic.study import branches, counts, engine_errors
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 START = (0.3 * BLOCK.alpha, 0.0)

@@ -15,14 +15,21 @@ from studies.__main__ import run
 from studies.cases.window import AXES, LIMITS, Window
 from studies.kit.tables import table_in
 from studies.measures.published import PUBLISHED
-from studies.overturning.areas import modes_at, window_of
-from studies.overturning.checks import checks
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
-from studies.overturning.report import apart, beside_edges, differences, edges, modes, shifts
+from studies.overturning.report import (
+    apart,
+    beside_edges,
+    checks,
+    differences,
+    edges,
+    modes,
+    modes_at,
+    shifts,
+    window_of,
+)
 from studies.overturning.study import mapped
-from studies.sources.groups import core_sources
-from studies.sources.registry import resolve
+from studies.sources.registry import core_sources, resolve
 
 WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
 

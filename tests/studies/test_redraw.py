@@ -9,7 +9,7 @@ from commanding import refused
 from matplotlib import units
 
 from studies.__main__ import run
-from studies.kit.digests import seal
+from studies.kit.provenance import seal
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 

@@ -102,29 +102,29 @@ def test_a_strike_refuses_what_is_not_allowed(wrong):
 def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(strikes, "PHASES", (0.5,))
     assert run(["restitution", "--engines", "mujoco", "--out", str(tmp_path)]) == 0
-    said = study.headline(tmp_path)
+    said = study.STUDY.headline(tmp_path)
     assert " ".join(capsys.readouterr().out.split()).startswith(said)
     assert "asked in the first way that comes to mind, mujoco miss it" in said
     assert len(said) < 500
     over = "steps of 0.0001 to 0.004/p, rates of 0.1 to 2 α p, heights of 0.1 to 10 m and H/B of 2"
     assert f" in mujoco over {over} to 4, and all but " in said
     assert " in mujoco at 0.001/p, 0.5 α p, 1 m and H/B 2" in said
-    for name in study.pictures(tmp_path):
+    for name in study.STUDY.pictures(tmp_path):
         assert (tmp_path / f"{name}.png").stat().st_size > 7_000
-    lines = study._read(tmp_path, "corners").set_index("way")
+    lines = study.STUDY.read(tmp_path, "corners").set_index("way")
     assert lines.loc["the damping ratio for e alone", "off_over_all"] == math.inf
 
 
 def test_what_is_said_over_all_that_is_varied_is_the_largest_of_all_strikes():
     folder = PUBLISHED / "restitution"
-    rows, lines = (study._read(folder, name) for name in ("restitution", "corners"))
+    rows, lines = (study.STUDY.read(folder, name) for name in ("restitution", "corners"))
     for line in lines[~np.isinf(lines["off_over_all"])].to_dict("records"):
         mine = rows[(rows["engine"] == line["engine"]) & (rows["way"] == line["way"])]
         assert line["off_over_all"] == (mine["corner_ratio"] - mine["wanted"]).abs().max()
         assert line["off_over_all"] >= line["off"]
     best = lines.groupby("engine")["off_over_all"].min()
     ends = [f"{best[name]:.3f} in {name}" for name in (best.idxmin(), best.idxmax())]
-    assert f"all but {ends[0]} to {ends[1]} over " in study.headline(folder)
+    assert f"all but {ends[0]} to {ends[1]} over " in study.STUDY.headline(folder)
 
 
 @pytest.mark.parametrize("way", WAYS["mujoco"], ids=lambda way: way.name)
@@ -215,9 +215,9 @@ def test_a_block_whose_library_says_that_it_went_wrong_keeps_no_number(monkeypat
 
 def test_the_published_lines_follow_from_the_published_strikes():
     folder = PUBLISHED / "restitution"
-    rows = study._read(folder, "restitution")
+    rows = study.STUDY.read(folder, "restitution")
     for name, measure in (("corners", strikes.CORNER), ("rates", strikes.RATE)):
-        lines = study._read(folder, name)
+        lines = study.STUDY.read(folder, name)
         again = strikes.lines(rows, measure)
         pd.testing.assert_frame_equal(again, lines, check_dtype=False, rtol=1e-12)
     usual = rows[rows["engine"].isin(HERE) & (rows["corner_ratio"] < strikes.BROKEN)]

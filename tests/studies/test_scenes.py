@@ -21,10 +21,9 @@ from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, frames, slides, steps
 from studies.scenes.figure import draw_times
-from studies.scenes.findings import floor_sentence, frame_sentence
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.study import block_summary, floor_summary, reduce, tabulate
-from studies.scenes.told import SCENES, again, kinds_in, lines_of
+from studies.scenes.told import SCENES, again, floor_sentence, frame_sentence, kinds_in, lines_of
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
 PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)

@@ -28,7 +28,6 @@ from studies.stability.largest_step import (
     search_job,
 )
 from studies.stability.remedies import NOTHING, answer, remedies
-from studies.stability.report import report
 from studies.stability.sensitivity import (
     CASES,
     condition_number,
@@ -42,6 +41,7 @@ from studies.stability.study import (
     matrix_jobs,
     plan,
     reduce,
+    report,
     without_result,
 )
 

@@ -17,12 +17,22 @@ from studies.__main__ import run as run_command
 from studies.cases.paper import free_rocking_window
 from studies.cases.variants import variants
 from studies.contact.study import STEP, cases
-from studies.export.writing import Exported, files
+from studies.export.study import Exported, files
 from studies.measures.formulas import by_step
 from studies.measures.published import PUBLISHED
 from studies.symptoms import study
-from studies.symptoms.lines import HULL, MEASURED, OWN, SYMPTOMS, UNMOVED, VARIANTS, lines_of
-from studies.symptoms.patch import BLOCK, own_step_s, patch
+from studies.symptoms.lines import (
+    BLOCK,
+    HULL,
+    MEASURED,
+    OWN,
+    SYMPTOMS,
+    UNMOVED,
+    VARIANTS,
+    lines_of,
+    own_step_s,
+    patch,
+)
 
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 
@@ -39,7 +49,7 @@ def table_of(name):
 
 
 def test_the_published_page_follows_from_the_published_tables():
-    kept = study._read(PUBLISHED / "symptoms")
+    kept = study.STUDY.read(PUBLISHED / "symptoms", "symptoms")
     today = lines_of(PUBLISHED, list(kept["engine"].unique()))
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-12)
 
@@ -91,7 +101,7 @@ def test_a_base_without_velocity_gives_no_result_and_a_hull_another(lines):
 
 
 def test_a_hull_is_missing_only_where_an_adapter_has_none():
-    published = study._read(PUBLISHED / "symptoms")
+    published = study.STUDY.read(PUBLISHED / "symptoms", "symptoms")
     able = [name for name in published["engine"].unique() if "hull" in ENGINES[name].geometries]
     assert list(published.loc[published["symptom"] == HULL.name, "engine"]) == able
 
@@ -107,7 +117,8 @@ def test_a_change_is_told_line_by_line_in_the_library_s_words():
 SETTINGS = sorted(
     (engine, factor, level)
     for engine, setting in {
-        (row.engine, row.setting) for row in study._read(PUBLISHED / "symptoms").itertuples()
+        (row.engine, row.setting)
+        for row in study.STUDY.read(PUBLISHED / "symptoms", "symptoms").itertuples()
     }
     if ENGINES[engine].installed
     for preset, factor, level in [
@@ -238,7 +249,7 @@ def test_the_page_is_written_drawn_and_told(tmp_path, capsys):
     assert text == (tmp_path / "findings.txt").read_text()
     assert "asked in bullet3 #1204" in text
     assert "rocking symptoms --engines pybullet" in text and "@@ block.py" not in text
-    assert "alone takes the largest error from" in study.headline(tmp_path)
+    assert "alone takes the largest error from" in study.STUDY.headline(tmp_path)
     creep = text.partition("it creeps (")[2].partition("\n\n")[0]
     line = next(line for line in creep.splitlines() if line.startswith("mujoco"))
     assert line.split()[-7:-3] == ["best", "0.0116", "1.0e-04", "1.4e-05"]

@@ -21,11 +21,10 @@ from engines import ENGINES, registry
 from engines.run.drive import run as run_alone
 from studies.__main__ import run
 from studies.kit.cluster import Cluster
-from studies.kit.executors import Local
+from studies.kit.executors import Local, batches
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.runner import run_jobs
-from studies.kit.together import batches
 from studies.sources.registry import scene_of
 
 HERE = Path(__file__).parent

@@ -24,9 +24,16 @@ from studies.measures.differences import (
 )
 from studies.measures.halving import ELSEWHERE, published_trust
 from studies.validate import STUDY, study
-from studies.validate.bounds import bounded
-from studies.validate.claims import bands, first_claim, quantiles, worst
-from studies.validate.hints import FALSE, KNOWN, leanings
+from studies.validate.claims import (
+    FALSE,
+    KNOWN,
+    bands,
+    bounded,
+    first_claim,
+    leanings,
+    quantiles,
+    worst,
+)
 from studies.validate.study import plan, report
 
 ALONE = Running(jobs=1)

@@ -19,9 +19,8 @@ from studies.measures.differences import with_reference
 from studies.measures.published import PUBLISHED
 from studies.page.facts import MOVING
 from studies.versions import releases
-from studies.versions.cases import EVERY, FIGURE, RANDOM, posed
 from studies.versions.releases import Asked, Release, check_releases, chosen, listed
-from studies.versions.study import first_claim, read
+from studies.versions.study import EVERY, FIGURE, RANDOM, STUDY, first_claim, posed
 from studies.versions.tables import CHANGED, NOTES, changes_table, notes_between, releases_table
 
 ENGINE = """
@@ -84,7 +83,7 @@ def test_another_release_is_asked_in_an_environment_of_its_own(pretender, tmp_pa
     out, here = tmp_path / "out", metadata.version("pretender")
     words = ["versions", "--engines", "pretender", "--quick", "--jobs", "1", "--out", str(out)]
     assert run([*words, "--releases", "pretender==2.0"]) == 0
-    (change,) = read(out, "changes").to_dict("records")
+    (change,) = STUDY.read(out, "changes").to_dict("records")
     assert (change["before"], change["release"], change["presets"]) == ("1.0", "2.0", "naive")
     assert [path.name for path in out.glob("environments/*")] == ["pretender-2.0"]
     assert metadata.version("pretender") == here == "1.0"
@@ -102,7 +101,7 @@ def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path,
     assert list(lines.index.unique("release")) == list(RELEASES)
     assert (lines["failed"] < lines["cases"])[["1.0", "1.1"]].all()
     assert (lines.loc["1.1", "moved"] == 0.0).all()
-    (change,) = read(out, "changes").to_dict("records")
+    (change,) = STUDY.read(out, "changes").to_dict("records")
     assert (change["before"], change["release"], change["presets"]) == ("1.1", "2.0", "naive")
     assert told.startswith(
         "From one release to the next answers move by more than 1e-06 in pretend"
@@ -116,7 +115,7 @@ def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path,
         path.unlink()
     named = ["--releases", "pretender==1.1", "pretender==3.0"]
     assert run([*words, *named]) == 0
-    again = read(out, "releases")
+    again = STUDY.read(out, "releases")
     assert list(again["release"].unique()) == ["1.0", "1.1", "3.0"]
     assert "cannot be installed" in again.iloc[-1]["message"]
     assert {path: path.stat().st_mtime_ns for path in made} == made
@@ -132,11 +131,11 @@ def test_without_a_network_there_is_one_line(pretender, tmp_path, capsys):
     told = capsys.readouterr()
     assert told.err.count("\n") == 1
     assert "the releases of pretender cannot be asked for: ERROR: No matching" in told.err
-    assert list(read(tmp_path / "out", "releases")["release"].unique()) == ["1.0"]
+    assert list(STUDY.read(tmp_path / "out", "releases")["release"].unique()) == ["1.0"]
 
 
 def test_the_releases_here_are_asked_in_this_process(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("studies.versions.cases.EVERY", 60)
+    monkeypatch.setattr("studies.versions.study.EVERY", 60)
     words = ["versions", "--engines", "box2d", "--quick"]
     assert run([*words, "--jobs", "1", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out.startswith("Of each engine one release was asked.\n")
@@ -276,7 +275,7 @@ def known_elsewhere(name, source):
 
 @pytest.mark.parametrize("name", [f"figure {FIGURE}", "random"])
 def test_the_published_lines_of_the_pinned_releases_are_those_of_other_studies(name):
-    lines, found = read(PUBLISHED / "versions", "releases"), 0
+    lines, found = STUDY.read(PUBLISHED / "versions", "releases"), 0
     made = record_of(PUBLISHED / "versions")
     every = EVERY if made["settings"]["quick"] else 1
     # as documented an engine stands on a floor that moves, since then
@@ -299,6 +298,6 @@ def test_the_published_lines_of_the_pinned_releases_are_those_of_other_studies(n
 
 def test_the_published_changes_follow_from_the_published_releases():
     folder = PUBLISHED / "versions"
-    changes = changes_table(read(folder, "releases"))
-    kept = read(folder, "changes")
+    changes = changes_table(STUDY.read(folder, "releases"))
+    kept = STUDY.read(folder, "changes")
     pd.testing.assert_frame_equal(changes, kept, check_dtype=False, rtol=1e-12)

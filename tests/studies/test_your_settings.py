@@ -14,8 +14,7 @@ from studies.advise.evidence import published_engines
 from studies.advise.words import SETS, kept_errors
 from studies.cases.drawn import RandomCase
 from studies.measures.formulas import at_step
-from studies.measures.published import PUBLISHED
-from studies.measures.slippery import too_slippery
+from studies.measures.published import PUBLISHED, too_slippery
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PUBLISHED_ENGINES = published_engines(PUBLISHED)
