@@ -11,10 +11,11 @@ STUDY = Study(
 
 240 cases a figure, which are 120 problems in two sizes that similarity makes alike, through every
 named source. Writes sweep.csv (a row for each case and source), a
-PNG for each figure, summary.csv, findings.txt and provenance.json. Finished cases are stored at
+PNG for each figure, summary.csv, findings.txt and provenance.json; ports.csv, of engines that step
+another one's models, beside that one. Finished cases are stored at
 once: a run that was interrupted goes on where it stopped when the same command is given again.""",
     table="sweep.csv",
-    tables=("sweep.csv", "summary.csv", "findings.csv"),
+    tables=("sweep.csv", "summary.csv", "findings.csv", "ports.csv"),
     chapters=(
         Chapter(
             folder="sweep",
