@@ -242,15 +242,14 @@ def ports(published: Path) -> str:
     """Return how those that step another engine's models answer beside it, as Markdown."""
     heads = (
         *("source", "beside", "other outcomes", "peaks: median change", "nine tenths", "largest"),
-        *("steps", "a step", "a step beside"),
+        "steps of all worlds",
     )
     rows = [
         (
             *(f"`{line['source']}`", f"`{line['beside']}`"),
             out_of(line["other_outcomes"], line["cases"]),
             *(part(line[f"{name}_change"]) for name in ("median", "p90", "largest")),
-            f"{line['world_steps']:.3g}",
-            *(duration(1e-6 * line[name]) for name in ("us_a_step", "us_a_step_beside")),
+            f"{line['world_steps']}",
         )
         for _, line in table_in(published / "ports", "ports").iterrows()
     ]

@@ -41,8 +41,6 @@ def port_table(rows: pd.DataFrame) -> pd.DataFrame:
                 "p90_change": change.quantile(0.9),
                 "largest_change": change.max(),
                 "world_steps": found["steps"].sum(),
-                "us_a_step": 1e6 * found["wall_s"].sum() / found["steps"].sum(),
-                "us_a_step_beside": 1e6 * plain["wall_s"].sum() / plain["steps"].sum(),
             }
         )
     return pd.DataFrame(lines)
