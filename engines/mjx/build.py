@@ -38,12 +38,12 @@ class MjxWorlds(Port):
     def _put(self) -> None:
         """Put models and states where JAX computes."""
         jax, mjx, leaves = self._jax, self._mjx, []
-        for model, data in zip(self.models, self.datas, strict=True):
+        for number, model in enumerate(self.models):
             there = mjx.put_model(model, impl="jax")
             # sizes that only height fields ask for, but for each of which it would be compiled anew
             unasked = np.zeros_like(there._impl.geom_rbound_hfield)
             there = there.tree_replace({"_impl.geom_rbound_hfield": unasked})
-            each = there, mjx.put_data(model, data, impl="jax")
+            each = there, mjx.put_data(model, self.data(number), impl="jax")
             found, self._tree = jax.tree_util.tree_flatten(each)
             leaves.append(found)
         same = zip(*leaves, strict=True)

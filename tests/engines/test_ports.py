@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from declared import equal_to
-from uses import HERE, pulse, rocked, scene
+from uses import BLOCK, HERE, pulse, rocked, scene
 
 from analytic import RigidBlock
 from analytic.response import Outcome, Reason
 from engines import ENGINES
+from engines.mujoco.port import Port
+from engines.mujoco.settings import MujocoSettings
 from engines.run.batch import run_together
 from engines.run.drive import build, run
 
@@ -52,6 +54,16 @@ def test_what_warp_has_no_room_for_is_a_fault_and_its_last_iteration_is_none():
         world._worlds._overflow = np.array([int(lost)])
         said.append(world.fault())
     assert said == ["", "MuJoCo Warp had no room: NARROWPHASE"]
+
+
+def test_worlds_side_by_side_hold_no_data_of_mujoco_s(monkeypatch):
+    """Each takes 14 MB: some 300 scenes would not fit into what a process of a study may hold."""
+    mujoco = pytest.importorskip("mujoco")
+    monkeypatch.setattr(mujoco, "MjData", None)
+    scenes = [scene(frame="world", start=(0.1, 0.0)), scene(frame="world")]
+    port = Port(scenes, MujocoSettings(), np.array([1e-3, 2e-3]))
+    assert port.starts[0] != port.starts[1]
+    assert port._base_place.tolist() == [[[0.0, 0.0, -BLOCK.height]]] * 2
 
 
 @every_port
