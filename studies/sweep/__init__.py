@@ -43,6 +43,20 @@ once: a run that was interrupted goes on where it stopped when the same command 
                 "step is asked."
             ),
         ),
+        Chapter(
+            folder="ports",
+            question="Is it the same physics on MuJoCo's GPU code?",
+            tables=("summary.csv",),
+            quick=("--figure", "6", "--sources", "exact", "mujoco:naive", "ports:naive"),
+            full=(
+                *("--figure", "6", "--sources", "exact", "mujoco:naive"),
+                *("mujoco:naive-base-at-rest", "mujoco:fixed"),
+                # MJX takes an hour for as many steps of its tuned contact
+                *("ports:naive", "ports:naive-base-at-rest", "warp:fixed"),
+            ),
+            minutes=(0.1, 10.0),
+            weaker="Defaults alone are asked, and what is not installed is left out.",
+        ),
     ),
     captions={
         "overview": (

@@ -67,9 +67,11 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     times.set_xlabel("run time of a case  [ms]", fontsize=10)
     times.grid(axis="x", alpha=0.25)
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
-    words = [f"by up to {most[name]} {told(name).words}" for name in (presets[0], presets[-1])]
+    said = ",\n".join(
+        f"by up to {most[name]} {told(name).words}" for name in (presets[0], presets[-1])
+    )
     cases = int(table["cases"].max())
-    drawing.suptitle(f"In {cases} cases peaks are off\n{', '.join(words)}", fontsize=12)
+    drawing.suptitle(f"In {cases} cases peaks are off {said}", fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
 
