@@ -50,7 +50,9 @@ class WarpWorlds(Port):
         model.opt.gravity = self._warp.array(weight, dtype=self._warp.vec3)
         mjw.step(model, mjw.put_data(self.models[0], self.data(0), nworld=count))  # compiles
         data = mjw.put_data(self.models[0], self.data(0), nworld=count)
-        for there, rows in zip((data.qpos, data.qvel), zip(*self.starts, strict=True), strict=True):
+        for there, rows in zip(  # type: ignore[assignment]
+            (data.qpos, data.qvel), zip(*self.starts, strict=True), strict=True
+        ):
             there.assign(np.array(rows, dtype=np.float32))
         with self._warp.ScopedCapture() as recorded:
             mjw.step(model, data)
