@@ -365,11 +365,16 @@ class BatchEngine(Engine):
         ``partial(engines.run.batch.alone, batch)``.
     most_worlds : int
         How many at most.
-    one_model : bool
-        Whether the bodies, and the step, of all must be the same; else where they begin and how
-        the base moves is a world's own, and so are their sizes and the step.
+    unmoved : tuple of str
+        Presets that hold no base that moves in the world.
     """
 
     batch: Callable[[Sequence[Scene], Any, FloatArray], Worlds]
     most_worlds: int = 1024
-    one_model: bool = False
+    unmoved: tuple[str, ...] = ()
+
+    def lacks(self, scene: Scene, preset: Preset) -> str:
+        """Say what of a scene a preset of the engine cannot do, or return an empty string."""
+        if preset.name in self.unmoved and preset.posed(scene).frame == "world":
+            return f"{self.name}:{preset.name} is not built here for a base that moves in the world"
+        return Engine.lacks(self, scene, preset)

@@ -27,6 +27,7 @@ OWN = {
     "newton": "engines.newton:ENGINE",
     "physx": "engines.physx:ENGINE",
     "warp": "engines.warp:ENGINE",
+    "mjx": "engines.mjx:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

@@ -64,26 +64,33 @@ class Port:
 
     Attributes
     ----------
-    models, datas : list
-        MuJoCo's models, and its data where the scenes begin.
+    models : list
+        MuJoCo's models.
+    starts : list of tuple
+        Where the scenes begin: coordinates and velocities.
     """
 
     lag_m: FloatArray
 
     def __init__(self, scenes: Sequence[Scene], settings: MujocoSettings, dt_s: FloatArray) -> None:
-        mujoco, scene = import_module("mujoco"), scenes[0]
+        self._mujoco, scene = import_module("mujoco"), scenes[0]
         self.settings = s = kept(scene, settings)
         self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
         xmls = [stepped_xml(one, s, float(dt)) for one, dt in zip(scenes, dt_s, strict=True)]
-        self.models = [mujoco.MjModel.from_xml_string(xml) for xml in xmls]
-        self.datas = [mujoco.MjData(model) for model in self.models]
-        for one, data in zip(scenes, self.datas, strict=True):
-            data.qpos[:], data.qvel[:] = coordinates(one, s)
+        self.models = [self._mujoco.MjModel.from_xml_string(xml) for xml in xmls]
+        self.starts = [coordinates(one, s) for one in scenes]
         self._faults = [""] * len(scenes)
         self._homes = np.array([[body.home for body in one.bodies] for one in scenes])
         self._moving, self._welded = scene.frame == "world", welded(scene, s)
-        self._base_place = np.array([data.mocap_pos for data in self.datas])
+        moved = [model.body_pos[model.body_mocapid >= 0] for model in self.models]
+        self._base_place = np.array(moved)
         self._base_x, self._velocity = np.zeros((2, len(scenes)))
+
+    def data(self, number: int) -> Any:
+        """Return MuJoCo's data where a scene begins, each of which takes megabytes."""
+        data = self._mujoco.MjData(self.models[number])
+        data.qpos[:], data.qvel[:] = self.starts[number]
+        return data
 
     def loads(self, steps: Step) -> Loads:
         """Return what the worlds are given in some steps."""

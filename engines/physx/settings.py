@@ -8,6 +8,8 @@ from engines.parts.factors import (
     BOTH,
     BY_DEFAULT,
     DEFAULT,
+    OWN_STEP,
+    OWN_STEPS,
     UNMOVED_BASE,
     Factor,
     Rule,
@@ -152,7 +154,6 @@ RECOMMENDED = (
 """What those who maintain PhysX recommend for contact."""
 
 STUCK = "of a slow move nothing is left in single precision: TGS adds it to the place in parts"
-PUSHED = "a rounding of the depth is corrected within a step, which is a velocity"
 SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
 
 FACTORS = (
@@ -162,7 +163,7 @@ FACTORS = (
         ("iterations", "velocity_iterations"),
         (level("255, 255", iterations=MOST, velocity_iterations=MOST),),
     ),
-    factor("depenetration", traps={"fixed": PUSHED}),
+    factor("depenetration"),
     factor("contact_offset"),
     factor("angular_damping"),
     factor("bounce_threshold", level("0.01 m/s", BOTH, bounce_threshold=0.01)),
@@ -185,9 +186,14 @@ FACTORS = (
 """What its contact can be set to."""
 
 RULES = (
+    Rule("Take shorter steps than 1/100 s", *(DEFAULT, OWN_STEPS, OWN_STEP)),
     Rule(
-        "Limit `max_depenetration_velocity`: a rounding of the depth over a short step is a speed",
-        *(BEST, "depenetration", BY_DEFAULT),
+        "Give a block small balls for corners, not a box",
+        *(BEST, "geometry", BY_DEFAULT),
+    ),
+    Rule(
+        "Shrink `contact_offset`: a corner that is held before it strikes does so in two steps",
+        *(BEST, "contact offset", BY_DEFAULT),
     ),
     Rule(
         "Switch TGS off, `enable_tgs=False`, in short steps: below (ulp/2) iterations/dt, ulp that "

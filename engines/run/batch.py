@@ -37,9 +37,7 @@ def alike(engine: Engine, scene: Scene) -> Hashable:
     watched = scene.time_limit_s is not None or not scene.compiled
     if preset.stepping is not Stepping.FIXED or says or watched or engine.lacks(scene, preset):
         return None
-    body = (scene.system, scene.density, scene.depth, preset.ordinary_step_s(scene))
-    own = body if engine.one_model else ()
-    return preset.name, repr(preset.chosen(scene)), scene.frame, scene.layout.contacts, own
+    return preset.name, repr(preset.chosen(scene)), scene.frame, scene.layout.contacts
 
 
 def run_together(name: str, scenes: Sequence[Scene]) -> list[Response]:

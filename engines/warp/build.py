@@ -48,10 +48,12 @@ class WarpWorlds(Port):
         weight = np.tile(self.models[0].opt.gravity.astype(np.float32), (count, 1))
         model.opt.timestep = self._warp.array(dt_s.astype(np.float32))
         model.opt.gravity = self._warp.array(weight, dtype=self._warp.vec3)
-        mjw.step(model, mjw.put_data(self.models[0], self.datas[0], nworld=count))  # compiles
-        data = mjw.put_data(self.models[0], self.datas[0], nworld=count)
-        data.qpos.assign(np.array([one.qpos for one in self.datas], dtype=np.float32))
-        data.qvel.assign(np.array([one.qvel for one in self.datas], dtype=np.float32))
+        mjw.step(model, mjw.put_data(self.models[0], self.data(0), nworld=count))  # compiles
+        data = mjw.put_data(self.models[0], self.data(0), nworld=count)
+        for there, rows in zip(  # type: ignore[assignment]
+            (data.qpos, data.qvel), zip(*self.starts, strict=True), strict=True
+        ):
+            there.assign(np.array(rows, dtype=np.float32))
         with self._warp.ScopedCapture() as recorded:
             mjw.step(model, data)
         self._graph = recorded.graph

@@ -41,7 +41,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     changes = int((lines["factor"] != "").sum())
     harmful = int(lines.loc[lines["factor"] != "", "worse"].sum())
     drawing.suptitle(
-        f"Of {changes} changes of a contact, one at a time, {harmful} break a case; "
+        f"Of {changes} changes of a contact, one at a time, {harmful} break a case;\n"
         f"the {MATTER} that matter most for each engine",
         fontsize=12,
     )

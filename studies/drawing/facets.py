@@ -26,6 +26,10 @@ ERRORS = "cividis_r"
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
+NARROWEST = 7.6
+"""Width that title and key of one panel need [in]."""
+
+
 def panels(
     count: int, across: int, each: tuple[float, float], extra: float = 1.0, **shared: Any
 ) -> tuple[Figure, list[Axes]]:
@@ -44,7 +48,7 @@ def panels(
     """
     across = max(min(across, count), 1)
     down = max(math.ceil(count / across), 1)
-    size = (each[0] * across, each[1] * down + extra)
+    size = (max(each[0] * across, NARROWEST), each[1] * down + extra)
     drawing = Figure(figsize=size, layout="constrained")
     grid = list(drawing.subplots(down, across, squeeze=False, **shared).flat)
     for axes in grid[count:]:

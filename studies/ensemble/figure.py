@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines.declaration import UNTUNED
+from studies.drawing.facets import NARROWEST
 from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import line_of, name_of, style_of
@@ -107,11 +108,12 @@ def draw_fragility(stripes: pd.DataFrame, curves: pd.DataFrame, agreement: pd.Da
     """
     each = [table.groupby(BLOCK, sort=False) for table in (stripes, curves, agreement)]
     count, others = len(each[0]), stripes["source"].nunique() - 1
-    drawing = Figure(figsize=(2.6 * count + 1.4, 4.4 + 0.25 * others), layout="constrained")
+    size = (max(2.6 * count + 1.4, NARROWEST), 4.4 + 0.25 * others)
+    drawing = Figure(figsize=size, layout="constrained")
     grid = drawing.subplots(
         2, count, sharey="row", squeeze=False, height_ratios=(3.2, 0.25 * others + 0.3)
     )
-    bounds = agreement[["ratio_low", "ratio_high"]].to_numpy(float)
+    bounds = agreement[["capacity_ratio", "ratio_low", "ratio_high"]].to_numpy(float)
     known = np.append(bounds[np.isfinite(bounds)], 1.0)  # what the outcomes tell, and 1
     for upper, lower, *blocks in zip(*grid, *each, strict=True):
         shares, fitted, capacities = (table for _, table in blocks)

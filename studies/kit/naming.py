@@ -60,7 +60,7 @@ def sources_option(
     default : bool, optional
         Whether it shows a default.
     """
-    words = " and ".join(f'"{word}"' for word in GROUPS)
+    words = ", ".join(f'"{word}"' for word in GROUPS)
     return Parameter(
         consume_multiple=True,
         show_default=" ".join if default else False,
@@ -68,8 +68,8 @@ def sources_option(
         validator=_check_sources,
         help=(
             f"{first}{' '.join(names)}; an engine takes a preset after a colon: "
-            f"{' '.join(all_presets())}; {words} stand for those of the published studies and for "
-            "all that are installed."
+            f"{' '.join(all_presets())}; {words} stand for those of the published studies, for all "
+            "that are installed, and for those of these that step another one's models."
         ),
     )
 

@@ -244,6 +244,24 @@ def models(published: Path) -> dict[str, str]:
     return {str(row["source"]): in_kinds(row) for _, row in lines.iterrows()}
 
 
+def ports(published: Path) -> str:
+    """Return how those that step another engine's models answer beside it, as Markdown."""
+    heads = (
+        *("source", "beside", "other outcomes", "peaks: median change", "nine tenths", "largest"),
+        "steps of all worlds",
+    )
+    rows = [
+        (
+            *(f"`{line['source']}`", f"`{line['beside']}`"),
+            out_of(line["other_outcomes"], line["cases"]),
+            *(part(line[f"{name}_change"]) for name in ("median", "p90", "largest")),
+            f"{line['world_steps']}",
+        )
+        for _, line in table_in(published / "ports", "ports").iterrows()
+    ]
+    return table(heads, rows)
+
+
 def advised(published: Path) -> str:
     """Return the cheapest advice for each error with each loop as a table of Markdown."""
     lines = table_in(published / "advice", "advice")

@@ -81,6 +81,7 @@ def pages(root: Path) -> dict[Path, str]:
         "presets_all": facts.presets_text(lines),
         "models": facts.models(published),
         "advised": facts.advised(published),
+        "ports": facts.ports(published),
         "choices_all": facts.choices_text(steps),
         "counts": facts.counts(published),
         "hero": facts.hero_lines(published),

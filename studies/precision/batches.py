@@ -30,8 +30,9 @@ AT_ONCE, ONE_BY_ONE = "at once", "one by one"
 def batch_table(engines: Sequence[str], quick: bool, budget_s: float) -> pd.DataFrame:
     """Return two rows for each preset of which an engine can run many scenes at once.
 
-    Times are CPU times of all threads of a process, the best of several in turn; memory is what a
-    batch adds to the most that such a process has held before.
+    Times are CPU times of all threads of a process, the best of several in turn, but for the first
+    ones, in which all is loaded or compiled; memory is what a batch adds to the most that such a
+    process has held before.
     """
     rows = []
     with Pool(1) as pool:
@@ -52,11 +53,12 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
     groups: dict[Any, list[Scene]] = {}
     for scene in scenes:
         groups.setdefault(alike(ENGINES[name], scene), []).append(scene)
+    started = time.perf_counter()
     run(name, scenes[0])  # what has to be loaded or compiled is so now
     run_together(name, scenes[:1])
     before = _most_kib()
     together = _together(name, groups.values())
-    grown = _most_kib() - before
+    grown, first_s = _most_kib() - before, time.perf_counter() - started
     alone = [run(name, scene) for group in groups.values() for scene in group]
     spent: dict[str, list[float]] = {AT_ONCE: [], ONE_BY_ONE: []}
     began = time.perf_counter()
@@ -75,6 +77,7 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
             "world_steps": steps,
             "runs": len(spent[way]),
             "cpu_s": min(spent[way]) / steps,
+            "first_s": first_s if way is AT_ONCE else math.nan,
             "added_kib": grown / len(scenes) if way is AT_ONCE else math.nan,
             "other_outcomes": sum(
                 a.outcome is not b.outcome for a, b in zip(found, alone, strict=True)

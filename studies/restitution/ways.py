@@ -118,6 +118,7 @@ PYBULLET = "changeDynamics(block, -1, restitution={e:g})"
 BOTH = f"changeDynamics(base, -1, restitution=1), {PYBULLET}"
 FAST = "setPhysicsEngineParameter(restitutionVelocityThreshold=0"
 DART = "setRestitutionCoeff({e:g}) on the block, "
+PHYSX = "PhysxMaterial(1.3, 1.3, {e:g}) of block and base"
 
 WAYS: dict[str, tuple[Way, ...]] = {
     # the product of two bodies' coefficients counts; what is nearer than a gap is slowed before it
@@ -189,6 +190,21 @@ WAYS: dict[str, tuple[Way, ...]] = {
             base_restitution=0.0,
         ),
         _way("e on both", "Collider.restitution({e:g}) of block and base"),
+    ),
+    # the mean of two materials' coefficients counts; what comes in at less than 2 m/s does not
+    # bounce
+    "physx": (
+        _way("e on both", PHYSX),
+        _way(
+            "and at all speeds",
+            f"{PHYSX}, set_scene_config(bounce_threshold=1e-09)",
+            bounce_threshold=1e-9,
+        ),
+        _way(
+            "and by TGS",
+            f"{PHYSX}, set_scene_config(bounce_threshold=1e-09, enable_tgs=True)",
+            **{"bounce_threshold": 1e-9, "tgs": True},
+        ),
     ),
 }
 """Name of an engine -> ways to ask it, where it was tried."""

@@ -273,7 +273,19 @@ DEFAULT_EFFORT = Effort()
 """Every source as finely as it sees fit."""
 
 
-GROUPS = {"core": core_engines, "engines": installed_engines}
+def original_of(name: str) -> str:
+    """Return the engine whose models another one steps: its packages are among the other's."""
+    whole = set(ENGINES[name].packages)
+    known = ((other, set(engine.packages)) for other, engine in ENGINES.items())
+    return next((other for other, packages in known if packages and packages < whole), "")
+
+
+def ports() -> tuple[str, ...]:
+    """Return the names of the engines that are here and step another one's models."""
+    return tuple(filter(original_of, installed_engines()))
+
+
+GROUPS = {"core": core_engines, "engines": installed_engines, "ports": ports}
 """Word -> the names of the engines for which it stands."""
 
 

@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from known import Bare
 from scipy.integrate import solve_ivp
-from uses import BLOCK, HERE, SHAKEN, WITH_BULLET, error, every_use, pulse, rocked, scene
+from uses import (
+    BLOCK,
+    HERE,
+    SHAKEN,
+    WITH_BULLET,
+    error,
+    every_use,
+    held_frames,
+    pulse,
+    rocked,
+    scene,
+)
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason
@@ -87,7 +98,7 @@ def takes(engine, **options):
 @every_use
 def test_what_a_preset_sets_is_taken_and_what_helps_it_can_be_left_out(engine, preset):
     """One at a time: what a preset is helped by is a setting, so that its price can be measured."""
-    for frame in HERE[engine].frames:
+    for frame in held_frames(engine, preset):
         takes(engine, preset=preset, frame=frame)
     for left_out in filter(None, HERE[engine].preset(preset).helped_by.values()):
         takes(engine, preset=preset, settings=left_out)

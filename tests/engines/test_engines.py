@@ -29,6 +29,7 @@ from uses import (
     every_landing_use,
     every_tuned_use,
     every_use,
+    held_frames,
     in_both_frames,
     noise,
     pulse,
@@ -126,7 +127,11 @@ def test_no_way_of_moving_a_base_is_none_of_them(engine):
 
 @pytest.mark.parametrize(
     ("engine", "preset"),
-    [use for use in USES if HERE[use[0]].preset(use[1]).takes(floor="position")],
+    [
+        use
+        for use in USES
+        if HERE[use[0]].preset(use[1]).takes(floor="position") and "world" in held_frames(*use)
+    ],
 )
 def test_a_base_moved_by_its_place_alone_leaves_the_block_behind(engine, preset):
     """It has no velocity that friction could feel."""

@@ -12,7 +12,7 @@ import engines
 from engines.troubles import TROUBLES
 
 FOLDER = Path(engines.__file__).parent / "troubles"
-BENEATH = {"warp": {"mujoco", "warp"}}
+BENEATH = {"warp": {"mujoco", "warp"}, "mjx": {"jax"}}
 """What an engine is a part of, or made with."""
 INSTALLED = [trouble for trouble in TROUBLES if trouble.engine in HERE]
 

@@ -30,7 +30,7 @@ def test_imports_are_light(module):
 
 
 SCIENCE = "numba llvmlite scipy matplotlib pandas.core asyncio distributed"
-LIBRARIES = "pybullet mujoco pymunk Box2D dartpy rapier3d pydrake warp sapien"
+LIBRARIES = "pybullet mujoco pymunk Box2D dartpy rapier3d pydrake warp jax sapien"
 EACH = (*SCIENCE.split(), *LIBRARIES.split())
 """What no answer at once may load."""
 

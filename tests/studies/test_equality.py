@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from studies.measures.columns import columns
 
 from studies.kit import app
-from studies.measures.columns import columns
 from studies.measures.equality import MEASURED, SAME
 
 PUBLISHED = Path(__file__).parents[2] / "studies" / "published"

@@ -189,6 +189,12 @@ def test_a_block_keeps_what_its_corner_gives_back(engine, name, wanted):
     assert found.slide_ratio == pytest.approx(0.0, abs=0.002)
 
 
+@pytest.mark.parametrize(("name", "kept"), [("e on both", 0.0), ("and at all speeds", 0.6)])
+def test_physx_gives_back_nothing_below_its_threshold(name, kept):
+    """That is 2 m/s; the corner comes in at half of alpha p times its 0.5 m, 0.4 m/s."""
+    assert found("physx", name, 0.6) == pytest.approx(kept, abs=0.02)
+
+
 @pytest.mark.skipif(not ENGINES["rapier"].installed, reason="rapier3d is not installed")
 def test_a_corner_that_bounces_slides_in_rapier():
     """Its bounce is a normal impulse that comes after friction's: 6 e sin^2/(1 + 3 sin^2) less."""

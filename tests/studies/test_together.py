@@ -104,17 +104,6 @@ def test_what_is_asked_otherwise_is_no_part_of_a_batch():
     # the clock has its own, and one alone is not together
 
 
-def test_an_engine_of_one_model_gets_equal_blocks_and_steps(monkeypatch):
-    jobs = [job(n, block) for n, block in enumerate([BLOCK, WIDE, BLOCK, BLOCK, WIDE])]
-    jobs += [job(n, options={"step": 0.02}) for n in (5, 6)]
-    assert batches(dict(enumerate(jobs)), 1) == [[0, 2, 4, 6], [1, 3, 5]]
-    object.__setattr__(ENGINES["looped"], "one_model", True)
-    try:
-        assert batches(dict(enumerate(jobs)), 1) == [[0, 2, 3], [1, 4], [5, 6]]
-    finally:
-        object.__setattr__(ENGINES["looped"], "one_model", False)
-
-
 def test_a_world_that_fails_is_its_own_row(note):
     rows, _ = rows_of([job(n, options={"density": SPOILT if n == 2 else 1e3}) for n in range(5)])
     assert sizes(note) == [5]
