@@ -1,7 +1,6 @@
 """A Dask scheduler and workers of the tests' own, each a process, and sources that misbehave."""
 
 import json
-import math
 import os
 import signal
 import subprocess
@@ -12,8 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from distributed import Client
+from given import BLOCK, FULL_SINE
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import simulate
 from studies.__main__ import run
 from studies.kit.jobs import Job
 
@@ -21,8 +21,6 @@ HERE = Path(__file__).parent
 KNOWN = os.pathsep.join(map(str, (HERE, HERE / "plugin", HERE.parent)))
 WITH_TESTS = {**os.environ, "PYTHONPATH": KNOWN}
 DASK = [sys.executable, "-m", "dask"]
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -113,14 +111,16 @@ def wait_for_workers(address, count):
 
 
 def jobs_of(source, count=1):
-    return [Job(labels={"case": n}, block=BLOCK, motion=PULSE, source=source) for n in range(count)]
+    return [
+        Job(labels={"case": n}, block=BLOCK, motion=FULL_SINE, source=source) for n in range(count)
+    ]
 
 
 def half_held(until):
     """Return two jobs, of which `held` answers one."""
     (fast,) = jobs_of("held")
     fast = replace(fast, labels={"case": 1}, options={"until": str(until)})
-    return [replace(fast, labels={"case": 0}, motion=replace(PULSE, omega=0.5 * BLOCK.p)), fast]
+    return [replace(fast, labels={"case": 0}, motion=replace(FULL_SINE, omega=0.5 * BLOCK.p)), fast]
 
 
 def refusal(address, capsys, folder):

@@ -6,14 +6,13 @@ import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from commanding import ROOT
 
 from studies.__main__ import COMMANDS
 
 HEAVY = ("numba", "scipy.integrate", "pandas", "matplotlib", "pybullet", "mujoco")
-ROOT = Path(__file__).parents[2]
 PACKAGES = ("analytic", "engines", "studies")
 SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
 

@@ -2,7 +2,6 @@
 
 import gzip
 import math
-from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -14,8 +13,7 @@ from studies import respond
 from studies.cases.paper import Case
 from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+from studies.measures.published import PUBLISHED
 
 
 def is_here(source):

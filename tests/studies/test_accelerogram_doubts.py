@@ -4,10 +4,10 @@ import os
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from commanding import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
@@ -17,7 +17,6 @@ from studies.__main__ import run
 from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
 
-ROOT = Path(__file__).parents[2]
 GOOD = AT2["series"]
 ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
 UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"

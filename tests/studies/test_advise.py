@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from given import BLOCK
 
-from analytic import Outcome, RigidBlock, simulate
+from analytic import Outcome, simulate
 from engines import ENGINES
 from engines.declaration import AT_REST
 from studies.__main__ import run
@@ -36,7 +37,6 @@ from studies.measures.costs import LOOPS
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 
 

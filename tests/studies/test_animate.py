@@ -8,10 +8,12 @@ import os
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import CASE
+from given import BLOCK
 from matplotlib.collections import PolyCollection
 from PIL import Image
 
-from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
+from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from engines import ENGINES
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
@@ -22,9 +24,6 @@ from studies.kit.arguments import BadInputError
 from studies.kit.digests import seal
 from studies.kit.executors import Local
 from studies.kit.posing import Posed
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
-CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
 
 
 @pytest.mark.parametrize("theta", [0.3, -0.3])

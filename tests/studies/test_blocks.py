@@ -11,12 +11,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
+from commanding import ROOT, refused
 
 from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
 from analytic.criteria import overturning_velocity
@@ -26,7 +25,6 @@ from studies.blocks.strength import BEYOND, WIDTH, grid, strength
 from studies.blocks.study import joined
 from studies.kit.journal import JOURNAL
 
-ROOT = Path(__file__).parents[2]
 REST = (0.0, 0.0)
 HEAD = "name,width,height,friction,tilt\n"
 LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"

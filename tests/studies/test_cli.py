@@ -6,15 +6,15 @@ import math
 import pandas as pd
 import pytest
 from commanding import CASE, python, refused
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse, Still, simulate
+from analytic import SinePulse, Still, simulate
 from analytic.response import Response
 from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import STUDIES
 from studies.sources.registry import SOURCES, Effort, Source
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 FIELDS = [
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
     *("error", "velocity_ratio", "impact_error", "kappa", "sensitivity"),

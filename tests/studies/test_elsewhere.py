@@ -4,8 +4,9 @@ import json
 
 import pandas as pd
 import pytest
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse
+from analytic import SinePulse
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
 from studies.__main__ import run
@@ -16,7 +17,6 @@ from studies.kit.options import Running
 from studies.kit.plan import Plan, fill
 from studies.kit.study import Study
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 SOURCES = ("exact", "pymunk", "box2d")
 

@@ -2,15 +2,12 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from commanding import CASE, ROOT
 
 from studies.__main__ import COMMANDS, run
 from studies.kit import app
-
-ROOT = Path(__file__).parents[2]
-CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
 
 
 @pytest.mark.parametrize("columns", ["0", "1", "-1", "1000000000", "wide", ""])

@@ -1,7 +1,6 @@
 """Two folders of results: what counts as the same, and what is said where they are not."""
 
 import shutil
-from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -9,8 +8,7 @@ import pytest
 from studies.kit import app
 from studies.measures.columns import columns
 from studies.measures.equality import MEASURED, SAME
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+from studies.measures.published import PUBLISHED
 
 
 def same(*arguments):

@@ -7,8 +7,8 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
+from given import BLOCK, PULSE
 
-from analytic import RigidBlock, SinePulse
 from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
@@ -37,8 +37,6 @@ from studies.measures.halving import (
     step_of,
 )
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 USES = [f"{name}:{use.name}" for name in CORE for use in ENGINES[name].presets]
 

@@ -8,8 +8,9 @@ import sys
 from dataclasses import replace
 
 import pytest
+from given import BLOCK, PULSE
 
-from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock
+from analytic import RockingFrame, SinePulse, SlidingBlock
 from analytic.record import Record
 from analytic.response import Reason
 from engines import ENGINES, Scene, installed_engines
@@ -20,8 +21,6 @@ from studies.export.writing import Exported, files, script_of
 from studies.kit.provenance import project_version, version_of
 from studies.scenes.cases import ways
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 RECORD = Record(samples=(0.0, 3.0, 4.5, -2.0, -5.0, 1.0, 0.0), dt=0.15)
 WINDOW = 1.8
 

@@ -5,10 +5,10 @@ import re
 import shlex
 import shutil
 import tomllib
-from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import ROOT
 
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
@@ -18,7 +18,6 @@ from studies.page import facts, hero, readme
 from studies.page.engine_facts import objections
 from studies.page.facts import table
 
-ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / readme.PUBLISHED
 
 

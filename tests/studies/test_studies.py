@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from declared import held_to
+from given import BLOCK, FULL_SINE
 
-from analytic import RigidBlock, SinePulse
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED, Miss
@@ -19,9 +19,6 @@ from studies.histories import study as histories
 from studies.kit.journal import FolderError
 from studies.page import redraw
 from studies.sources.registry import SOURCES, Source, UnknownSourceError, resolve
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 
 
 def raises(block, motion, *, duration, times):
@@ -67,7 +64,7 @@ def within(name):
 @pytest.mark.parametrize("name", EVERY_NAME)
 def test_every_source_answers_figure_5b(name):
     times = np.linspace(0.0, 1.5, 16)
-    response = respond(name, BLOCK, PULSE, duration=3.0, times=times)
+    response = respond(name, BLOCK, FULL_SINE, duration=3.0, times=times)
     assert isinstance(response, Response)
     # the paper: 5-b overturns by Housner's linearization alone. With the onset matched the block
     # survives, so it is the onset that overturns it.
@@ -88,13 +85,13 @@ def test_every_source_answers_figure_5b(name):
 def test_an_unknown_source_is_refused_with_the_list():
     for name in ("nonsense", "exact:fixed", "mujoco:", "mujoco:best", ":fixed"):
         with pytest.raises(UnknownSourceError, match="mujoco") as error:
-            respond(name, BLOCK, PULSE)
+            respond(name, BLOCK, FULL_SINE)
         assert repr(name) in str(error.value)
 
 
 def test_options_reach_the_source():
-    coarse = respond("rk4", BLOCK, PULSE, step=1e-2)
-    assert coarse.steps < respond("rk4", BLOCK, PULSE, step=1e-3).steps / 5
+    coarse = respond("rk4", BLOCK, FULL_SINE, step=1e-2)
+    assert coarse.steps < respond("rk4", BLOCK, FULL_SINE, step=1e-3).steps / 5
 
 
 @pytest.mark.parametrize("module", ["studies", "studies.__main__"])

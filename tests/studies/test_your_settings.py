@@ -6,8 +6,8 @@ import re
 
 import pandas as pd
 import pytest
+from given import BLOCK
 
-from analytic import RigidBlock
 from studies import respond
 from studies.__main__ import run
 from studies.advise.evidence import published_engines
@@ -17,7 +17,6 @@ from studies.measures.formulas import at_step
 from studies.measures.published import PUBLISHED
 from studies.measures.slippery import too_slippery
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 PUBLISHED_ENGINES = published_engines(PUBLISHED)
 
 

@@ -9,16 +9,15 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import CASE
+from given import BLOCK, PULSE
 
 import studies
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import simulate
 from engines import ENGINES
 from studies import respond, side_by_side
 from studies.__main__ import run
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
-CASE = ("--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832")
 NEEDED = simulate(BLOCK, PULSE).friction_needed
 
 
