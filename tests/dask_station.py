@@ -10,11 +10,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from commanding import refused
 from distributed import Client
 from given import BLOCK, FULL_SINE
 
 from analytic import simulate
-from studies.__main__ import run
 from studies.kit.jobs import Job
 
 HERE = Path(__file__).parent
@@ -126,9 +126,7 @@ def half_held(until):
 def refusal(address, capsys, folder):
     """Return the one line with which a study on this cluster is refused."""
     arguments = ["sweep", "--figure", "6", "--sources", "exact", "--out", str(folder / "new")]
-    assert run([*arguments, "--cluster", address]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f"--cluster is {address!r}" in line
+    line = refused(capsys, [*arguments, "--cluster", address], f"--cluster is {address!r}")
     assert not (folder / "new").exists()
     return line
 

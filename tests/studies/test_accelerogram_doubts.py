@@ -2,18 +2,15 @@
 
 import os
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
-from commanding import ROOT
+from commanding import BLOCK, python, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
 from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
-from studies.__main__ import run
 from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
 
@@ -202,24 +199,15 @@ def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, 
         assert np.isfinite(record.samples).all()
 
 
-BLOCK = ["compare", "--width", "0.5", "--height", "1.5", "--units", "g", "--record"]
-
-
-def refused(path, capsys):
-    assert run([*BLOCK, str(path)]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1
-    assert output.err.startswith("rocking: --record is ")
-    return output.err
+ASKED = ["compare", *BLOCK, "--units", "g", "--record"]
+BEGIN = "rocking: --record is "
 
 
 def test_a_named_pipe_is_not_waited_for(tmp_path):
     """In a process of its own, for one that waits would wait for ever."""
     path = tmp_path / "pipe"
     os.mkfifo(path)
-    command = [sys.executable, "-m", "studies", *BLOCK, str(path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    done = python("-m", "studies", *ASKED, path)
     assert (done.returncode, done.stdout) == (2, "")
     assert "it must be a file that can be read (it is a named pipe)" in done.stderr
 
@@ -234,7 +222,7 @@ def test_a_named_pipe_is_not_waited_for(tmp_path):
     ],
 )
 def test_what_is_no_file_is_not_opened(path, words, capsys):
-    assert f"it must be a file that can be read ({words})" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, f"it must be a file that can be read ({words})")
 
 
 def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
@@ -242,8 +230,8 @@ def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     for text in (GOOD.replace("7,", "10000000,"), asc("NDATA: 7", "NDATA: 10000000")):
         path.write_text(text)
-        message = refused(path, capsys)
-        assert "it holds 10000000 samples, for which one exact solution would take" in message
+        words = "it holds 10000000 samples, for which one exact solution would take"
+        message = refused(capsys, [*ASKED, path], BEGIN, words)
         assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
 
 
@@ -251,13 +239,13 @@ def test_a_large_file_is_refused_by_its_size(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     path.touch()
     os.truncate(path, MOST_BYTES + 1)
-    assert "it holds some 4000000 samples" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds some 4000000 samples")
 
 
 def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
     path = tmp_path / "long.txt"
     path.write_text("0 0\n" * (MOST_SAMPLES + 5001))
-    assert "it holds at least 100" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds at least 100")
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])
@@ -266,4 +254,4 @@ def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsy
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])
-    assert "it holds 7 samples" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds 7 samples")

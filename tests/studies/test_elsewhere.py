@@ -4,6 +4,7 @@ import json
 
 import pandas as pd
 import pytest
+from commanding import refused
 from given import BLOCK
 
 from analytic import SinePulse
@@ -161,5 +162,4 @@ def test_the_command_line_takes_folders(tmp_path, capsys):
     one, other = ((tmp_path / name / "sweep.csv").read_bytes() for name in "ab")
     assert one == other  # run times too
     capsys.readouterr()
-    assert run([*arguments, str(tmp_path / "c"), "--also", str(tmp_path / "no")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    refused(capsys, [*arguments, tmp_path / "c", "--also", tmp_path / "no"], "--also")

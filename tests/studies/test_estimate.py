@@ -7,6 +7,7 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from given import BLOCK, PULSE
 
 from engines import ENGINES
@@ -278,5 +279,5 @@ def test_a_comparison_carries_estimates(capsys):
 
 
 def test_sources_without_steps_to_halve_are_refused(tmp_path, capsys):
-    assert run(["estimate", "--sources", "exact", "--out", str(tmp_path / "a")]) == 2
-    assert "--sources is 'exact'; it must be an engine with steps" in capsys.readouterr().err
+    words = "--sources is 'exact'; it must be an engine with steps"
+    refused(capsys, ["estimate", "--sources", "exact", "--out", tmp_path / "a"], words)

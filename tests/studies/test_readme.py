@@ -8,7 +8,7 @@ import tomllib
 
 import pandas as pd
 import pytest
-from commanding import ROOT
+from commanding import ROOT, refused
 
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
@@ -251,8 +251,7 @@ def test_the_first_picture_is_of_the_case_that_it_names():
 
 
 def test_a_folder_without_tables_is_refused(tmp_path, capsys):
-    assert run(["readme", "--root", str(tmp_path)]) == 2
-    assert "--root" in capsys.readouterr().err
+    refused(capsys, ["readme", "--root", tmp_path], "--root")
 
 
 def commands(name):

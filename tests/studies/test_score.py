@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import RigidBlock, SinePulse, simulate
 from engines import ENGINES, registry
@@ -92,10 +93,7 @@ def test_an_engine_that_is_announced_makes_no_row_stale(alone, tmp_path, capsys)
     ],
 )
 def test_what_is_no_engine_is_refused_in_a_line(place, message, alone, tmp_path, capsys):
-    assert run(["score", place, "--out", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert message in error
-    assert error.count("\n") == 1
+    refused(capsys, ["score", place, "--out", tmp_path], message)
 
 
 def test_quick_asks_a_part_of_every_preset():
@@ -264,24 +262,17 @@ def test_a_requirement_is_of_the_best_preset_or_of_the_one_it_names():
     assert required("naive:failed=0", ENGINES["mujoco"]) == ("naive", "failed", 0.0)
 
 
+SCORE = ["score", "mujoco"]
 WRITTEN = {"schema": 1, "engine": "mujoco", "versions": {}, "presets": {}, "peaks": {}}
-
-
-def refused(capsys, *option):
-    assert run(["score", "mujoco", *option]) == 2
-    error = capsys.readouterr().err
-    assert option[0] in error
-    assert error.count("\n") == 1
-    return error
 
 
 def test_what_is_no_requirement_is_refused_before_anything_runs(capsys, monkeypatch):
     monkeypatch.setattr(score, "carry_out", None)
     of_a_name = ("p90", "p95=1", "P90=1", "best:p90=1", ":p90=1", "fixed:=1", "=1")
     for text in (*of_a_name, "p90=", "p90=x", "p90=-1", "p90=nan", "max=inf", "p90=1=1"):
-        assert repr(text) in refused(capsys, "--require", text)
-    refused(capsys, "--require")  # as a shell writes an empty variable
-    refused(capsys, "--json", "nowhere/result.json")
+        refused(capsys, [*SCORE, "--require", text], "--require", repr(text))
+    refused(capsys, [*SCORE, "--require"], "--require")  # as a shell writes an empty variable
+    refused(capsys, [*SCORE, "--json", "nowhere/result.json"], "--json")
 
 
 BROKEN = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
@@ -294,11 +285,11 @@ FOREIGN = (
 def test_what_is_no_earlier_result_is_refused_before_anything_runs(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(score, "carry_out", None)
     for path in (tmp_path, tmp_path / "nothing", "/dev/zero"):
-        assert "it is no file" in refused(capsys, "--against", str(path))
+        refused(capsys, [*SCORE, "--against", path], "--against", "it is no file")
     kept = tmp_path / "before.json"
     for text in (*BROKEN, *(json.dumps(WRITTEN | other) for other in FOREIGN)):
         kept.write_text(text)
-        assert "schema 1" in refused(capsys, "--against", str(kept))
+        refused(capsys, [*SCORE, "--against", kept], "--against", "schema 1")
     kept.write_text(json.dumps(WRITTEN))
     assert read(kept, ENGINES["mujoco"]) == WRITTEN
 

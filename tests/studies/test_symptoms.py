@@ -8,6 +8,7 @@ from functools import partial
 
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import simulate
 from engines import ENGINES, Scene
@@ -246,7 +247,7 @@ def test_the_page_is_written_drawn_and_told(tmp_path, capsys):
 
 
 def test_refusals(capsys):
-    assert run_command(["symptoms", "--published", "tests"]) == 2
-    assert f"--published is 'tests'; it must hold {VARIANTS}" in capsys.readouterr().err
-    assert run_command(["symptoms", "--engines", "moreau"]) == 2
-    assert f"--engines is 'moreau'; it must name one in {VARIANTS}" in capsys.readouterr().err
+    words = f"--published is 'tests'; it must hold {VARIANTS}"
+    refused(capsys, ["symptoms", "--published", "tests"], words)
+    words = f"--engines is 'moreau'; it must name one in {VARIANTS}"
+    refused(capsys, ["symptoms", "--engines", "moreau"], words)

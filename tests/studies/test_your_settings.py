@@ -6,6 +6,7 @@ import re
 
 import pandas as pd
 import pytest
+from commanding import refused
 from given import BLOCK
 
 from studies import respond
@@ -148,9 +149,5 @@ BAD = [
 @pytest.mark.parametrize(("arguments", "problem"), BAD)
 def test_what_cannot_be_is_one_line(arguments, problem, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert run(arguments) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    (line,) = output.err.splitlines()
-    assert problem in line
+    refused(capsys, arguments, problem)
     assert not (tmp_path / "DIR").exists() or arguments[0] == "estimate"
