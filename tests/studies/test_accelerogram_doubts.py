@@ -19,6 +19,10 @@ ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
 UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"
 
 
+def table(*times, header="# units: g\n"):
+    return header + "".join(f"{time} 0.1\n" for time in times)
+
+
 def at2(line):
     return f"{TITLE}{line}\nNPTS= 7, DT= .005 SEC\n{COLUMNS}"
 
@@ -149,6 +153,24 @@ DOUBTS = [
         None,
         "line 21: '0.000000 1'",
     ),
+    ("other units", GOOD, "m/s2", "it states g; --units must not be m/s2"),
+    ("one too many", GOOD + "0.1\n", None, "holds 8 samples; it must hold the 7 of its header"),
+    ("too few", GOOD.replace(COLUMNS, "0.1 0.2\n"), None, "holds 2 samples"),
+    ("a word", GOOD.replace("-.1", "x"), None, "line 6: 'x' must be a number"),
+    ("no units", GOOD.replace("UNITS OF G", "V"), None, "does not state its units; --units must"),
+    ("no step at all", GOOD.replace(".0050", "0"), None, "dt is 0.0; it must be positive"),
+    ("a gap", table(0, 0.1, 0.2, 0.4), None, "line 5: a gap from 0.2 to 0.4 s; steps must all be"),
+    ("uneven", table(0, 0.1, 0.2, 0.31, 0.4, 0.5), None, "line 5: the time 0.31 s is not a whole"),
+    ("twice", table(0, 0.1, 0.1, 0.2), None, "line 4: the time 0.1 s must be later than 0.1 s"),
+    ("back", table(0, 0.1, 0.2, 0.1), None, "line 5: the time 0.1 s must be later"),
+    ("no time", table(0, 0.1, "nan", 0.3), None, "line 4: nan must be a finite"),
+    ("one row", table(0), None, "1 rows of numbers; it must have two"),
+    ("nothing", "", None, "0 rows"),
+    ("no header", table(0, 0.1, header=""), None, "does not state its units"),
+    ("a station", table(0, 0.1, header="station G\n"), None, "does not state its units"),
+    ("two units", table(0, 0.1, header="a (g) and b (gal)\n"), None, "several units, g, gal"),
+    ("three columns", "0 1 2\n1 2 3\n", None, "line 1 has 3 columns; it must have two"),
+    ("words at the end", "0 0.1\nend of data\n", None, "line 2 has 3 columns"),
     ("COSMOS", "Corrected acceleration   (Format v01.20 with 13 text lines)\n", "g", "COSMOS file"),
     ("SMC", "2 CORRECTED ACCELEROGRAM\n*\n", "g", "it is a SMC file, which is not read"),
     ("CSMIP", "Corrected Accelerogram Caltech Vol II\n", "g", "it is a CSMIP file"),

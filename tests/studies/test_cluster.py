@@ -49,6 +49,8 @@ from studies.sources.registry import SOURCES, Source, resolve
 from studies.validate import STUDY
 from studies.validate.study import plan
 
+pytestmark = pytest.mark.processes
+
 
 @pytest.fixture(autouse=True)
 def patience(monkeypatch):
@@ -68,7 +70,7 @@ def station(tmp_path_factory):
 
 
 def results(folder, running):
-    fill(STUDY, plan(6, 3, ["exact", "rk4", "pybullet", "mujoco"]), folder, running)
+    fill(STUDY, plan(3, 3, ["exact", "rk4", "pybullet", "mujoco"]), folder, running)
     return pd.read_csv(folder / "validate.csv", dtype=str).drop(columns="wall_s")
 
 

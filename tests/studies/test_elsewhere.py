@@ -41,8 +41,7 @@ def lost():
 
 @pytest.fixture
 def versions(monkeypatch):
-    """Return the installed versions of the engines' packages; no engine needs a process."""
-    monkeypatch.setattr(Job, "needs_process", lambda job, source: False)
+    """Return the installed versions of the engines' packages."""
     known = dict.fromkeys(provenance.engine_packages(), "1.0")
     whole = provenance.version_of
     for module in (provenance, identity):

@@ -21,6 +21,8 @@ from studies.kit.pool import Pool
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
+pytestmark = pytest.mark.processes
+
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
 def exits(block, motion, *, duration, times):

@@ -29,6 +29,8 @@ from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
 
+pytestmark = pytest.mark.processes
+
 HERE = Path(__file__).parent
 SMALL = sweep.plan([6], ["exact"])
 ALONE = Running(jobs=1, time_limit=1.0)

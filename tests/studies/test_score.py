@@ -13,9 +13,9 @@ import pytest
 from commanding import refused
 
 from analytic import RigidBlock, SinePulse, simulate
-from engines import ENGINES, registry
+from engines import ENGINES
 from engines.declaration import Stepping
-from engines.registry import FURTHER, announce
+from engines.registry import announce
 from engines.undeclared import undeclared
 from studies import respond
 from studies.__main__ import COMMANDS, run
@@ -29,23 +29,9 @@ from studies.score import STUDY
 from studies.score import study as score
 from studies.score.result import CASE, MEASURES, Requirement, read, required, result_of, since
 from studies.sources import registry as sources
-from studies.sources.registry import SOURCES, resolve
 
 MINE = "my_engine:World"
 """In tests/plugin: a class that builds its world, and no declaration."""
-
-
-@pytest.fixture
-def alone(monkeypatch):
-    """Let what is announced be forgotten after the test."""
-    monkeypatch.setenv(FURTHER, "")
-    kept = dict(SOURCES)
-    yield
-    monkeypatch.undo()
-    registry._places.cache_clear()
-    registry._declared.cache_clear()
-    SOURCES.clear()
-    SOURCES.update(kept)
 
 
 def test_what_builds_a_world_is_an_engine(alone):
@@ -138,35 +124,6 @@ def test_the_page_of_an_engine_that_stacks(alone, few, tmp_path, capsys):
         assert rows["outcome"].iloc[0] == ("rocked" if name == "frame" else "slid")
 
 
-def some_of(jobs):
-    """Return two jobs of each table and preset: the first, on which all is well, and another."""
-    seen = Counter()
-    for job in jobs:
-        seen[key := (job.labels["table"], job.source)] += 1
-        if seen[key] in (1, 4):
-            yield job
-
-
-def in_this_process(running, ask):
-    """Return an executor that starts no process."""
-
-    def executor(asked):
-        for number, job in enumerate(asked):
-            yield number, ask(job, resolve(job.source))
-
-    return executor
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """Let a score ask two jobs of each table and preset; give what returns all."""
-    everything = score.score_jobs
-    monkeypatch.setattr(score, "score_jobs", lambda *asked: list(some_of(everything(*asked))))
-    monkeypatch.setattr(score, "answer", lambda case, job, source, limit: score.plain(job, source))
-    monkeypatch.setattr(Running, "executor", in_this_process)
-    return everything
-
-
 def test_the_page(alone, few, tmp_path, capsys):
     """Of an engine that does not declare itself: its numbers are those that `respond` gives."""
     pytest.importorskip("pymunk")
@@ -203,7 +160,7 @@ def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys
     assert (kept["schema"], kept["engine"]) == (1, "mujoco")
     assert kept["versions"]["mujoco"] == version("mujoco")
 
-    jobs = [job for job in some_of(few("mujoco", True)) if job.source == "mujoco:landing"]
+    jobs = [job for job in few("mujoco", True) if job.source == "mujoco:landing"]
     swept = [job for job in jobs if job.labels["table"] == score.SWEEP]
     errors = []
     for job in swept:

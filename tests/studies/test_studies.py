@@ -1,8 +1,6 @@
 """The sources, the paper's cases and its time histories."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pandas as pd
@@ -94,16 +92,6 @@ def test_options_reach_the_source():
     assert coarse.steps < respond("rk4", BLOCK, FULL_SINE, step=1e-3).steps / 5
 
 
-@pytest.mark.parametrize("module", ["studies", "studies.__main__"])
-def test_importing_loads_nothing_heavy(module):
-    program = (
-        f"import sys, {module}\n"
-        "print(*[n for n in ('engines', 'pandas', 'matplotlib', 'numba') if n in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.stdout.strip(), done.stderr) == ("", "")
-
-
 def test_the_paper_has_960_cases():
     cases = list(sweep_cases((6, 7, 8, 9)))
     assert len(cases) == len(set(cases)) == 960
@@ -113,25 +101,6 @@ def test_the_paper_has_960_cases():
     assert last.motion.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
     assert last.motion.omega == pytest.approx(4.0 * last.block.p)
     assert last.motion.half_cycles == 2
-
-
-# exact, Housner, modified; by Housner's linearization 5-b and 5-c overturn, as the paper says
-HISTORY_PEAKS = {
-    (4, "a"): (0.0197, 0.0219, 0.0197),
-    (4, "b"): (0.0391, 0.0578, 0.0388),
-    (4, "c"): (0.2249, 0.3824, 0.2138),
-    (5, "a"): (0.1750, 0.2119, 0.1737),
-    (5, "b"): (0.3852, math.inf, 0.3605),
-    (5, "c"): (0.5558, math.inf, 0.4446),
-}
-
-
-def test_the_histories_have_their_known_peaks():
-    for case in HISTORIES[4] + HISTORIES[5]:
-        names = ("exact", "housner", "modified")
-        found = [respond(name, case.block, case.motion).peak_ratio for name in names]
-        # to the four decimals that are given
-        assert found == pytest.approx(HISTORY_PEAKS[case.figure, case.panel], abs=5.1e-5)
 
 
 def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
