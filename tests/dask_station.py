@@ -1,7 +1,6 @@
 """A Dask scheduler and workers of the tests' own, each a process, and sources that misbehave."""
 
 import json
-import math
 import os
 import signal
 import subprocess
@@ -11,18 +10,17 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from commanding import refused
 from distributed import Client
+from given import BLOCK, FULL_SINE
 
-from analytic import RigidBlock, SinePulse, simulate
-from studies.__main__ import run
+from analytic import simulate
 from studies.kit.jobs import Job
 
 HERE = Path(__file__).parent
 KNOWN = os.pathsep.join(map(str, (HERE, HERE / "plugin", HERE.parent)))
 WITH_TESTS = {**os.environ, "PYTHONPATH": KNOWN}
 DASK = [sys.executable, "-m", "dask"]
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -113,22 +111,22 @@ def wait_for_workers(address, count):
 
 
 def jobs_of(source, count=1):
-    return [Job(labels={"case": n}, block=BLOCK, motion=PULSE, source=source) for n in range(count)]
+    return [
+        Job(labels={"case": n}, block=BLOCK, motion=FULL_SINE, source=source) for n in range(count)
+    ]
 
 
 def half_held(until):
     """Return two jobs, of which `held` answers one."""
     (fast,) = jobs_of("held")
     fast = replace(fast, labels={"case": 1}, options={"until": str(until)})
-    return [replace(fast, labels={"case": 0}, motion=replace(PULSE, omega=0.5 * BLOCK.p)), fast]
+    return [replace(fast, labels={"case": 0}, motion=replace(FULL_SINE, omega=0.5 * BLOCK.p)), fast]
 
 
 def refusal(address, capsys, folder):
     """Return the one line with which a study on this cluster is refused."""
     arguments = ["sweep", "--figure", "6", "--sources", "exact", "--out", str(folder / "new")]
-    assert run([*arguments, "--cluster", address]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f"--cluster is {address!r}" in line
+    line = refused(capsys, [*arguments, "--cluster", address], f"--cluster is {address!r}")
     assert not (folder / "new").exists()
     return line
 

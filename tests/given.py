@@ -7,6 +7,8 @@ from analytic import RigidBlock, SinePulse
 BLOCK = RigidBlock(width=0.5, height=1.5)
 G = BLOCK.gravity
 FULL_SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
+PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
+"""As `commanding.CASE` asks for it, who writes out what omega is."""
 
 
 def onset_of(block):

@@ -108,6 +108,7 @@ def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(monkeypat
     assert "\n" not in response.message
 
 
+@pytest.mark.processes
 def test_a_step_that_does_not_end_is_ended_by_the_limit():
     """Steps of its own may become as short as they like within one call of the library."""
     endless = {"settings": {"accuracy": 1e-300}, "step": 10.0}

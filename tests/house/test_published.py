@@ -4,7 +4,6 @@ import gzip
 import json
 import math
 import shutil
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -21,8 +20,7 @@ from studies.cases.paper import Case
 from studies.catalogue import CHAPTERS
 from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+from studies.measures.published import PUBLISHED
 
 
 def is_here(source):

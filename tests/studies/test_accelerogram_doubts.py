@@ -2,25 +2,25 @@
 
 import os
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from commanding import BLOCK, python, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
 from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
-from studies.__main__ import run
 from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
 
-ROOT = Path(__file__).parents[2]
 GOOD = AT2["series"]
 ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
 UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"
+
+
+def table(*times, header="# units: g\n"):
+    return header + "".join(f"{time} 0.1\n" for time in times)
 
 
 def at2(line):
@@ -153,6 +153,24 @@ DOUBTS = [
         None,
         "line 21: '0.000000 1'",
     ),
+    ("other units", GOOD, "m/s2", "it states g; --units must not be m/s2"),
+    ("one too many", GOOD + "0.1\n", None, "holds 8 samples; it must hold the 7 of its header"),
+    ("too few", GOOD.replace(COLUMNS, "0.1 0.2\n"), None, "holds 2 samples"),
+    ("a word", GOOD.replace("-.1", "x"), None, "line 6: 'x' must be a number"),
+    ("no units", GOOD.replace("UNITS OF G", "V"), None, "does not state its units; --units must"),
+    ("no step at all", GOOD.replace(".0050", "0"), None, "dt is 0.0; it must be positive"),
+    ("a gap", table(0, 0.1, 0.2, 0.4), None, "line 5: a gap from 0.2 to 0.4 s; steps must all be"),
+    ("uneven", table(0, 0.1, 0.2, 0.31, 0.4, 0.5), None, "line 5: the time 0.31 s is not a whole"),
+    ("twice", table(0, 0.1, 0.1, 0.2), None, "line 4: the time 0.1 s must be later than 0.1 s"),
+    ("back", table(0, 0.1, 0.2, 0.1), None, "line 5: the time 0.1 s must be later"),
+    ("no time", table(0, 0.1, "nan", 0.3), None, "line 4: nan must be a finite"),
+    ("one row", table(0), None, "1 rows of numbers; it must have two"),
+    ("nothing", "", None, "0 rows"),
+    ("no header", table(0, 0.1, header=""), None, "does not state its units"),
+    ("a station", table(0, 0.1, header="station G\n"), None, "does not state its units"),
+    ("two units", table(0, 0.1, header="a (g) and b (gal)\n"), None, "several units, g, gal"),
+    ("three columns", "0 1 2\n1 2 3\n", None, "line 1 has 3 columns; it must have two"),
+    ("words at the end", "0 0.1\nend of data\n", None, "line 2 has 3 columns"),
     ("COSMOS", "Corrected acceleration   (Format v01.20 with 13 text lines)\n", "g", "COSMOS file"),
     ("SMC", "2 CORRECTED ACCELEROGRAM\n*\n", "g", "it is a SMC file, which is not read"),
     ("CSMIP", "Corrected Accelerogram Caltech Vol II\n", "g", "it is a CSMIP file"),
@@ -203,24 +221,15 @@ def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, 
         assert np.isfinite(record.samples).all()
 
 
-BLOCK = ["compare", "--width", "0.5", "--height", "1.5", "--units", "g", "--record"]
-
-
-def refused(path, capsys):
-    assert run([*BLOCK, str(path)]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1
-    assert output.err.startswith("rocking: --record is ")
-    return output.err
+ASKED = ["compare", *BLOCK, "--units", "g", "--record"]
+BEGIN = "rocking: --record is "
 
 
 def test_a_named_pipe_is_not_waited_for(tmp_path):
     """In a process of its own, for one that waits would wait for ever."""
     path = tmp_path / "pipe"
     os.mkfifo(path)
-    command = [sys.executable, "-m", "studies", *BLOCK, str(path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    done = python("-m", "studies", *ASKED, path)
     assert (done.returncode, done.stdout) == (2, "")
     assert "it must be a file that can be read (it is a named pipe)" in done.stderr
 
@@ -235,7 +244,7 @@ def test_a_named_pipe_is_not_waited_for(tmp_path):
     ],
 )
 def test_what_is_no_file_is_not_opened(path, words, capsys):
-    assert f"it must be a file that can be read ({words})" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, f"it must be a file that can be read ({words})")
 
 
 def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
@@ -243,8 +252,8 @@ def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     for text in (GOOD.replace("7,", "10000000,"), asc("NDATA: 7", "NDATA: 10000000")):
         path.write_text(text)
-        message = refused(path, capsys)
-        assert "it holds 10000000 samples, for which one exact solution would take" in message
+        words = "it holds 10000000 samples, for which one exact solution would take"
+        message = refused(capsys, [*ASKED, path], BEGIN, words)
         assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
 
 
@@ -252,13 +261,13 @@ def test_a_large_file_is_refused_by_its_size(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     path.touch()
     os.truncate(path, MOST_BYTES + 1)
-    assert "it holds some 4000000 samples" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds some 4000000 samples")
 
 
 def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
     path = tmp_path / "long.txt"
     path.write_text("0 0\n" * (MOST_SAMPLES + 5001))
-    assert "it holds at least 100" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds at least 100")
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])
@@ -267,4 +276,4 @@ def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsy
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])
-    assert "it holds 7 samples" in refused(path, capsys)
+    refused(capsys, [*ASKED, path], BEGIN, "it holds 7 samples")

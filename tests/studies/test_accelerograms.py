@@ -4,36 +4,22 @@ import json
 
 import numpy as np
 import pytest
-from records import SAMPLES
+from commanding import BLOCK, refused
+from records import AT2, COLUMNS, SAMPLES
 from scipy.signal import detrend
 
 from analytic import Record, RigidBlock, simulate
 from studies.__main__ import run
 from studies.cases.accelerograms import UNITS, read_record
-from studies.cases.refusal import BadInputError
 
-NEW_HEADER = (
-    "PEER NGA STRONG MOTION DATABASE RECORD\nStation G, 1999\n"
-    "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=     7, DT=   .0050 SEC,\n"
-)
-OLD_HEADER = (
-    "PEER STRONG MOTION DATABASE RECORD\nSomewhere\n"
-    "ACCELERATION TIME HISTORY IN UNITS OF G\n    7    .0050    NPTS, DT\n"
-)
-BODY = "  0.0000000E+00  1.0000000E-01 -2.5000000E-01\n  4.00E-01 .05 -1e-1\n 0\n"
+HEADER, BODY = AT2["series"][: -len(COLUMNS)], COLUMNS
+ASKED = ["compare", *BLOCK]
 
 
 def written(tmp_path, text):
     path = tmp_path / "motion.txt"
     path.write_text(text)
     return path
-
-
-@pytest.mark.parametrize("header", [NEW_HEADER, OLD_HEADER])
-def test_peers_headers(header, tmp_path):
-    record = read_record(written(tmp_path, header + BODY))
-    assert record.dt == 0.005
-    assert record.samples == pytest.approx(9.81 * SAMPLES)
 
 
 @pytest.mark.parametrize("header", ["", "t,a\n", "# a comment\n", "time_s;acc_g\n"])
@@ -70,48 +56,6 @@ def test_times_printed_in_few_decimals_are_equal_steps(tmp_path):
     assert record.dt == pytest.approx(1 / 256, rel=1e-4)
 
 
-def table(*times, header="# units: g\n"):
-    return header + "".join(f"{time} 0.1\n" for time in times)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (NEW_HEADER + BODY + "0.1\n", "holds 8 samples; it must hold the 7 of its header"),
-        (NEW_HEADER + "0.1 0.2\n", "holds 2 samples"),
-        (NEW_HEADER + BODY.replace(".05", "NaN"), "line 6: NaN must be a finite number"),
-        (NEW_HEADER + BODY.replace(".05", "x"), "line 6: 'x' must be a number"),
-        (NEW_HEADER.replace("UNITS OF G", "V") + BODY, "does not state its units; --units must"),
-        (NEW_HEADER.replace(".0050", "0") + BODY, "dt is 0.0; it must be positive"),
-        (table(0, 0.1, 0.2, 0.4, 0.5), "line 5: a gap from 0.2 to 0.4 s; steps must all be 0.1 s"),
-        (table(0, 0.1, 0.2, 0.31, 0.4, 0.5), "line 5: the time 0.31 s is not a whole number"),
-        (table(0, 0.1, 0.1, 0.2, 0.3), "line 4: the time 0.1 s must be later than 0.1 s"),
-        (table(0, 0.1, 0.2, 0.1), "line 5: the time 0.1 s must be later"),
-        (table(0, 0.1, "nan", 0.3), "line 4: nan must be a finite"),
-        (table(0), "1 rows of numbers; it must have two"),
-        ("", "0 rows"),
-        (table(0, 0.1, header=""), "does not state its units"),
-        (table(0, 0.1, header="station G\n"), "does not state its units"),
-        (table(0, 0.1, header="a (g) and b (gal)\n"), "several units, g, gal"),
-        ("0 1 2\n1 2 3\n", "line 1 has 3 columns; it must have two"),
-        ("0 0.1\nend of data\n", "line 2 has 3 columns"),
-    ],
-)
-def test_a_doubt_is_refused(text, words, tmp_path):
-    with pytest.raises(BadInputError, match="--record is ") as refusal:
-        read_record(written(tmp_path, text))
-    assert words in str(refusal.value)
-    assert "\n" not in str(refusal.value)
-
-
-def test_given_units_must_not_contradict_the_file(tmp_path):
-    with pytest.raises(BadInputError, match="it states g; --units must not be m/s2"):
-        read_record(written(tmp_path, NEW_HEADER + BODY), "m/s2")
-
-
-BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -134,22 +78,19 @@ BLOCK = ["compare", "--width", "0.5", "--height", "1.5"]
     ],
 )
 def test_contradictions_are_one_clear_line(options, words, tmp_path, capsys):
-    path = written(tmp_path, NEW_HEADER + BODY)
-    assert run([*BLOCK, *[str(path) if item == "FILE" else item for item in options]]) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert len(output.err.splitlines()) == 1
-    assert words in output.err
+    path = written(tmp_path, HEADER + BODY)
+    asked = [path if item == "FILE" else item for item in options]
+    refused(capsys, [*ASKED, *asked], words)
 
 
 def test_compare_takes_a_record(tmp_path, capsys):
     """A pulse as AT2 file gives the pulse's answer, within its samples' (omega dt)^2/8."""
     times = np.linspace(0.0, 1.0, 401)
     samples = "\n".join(f"{a:.10e}" for a in 0.2 * np.sin(2 * np.pi * times))
-    header = NEW_HEADER.replace("    7", "401").replace(".0050", ".0025")
+    header = HEADER.replace("    7", "401").replace(".0050", ".0025")
     path = written(tmp_path, f"{header}{samples}\n")
     plot = tmp_path / "plot.png"
-    arguments = [*BLOCK, "--record", str(path), "--sources", "exact", "rk45"]
+    arguments = [*ASKED, "--record", str(path), "--sources", "exact", "rk45"]
     assert run([*arguments, "--pga", "0.4", "--json"]) == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [row["peak_ratio"] for row in rows] == pytest.approx([0.385153] * 2, rel=1e-3)
@@ -163,12 +104,12 @@ def shaken(tmp_path, offset):
     """Write 2 s of a sine of 0.25 g at 1 Hz with an offset [g]."""
     times = np.linspace(0.0, 2.0, 401)
     samples = "\n".join(f"{a:.10e}" for a in 0.25 * np.sin(2.0 * np.pi * times) + offset)
-    header = NEW_HEADER.replace("    7", "401")
+    header = HEADER.replace("    7", "401")
     return written(tmp_path, f"{header}{samples}\n")
 
 
 def compared(path, capsys, *options):
-    arguments = [*BLOCK, "--record", str(path), "--sources", "exact", "housner", *options]
+    arguments = [*ASKED, "--record", str(path), "--sources", "exact", "housner", *options]
     assert run(arguments) == 0
     return capsys.readouterr().out
 
@@ -204,5 +145,5 @@ def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
 
 def test_nothing_but_a_trend_is_refused(tmp_path, capsys):
     path = written(tmp_path, "# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n")
-    assert run([*BLOCK, "--record", str(path), "--baseline", "constant", "--pga", "1"]) == 2
-    assert "--record: the record is its own constant trend" in capsys.readouterr().err
+    asked = [*ASKED, "--record", path, "--baseline", "constant", "--pga", "1"]
+    refused(capsys, asked, "--record: the record is its own constant trend")

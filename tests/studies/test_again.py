@@ -5,8 +5,9 @@ import math
 from pathlib import Path
 
 import pytest
+from given import BLOCK, PULSE
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock
 from analytic.motion import Delayed
 from studies.__main__ import run
 from studies.kit.tables import read_table
@@ -17,8 +18,6 @@ from studies.stability.study import again as failures
 from studies.sweep.study import again as swept
 from studies.validate.study import again as drawn
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * BLOCK.gravity, omega=6.2832, half_cycles=2)
 SAMPLE = [
     *((swept, "sweep/sweep", source, "") for source in ("housner", "modified", "mujoco")),
     *((swept, "presets/sweep", source, "") for source in ("mujoco:fixed", "pymunk:naive")),

@@ -22,6 +22,8 @@ from studies.kit.journal import FolderError
 from studies.page import report
 from studies.versions import releases
 
+pytestmark = pytest.mark.processes
+
 BACKSTOP_S = 600
 """Ends a test that hangs; nothing is expected within it."""
 RECORD = ("--record", "RECORD", "--units", "g", *BLOCK)

@@ -11,12 +11,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
+from commanding import ROOT, refused
 
 from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
 from analytic.criteria import overturning_velocity
@@ -26,7 +25,6 @@ from studies.blocks.strength import BEYOND, WIDTH, grid, strength
 from studies.blocks.study import joined
 from studies.kit.journal import JOURNAL
 
-ROOT = Path(__file__).parents[2]
 REST = (0.0, 0.0)
 HEAD = "name,width,height,friction,tilt\n"
 LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"
@@ -269,7 +267,7 @@ def journalled(out):
 
 
 def test_what_finished_before_a_kill_is_not_lost(place):
-    lines = [f"N{n},{0.3 + 0.01 * n},1.6" for n in range(40)]
+    lines = [f"N{n},{0.3 + 0.01 * n},1.6" for n in range(24)]
     (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))
     records = ["X.AT2", "Y.AT2", "Z.AT2"]
     write_record(place / "Z.AT2", SHAKEN.scaled(0.9))
@@ -277,12 +275,12 @@ def test_what_finished_before_a_kill_is_not_lost(place):
     command = [sys.executable, "-m", "studies", *arguments]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL) as process:
-        while journalled(place / "out") < 60 and process.poll() is None:
+        while journalled(place / "out") < 30 and process.poll() is None:
             time.sleep(0.002)
         process.send_signal(signal.SIGKILL)
     kept = journalled(place / "out")
-    total = 2 * 40 * 3
-    assert 60 <= kept < total
+    total = 2 * 24 * 3
+    assert 30 <= kept < total
     assert run(arguments) == 0
     told = json.loads((place / "out" / "provenance.json").read_text())["runs"][-1]
     assert told["rows"] == total

@@ -45,7 +45,7 @@ def test_what_asks_for_too_much_is_one_line_at_once(
 
 def test_the_longest_pulse_fits_into_memory(tmp_path):
     pulse = ["--amplitude", "0.4", "--omega", "60", "--half-cycles", "1000000"]
-    few = ["--sources", "mujoco:naive", "--time-limit", "3", "--jobs", "1"]
+    few = ["--sources", "mujoco:naive", "--time-limit", "1", "--jobs", "1"]
     done = python(
         *("-m", "studies", "compare", *BLOCK, *pulse, *few),
         before=lambda: resource.setrlimit(resource.RLIMIT_DATA, (2 * 10**9,) * 2),

@@ -6,15 +6,15 @@ import math
 import pandas as pd
 import pytest
 from commanding import CASE, python, refused
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse, Still, simulate
+from analytic import SinePulse, Still, simulate
 from analytic.response import Response
 from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import STUDIES
 from studies.sources.registry import SOURCES, Effort, Source
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 FIELDS = [
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
     *("error", "velocity_ratio", "impact_error", "kappa", "sensitivity"),
@@ -263,11 +263,10 @@ def test_a_failed_row_is_named_and_the_exit_code_is_1(monkeypatch, capsys, tmp_p
     assert set(failed["message"]) == {"it never converged"}
 
 
-def test_a_sweep_through_the_command_line(tmp_path):
+def test_a_sweep_through_the_command_line(tmp_path, capsys):
     arguments = ["--figure", "6", "7", "--sources", "exact", "modified", "--jobs", "2"]
-    done = rocking("sweep", *arguments, "--out", tmp_path / "made" / "here")
-    # no progress bar in a pipe
-    assert (done.returncode, done.stderr) == (0, "")
+    assert run(["sweep", *arguments, "--out", str(tmp_path / "made" / "here")]) == 0
+    assert capsys.readouterr().err == ""  # no progress bar in a pipe
     made = {path.name for path in (tmp_path / "made" / "here").iterdir()}
     assert made >= {
         *("sweep.csv", "summary.csv", "findings.txt", "provenance.json"),
@@ -280,10 +279,12 @@ def test_a_sweep_through_the_command_line(tmp_path):
     assert not table.duplicated(["figure", "aspect", "width_m", "omega_over_p", "source"]).any()
 
 
-def test_help_explains_units():
-    done = rocking("--help")
-    assert all(study.name in done.stdout for study in COMMANDS)
-    text = " ".join(rocking("compare", "--help").stdout.split())
+def test_help_explains_units(capsys):
+    assert run(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(study.name in text for study in COMMANDS)
+    assert run(["compare", "--help"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
     for unit in ("[m]", "[g]", "[rad/s]", "[s]"):
         assert unit in text
     here = [name for name in SOURCES if name in OWN or SOURCES[name].kind != "engine"]

@@ -18,8 +18,6 @@ import grimp
 import pandas as pd
 import pytest
 from dask_station import (
-    BLOCK,
-    PULSE,
     exits,
     half_held,
     hangs,
@@ -37,6 +35,7 @@ from dask_station import (
 )
 from distributed import Security
 from distributed.comm import CommClosedError
+from given import BLOCK, FULL_SINE
 
 from analytic import simulate
 from studies.__main__ import run
@@ -49,6 +48,8 @@ from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 from studies.validate import STUDY
 from studies.validate.study import plan
+
+pytestmark = pytest.mark.processes
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +70,7 @@ def station(tmp_path_factory):
 
 
 def results(folder, running):
-    fill(STUDY, plan(6, 3, ["exact", "rk4", "pybullet", "mujoco"]), folder, running)
+    fill(STUDY, plan(3, 3, ["exact", "rk4", "pybullet", "mujoco"]), folder, running)
     return pd.read_csv(folder / "validate.csv", dtype=str).drop(columns="wall_s")
 
 
@@ -383,7 +384,7 @@ def test_an_encrypted_cluster_answers_who_has_its_certificate(tmp_path, capsys):
             plain = address.replace("tls:", "tcp:")
             with dask.config.set({"distributed.comm.require-encryption": True}):
                 assert "encryption required" in refusal(plain, capsys, tmp_path)
-        assert response.peak_ratio == simulate(BLOCK, PULSE).peak_ratio
+        assert response.peak_ratio == simulate(BLOCK, FULL_SINE).peak_ratio
         assert "TLS configuration" in refusal(address, capsys, tmp_path)
         with configured(others):
             assert "certificate does not match" in refusal(address, capsys, tmp_path)

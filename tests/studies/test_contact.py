@@ -4,7 +4,6 @@ import functools
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -67,7 +66,15 @@ def rows_of(variants):
     return rows
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: f"{v.engine}-{v.preset}-{v.name}")
+FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
+"""Of each engine one variant of each factor; what each sets is taken: tests/engines."""
+
+
+@pytest.mark.parametrize(
+    "variant",
+    [pytest.param(v, marks=[] if v in FIRST else pytest.mark.slow) for v in VARIANTS],
+    ids=lambda v: f"{v.engine}-{v.preset}-{v.name}",
+)
 def test_every_variant_answers(variant):
     """Builds, reads back what it set, and gives a response; only a declared trap may fail."""
     response = run(
@@ -206,15 +213,25 @@ def test_what_changes_the_defaults_is_asked_at_the_library_s_own_step_too():
 
 
 CHOSEN = [v for v in VARIANTS if not v.factor or v.factor in ("damping", "reference")]
+OF_CORE = [v for v in CHOSEN if ENGINES[v.engine].core]
 
 
 @pytest.fixture(scope="module")
 def small_table():
-    return rows_of(CHOSEN)
+    return rows_of(OF_CORE)
 
 
-def test_report_of_a_small_table(small_table, tmp_path: Path):
-    chosen, rows = CHOSEN, small_table
+def test_report_of_a_small_table(small_table, tmp_path):
+    reported(OF_CORE, small_table, tmp_path)
+
+
+@pytest.mark.slow
+def test_report_of_every_engine(tmp_path):
+    reported(CHOSEN, rows_of(CHOSEN), tmp_path)
+
+
+def reported(chosen, rows, tmp_path):
+    """Assert that a report says what the rows of some variants say."""
     equal = pd.DataFrame(rows)
     own = equal[equal["preset"] == DEFAULT].assign(own_step=True)
     pd.concat([equal, own]).to_csv(tmp_path / "contact.csv", index=False, na_rep="nan")

@@ -3,14 +3,13 @@
 import csv
 import gzip
 import re
-from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import ROOT
 
 from studies.measures.published import columns
 
-ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / "studies" / "published"
 DICTIONARY = pd.read_csv(PUBLISHED / "columns.csv", keep_default_na=False)
 TABLES = sorted(PUBLISHED.glob("*/*.csv*"))

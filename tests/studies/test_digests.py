@@ -17,11 +17,10 @@ from studies.kit.journal import seal as sealed_line
 from studies.kit.journal import unseal
 from studies.kit.provenance import digest, seal
 from studies.measures import halving
+from studies.measures.published import PUBLISHED
 from studies.page import readme
 from studies.score import report as score
 from studies.symptoms.lines import TABLES as SYMPTOMS
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
 
 def sweep(folder, figure="6"):

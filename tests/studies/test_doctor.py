@@ -13,6 +13,8 @@ from studies.doctor import study as doctor
 from studies.kit.provenance import version_of
 from studies.sources.registry import SOURCES, Source, resolve
 
+pytestmark = pytest.mark.processes
+
 
 def diagnosed(capsys, monkeypatch, *here):
     """Return the exit code, and the lines that are well and those that are not."""

@@ -26,10 +26,9 @@ from studies.drawing.styles import (
 )
 from studies.linearizations.figure import ONSETS
 from studies.measures.presets import PRESETS, in_order, told
+from studies.measures.published import PUBLISHED
 from studies.overturning.figure import DIFFERENCE_COLOURS
 from studies.precision.figure import draw_precision, engine_in
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
 VISIONS = {

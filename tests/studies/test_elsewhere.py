@@ -4,8 +4,10 @@ import json
 
 import pandas as pd
 import pytest
+from commanding import refused
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse
+from analytic import SinePulse
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
 from studies.__main__ import run
@@ -16,7 +18,6 @@ from studies.kit.options import Running
 from studies.kit.plan import Plan, fill
 from studies.kit.study import Study
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 SOURCES = ("exact", "pymunk", "box2d")
 
@@ -40,8 +41,7 @@ def lost():
 
 @pytest.fixture
 def versions(monkeypatch):
-    """Return the installed versions of the engines' packages; no engine needs a process."""
-    monkeypatch.setattr(Job, "needs_process", lambda job, source: False)
+    """Return the installed versions of the engines' packages."""
     known = dict.fromkeys(provenance.engine_packages(), "1.0")
     whole = provenance.version_of
     for module in (provenance, identity):
@@ -161,5 +161,4 @@ def test_the_command_line_takes_folders(tmp_path, capsys):
     one, other = ((tmp_path / name / "sweep.csv").read_bytes() for name in "ab")
     assert one == other  # run times too
     capsys.readouterr()
-    assert run([*arguments, str(tmp_path / "c"), "--also", str(tmp_path / "no")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    refused(capsys, [*arguments, tmp_path / "c", "--also", tmp_path / "no"], "--also")

@@ -2,22 +2,20 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from commanding import CASE, ROOT
 
 from studies.__main__ import COMMANDS, run
 from studies.kit import app
 
-ROOT = Path(__file__).parents[2]
-CASE = ["--width", "0.5", "--height", "1.5", "--amplitude", "0.4", "--omega", "6.2832"]
-
 
 @pytest.mark.parametrize("columns", ["0", "1", "-1", "1000000000", "wide", ""])
 def test_every_command_has_help_in_a_terminal_of_any_width(columns, monkeypatch, capsys):
+    """All of them in the narrowest and the widest; what is no width is settled alike for each."""
     monkeypatch.setenv("COLUMNS", columns)
     app.settle_environment()
-    for study in COMMANDS:
+    for study in COMMANDS if columns in ("1", "1000000000") else COMMANDS[:3]:
         assert run([study.name, "--help"]) == 0
         output = capsys.readouterr()
         assert output.err == ""

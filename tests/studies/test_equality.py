@@ -1,16 +1,13 @@
 """Two folders of results: what counts as the same, and what is said where they are not."""
 
 import shutil
-from pathlib import Path
 
 import pandas as pd
 import pytest
-from studies.measures.columns import columns
 
 from studies.kit import app
 from studies.measures.equality import MEASURED, SAME
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+from studies.measures.published import PUBLISHED, columns
 
 
 def same(*arguments):

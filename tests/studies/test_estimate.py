@@ -7,8 +7,9 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
+from given import BLOCK, PULSE
 
-from analytic import RigidBlock, SinePulse
 from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
@@ -37,8 +38,6 @@ from studies.measures.halving import (
     step_of,
 )
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 USES = [f"{name}:{use.name}" for name in CORE for use in ENGINES[name].presets]
 
@@ -280,5 +279,5 @@ def test_a_comparison_carries_estimates(capsys):
 
 
 def test_sources_without_steps_to_halve_are_refused(tmp_path, capsys):
-    assert run(["estimate", "--sources", "exact", "--out", str(tmp_path / "a")]) == 2
-    assert "--sources is 'exact'; it must be an engine with steps" in capsys.readouterr().err
+    words = "--sources is 'exact'; it must be an engine with steps"
+    refused(capsys, ["estimate", "--sources", "exact", "--out", tmp_path / "a"], words)

@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commanding import PATIENCE_S, python
+from given import BLOCK, FULL_SINE
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import SinePulse, simulate
 from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
@@ -20,8 +21,7 @@ from studies.kit.pool import Pool
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
+pytestmark = pytest.mark.processes
 
 
 # sources that misbehave; they stand at the top of the module so that a worker finds them
@@ -45,7 +45,7 @@ def answers(block, motion, *, duration, times):
     return simulate(block, motion, duration=duration, times=times)
 
 
-def job(source, motion=PULSE, **more):
+def job(source, motion=FULL_SINE, **more):
     return Job(labels={}, block=BLOCK, motion=motion, source=source, **more)
 
 
@@ -163,5 +163,5 @@ def keeps_from_the_terminal(job, source):
 def test_the_terminal_interrupts_no_process_that_compiled_first():
     """What an engine needs compiled is so before its cases, by the processes that then run them."""
     local = Local(1, PATIENCE_S, keeps_from_the_terminal)
-    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source="pybullet")]
+    jobs = [Job(labels={}, block=BLOCK, motion=FULL_SINE, source="pybullet")]
     assert [response.message for _, response in local(jobs)] == ["True"]

@@ -65,9 +65,7 @@ def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, c
         pytest.skip("without an answer it draws nothing")
     monkeypatch.setattr(Image, "save", full)
     words = ("No space left on device", f"{tmp_path}/", ".png'")
-    assert run(command_line(name, tmp_path)) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert all(word in line for word in words)
+    refused(capsys, command_line(name, tmp_path), *words)
     assert not list(tmp_path.glob(".part*"))
 
 

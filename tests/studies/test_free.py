@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from given import BLOCK
 
 from analytic import MODELS, RigidBlock, Still
 from analytic.criteria import free_amplitude, quarter_period
@@ -20,8 +21,6 @@ from studies.kit.jobs import ask
 from studies.kit.options import Running
 from studies.kit.plan import fill
 from studies.sources.registry import SOURCES, resolve
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
 
 
 @pytest.mark.parametrize("source", [*MODELS, "rk4", "dop853", *core_engines()])

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from commanding import refused
+from given import BLOCK
 from independent import angular_acceleration
 from scipy.integrate import solve_ivp
 
@@ -14,7 +15,6 @@ from studies.__main__ import run
 from studies.harmonic.attractors import Shaking, attractors, settle
 from studies.harmonic.study import branches, counts, engine_errors
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 START = (0.3 * BLOCK.alpha, 0.0)
 
 

@@ -16,7 +16,7 @@ import pytest
 from commanding import CASE, PATIENCE_S, python, refused
 
 from analytic import RigidBlock, SinePulse
-from engines import ENGINES, registry
+from engines import ENGINES
 from engines.declaration import Stepping
 from engines.parts.quiet import imported
 from engines.physx.build import PhysxWorld
@@ -32,6 +32,8 @@ from studies.score import loading
 from studies.score import study as score
 from studies.sources.registry import SOURCES, Source
 
+pytestmark = pytest.mark.processes
+
 BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=6.0, omega=6.0)
 REASONS = {
     "Exits": "SystemExit",
@@ -41,9 +43,9 @@ REASONS = {
     "Interrupts": "KeyboardInterrupt",
     "Aborts": "the process was ended by signal SIGABRT",
     "Crashes": "the process was ended by signal SIGSEGV",
-    "Loops": "no result within the time limit of 6 s",
+    "Loops": "no result within the time limit of 1 s",
     "LeavesAChild": "the process ended by itself with exit code 5",
-    "Talks": "no result within the time limit of 6 s",
+    "Talks": "no result within the time limit of 1 s",
     "Fills": "MemoryError; a process may take 4 GB",
     "GoesBack": "ValueError: the engine says that it took -1 steps",
     "IsNowhere": "the engine's state is not finite",
@@ -88,7 +90,7 @@ def rows(tmp_path_factory):
         patch.setenv(hostile.NOTE, str(note))
         compile_look()
         found = []
-        for limit_s, endless in ((6.0, True), (PATIENCE_S, False)):
+        for limit_s, endless in ((1.0, True), (PATIENCE_S, False)):
             jobs = []
             for world in (*REASONS, *ANSWERING):
                 if ("time limit" in REASONS.get(world, "")) == endless:
@@ -185,18 +187,10 @@ LOADED = {
 
 
 @pytest.fixture
-def announced(monkeypatch, tmp_path):
+def announced(alone, monkeypatch, tmp_path):
     """Work in a new folder; let what is announced be forgotten."""
-    monkeypatch.setenv(FURTHER, "")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    kept = dict(SOURCES)
-    yield
-    monkeypatch.undo()
-    registry._places.cache_clear()
-    registry._declared.cache_clear()
-    SOURCES.clear()
-    SOURCES.update(kept)
 
 
 @pytest.mark.parametrize("module", LOADED)

@@ -3,7 +3,7 @@
 import shutil
 import sys
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import pandas as pd
@@ -15,7 +15,7 @@ from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
 from studies.histories import study as histories
-from studies.kit import identity, plan
+from studies.kit import fingerprint, identity, plan
 from studies.kit.fingerprint import PACKAGES, ROOT, read
 from studies.kit.identity import FOUND_BY_NAME, Makers, changed
 from studies.kit.jobs import Job, ask, summary
@@ -56,25 +56,53 @@ def made(reduce, root=ROOT):
     return {source: makers.of(job(source)) for source in SOURCES}
 
 
+made_here = cache(made)
+EDITED = {}
+"""File of the copied code -> its text."""
+
+
 def stale(reduce, root):
     """Return the sources whose rows were made by other code than that in a folder."""
     now = made(reduce, root)
-    return {name for name, then in made(reduce).items() if changed(then, now[name])}
+    return {name for name, then in made_here(reduce).items() if changed(then, now[name])}
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory):
+    """The code in another folder; what was not edited there is parsed once for all tests."""
+    folder, kept = tmp_path_factory.mktemp("copied"), {}
+    for name in PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__", "published")
+        shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+
+    def read_once(name, path):
+        if path not in EDITED:
+            return read(name, ROOT / path.relative_to(folder) if folder in path.parents else path)
+        key = path, EDITED[path]
+        if key not in kept:
+            kept[key] = read.__wrapped__(name, path)
+        return kept[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fingerprint, "read", read_once)
+        yield folder
 
 
 @pytest.fixture
-def copy(tmp_path):
-    for name in PACKAGES:
-        ignored = shutil.ignore_patterns("__pycache__", "published")
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
-    return tmp_path
+def copy(copied):
+    """The same, in which what a test edits is taken back."""
+    yield copied
+    while EDITED:
+        path, _ = EDITED.popitem()
+        shutil.copy(ROOT / path.relative_to(copied), path)
 
 
 def edit(root, file, old, new):
     path = root / file
     text = path.read_text()
     assert old in text
-    path.write_text(text.replace(old, new, 1))
+    EDITED[path] = text.replace(old, new, 1)
+    path.write_text(EDITED[path])
 
 
 ASKED = []
@@ -92,14 +120,12 @@ def test_a_run_that_is_taken_up_computes_again_what_an_edit_made_stale(
     copy, tmp_path, monkeypatch, capsys
 ):
     """The question before the first of each source only loads it: 4 and 3 rows are kept."""
-    monkeypatch.setattr(Job, "needs_process", lambda *_: False)
     monkeypatch.setattr(plan, "Makers", partial(Makers, root=copy))
     names = ("exact", "pymunk", "box2d")
     jobs = [replace(job(name), labels={"case": n}) for name in names for n in range(4)]
     study = Study(name="made-up", module="", help="", tables=("made-up.csv",))
 
     def go_on():
-        read.cache_clear()
         plan.fill(study, plan.Plan(jobs=jobs, ask=answered), tmp_path / "out")
         assert list(pd.read_csv(tmp_path / "out" / "made-up.csv")["case"]) == [0, 1, 2, 3] * 3
         return capsys.readouterr().err, record_of(tmp_path / "out")["runs"][-1]["computed"]
@@ -181,7 +207,8 @@ def test_how_a_record_was_read_is_no_part_of_its_rows(file, part, copy):
     """Its samples are: they are in the key of the job."""
     asked = replace(job("exact"), motion=Record(dt=0.1, samples=[0.0, 1.0, 0.0]))
     edit(copy, f"analytic/{file}", "return ", "return 1 + ")
-    assert (Makers(ask, summary, copy).of(asked) != Makers(ask, summary).of(asked)) == part
+    before = Makers(ask, summary).of(asked)
+    assert (Makers(ask, summary, copy).of(asked) != before) == part
 
 
 def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
@@ -227,7 +254,7 @@ def test_a_table_is_of_its_rows_and_its_tabulation(file, old, new, tables, rows,
     ],
 )
 def test_a_number_that_an_engine_declares_is_in_its_rows(change, sources, monkeypatch):
-    before, whole = made(summary), Source.used.fget
+    before, whole = made_here(summary), Source.used.fget
 
     def used(source):
         preset = whole(source)
@@ -244,7 +271,7 @@ def test_a_number_that_an_engine_declares_is_in_its_rows(change, sources, monkey
     ("package", "sources"), [("mujoco", MUJOCO), ("scipy", set(SOURCES)), ("pandas", set())]
 )
 def test_a_version_is_in_the_rows_of_what_computes_with_it(package, sources, monkeypatch):
-    before, whole = made(summary), identity.version_of
+    before, whole = made_here(summary), identity.version_of
     monkeypatch.setattr(identity, "version_of", lambda n: "9" if n == package else whole(n))
     assert {name for name, maker in made(summary).items() if maker != before[name]} == sources
 

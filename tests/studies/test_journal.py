@@ -11,13 +11,13 @@ import pytest
 from studies.catalogue import CHAPTERS, STUDIES
 from studies.kit.drafts import draft
 from studies.kit.journal import FolderError, named, open_journal, rows_in, seal, unseal
+from studies.measures.published import PUBLISHED
 from studies.page.facts import FIRST
 
 SUBJECT = {"study": "test", "settings": {"seed": 1}}
 MAKERS = [{"engines/one.py": "a"}, {"engines/one.py": "b", "numpy": "2.4"}]
 MADE = named(MAKERS[0])
 ROWS = {f"key {n}": {"outcome": "rocked", "peak_ratio": 0.1 * n, "message": "θ"} for n in range(3)}
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 WRITING = [study for study in STUDIES if study.products]
 OF_FOLDER = {chapter.folder: study for study, chapter in CHAPTERS}
 

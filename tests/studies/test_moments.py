@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from given import BLOCK
-from test_score import alone, few  # noqa: F401
 
 from engines import installed_engines
 from engines.declaration import Stepping
@@ -55,7 +54,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("place", "moment", "evidence", "name"), WRONG)
-def test_a_wrong_moment_is_told(place, moment, evidence, name, alone):  # noqa: F811
+def test_a_wrong_moment_is_told(place, moment, evidence, name, alone):
     pytest.importorskip("pymunk")
     table = moments_of(announce(place))
     assert table["measured"].to_numpy() == pytest.approx(moment, abs=1e-6)
@@ -65,7 +64,7 @@ def test_a_wrong_moment_is_told(place, moment, evidence, name, alone):  # noqa: 
     assert said.endswith(f"Declare Moment.{name}.")
 
 
-def test_it_is_on_the_page_in_the_result_and_in_the_exit_code(alone, few, tmp_path, capsys):  # noqa: F811
+def test_it_is_on_the_page_in_the_result_and_in_the_exit_code(alone, few, tmp_path, capsys):
     pytest.importorskip("pymunk")
     kept = tmp_path / "kept.json"
     asked = ("--quick", "--out", str(tmp_path), "--require", "failed=9", "--json", str(kept))
@@ -93,7 +92,7 @@ def test_from_half_a_step_on_it_is_another_moment(measured, said):
     assert bool(accusation(table)) == ("off" in said)
 
 
-def test_what_does_not_move_is_not_judged(alone):  # noqa: F811
+def test_what_does_not_move_is_not_judged(alone):
     table = moments_of(announce("hostile:Calm"))
     assert table["measured"].isna().all()
     assert accusation(table) == ""
@@ -101,7 +100,7 @@ def test_what_does_not_move_is_not_judged(alone):  # noqa: F811
 
 
 @pytest.mark.parametrize("source", ["my_engine:fixed", "mujoco:landing", "moreau:landing"])
-def test_it_is_the_moment_by_which_the_angle_follows_the_rate(source, alone):  # noqa: F811
+def test_it_is_the_moment_by_which_the_angle_follows_the_rate(source, alone):
     """While a block falls back the rate is the slope of the angle, a part of a step away."""
     pytest.importorskip("pymunk")
     if source.startswith("my_engine"):

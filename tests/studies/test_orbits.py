@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse
+from analytic import SinePulse
 from analytic.response import History, Impact, Outcome, Response
 from studies.measures.orbits import LAST_PERIODS, orbit_of, sample_times
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 MOTION = SinePulse(amplitude=4.0, omega=6.0, half_cycles=2 * 60)
 FORCING = 2.0 * math.pi / MOTION.omega
 

@@ -221,8 +221,7 @@ def test_the_command_maps_and_repeats_itself(tmp_path, capsys):
     assert run(["redraw", str(tmp_path)]) == 0
     for name in capsys.readouterr().out.splitlines():
         assert Path(name).stat().st_size > 4_000
-    assert run([*arguments[:3], "--quick", "--sources", "exact", "housner"]) == 2
-    assert "settings" in capsys.readouterr().err
+    refused(capsys, [*arguments[:3], "--quick", "--sources", "exact", "housner"], "settings")
 
 
 def test_a_map_of_the_exact_solution_alone(tmp_path, capsys):

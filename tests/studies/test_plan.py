@@ -14,8 +14,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import SinePulse, simulate
 from analytic.response import Response
 from studies import respond
 from studies.cases.refusal import BadInputError
@@ -30,7 +31,6 @@ from studies.kit.study import Study
 from studies.kit.tables import write_table
 from studies.sources.registry import SOURCES, UnknownSourceError, resolve
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse.in_g(0.4, omega=2.0 * math.pi)
 STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 

@@ -18,12 +18,13 @@ from studies.kit.runner import run_jobs
 from studies.precision import cost
 from studies.sources.registry import SOURCES, Source
 
+pytestmark = pytest.mark.processes
+
 COMPARE = ["compare", *CASE, "--sources", "exact", "--json"]
 ENDING = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
-@pytest.mark.parametrize("count", [1, 20])
-@pytest.mark.parametrize("number", ENDING)
+@pytest.mark.parametrize(("number", "count"), [*((n, 20) for n in ENDING), (ENDING[0], 1)])
 @pytest.mark.parametrize("loading", ["cyclopts", "numpy", "tqdm"])
 def test_a_signal_while_modules_are_loaded_is_no_traceback(loading, number, count, tmp_path):
     module = tmp_path / "modules" / f"{loading}.py"

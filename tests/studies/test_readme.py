@@ -5,10 +5,10 @@ import re
 import shlex
 import shutil
 import tomllib
-from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import ROOT, refused
 
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
@@ -18,7 +18,6 @@ from studies.page import facts, readme
 from studies.page.engine_facts import objections
 from studies.page.facts import table
 
-ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / readme.PUBLISHED
 
 
@@ -27,25 +26,28 @@ PROSE = (*PAGES, "studies/GUIDE.md", ".github/CONTRIBUTING.md")
 TABLES = ("studies/published/columns.csv",)
 
 
+@pytest.fixture(scope="module")
+def pages():
+    return readme.pages(ROOT)
+
+
 @pytest.mark.parametrize("name", (*PAGES, *TABLES))
-def test_a_page_says_what_the_published_tables_say(name):
-    assert readme.pages(ROOT)[ROOT / name] == (ROOT / name).read_text(encoding="utf-8"), (
-        "run `rocking readme`"
-    )
+def test_a_page_says_what_the_published_tables_say(name, pages):
+    assert pages[ROOT / name] == (ROOT / name).read_text("utf-8"), "run `rocking readme`"
 
 
-def test_the_readme_follows_its_tables(tmp_path):
+def test_the_readme_follows_its_tables(pages, tmp_path):
     """A number and a word change with the table that they come from."""
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
-    before = said(tmp_path)
+    before = said(pages, ROOT)
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
         lines = pd.read_csv(path)
         mine = (lines["source"] == "mujoco") & (lines["figure"] == "all")
         wrong = ["agree", "fall_wrong", "rest_wrong", "no_answer"]
         lines.loc[mine, [*wrong, "max_error"]] = [957, 1, 2, 0, 0.0123]
         lines.to_csv(path, index=False)
-    after = said(tmp_path)
+    after = said(readme.pages(tmp_path), tmp_path)
     for old, new, words in zip(
         before,
         after,
@@ -81,9 +83,8 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     assert "frame" not in facts.scenes(copy)
 
 
-def said(root):
+def said(pages, root):
     """Return README.md and the page about the engines, of a folder."""
-    pages = readme.pages(root)
     return pages[root / "README.md"], pages[root / readme.PUBLISHED / "engines.md"]
 
 
@@ -252,8 +253,7 @@ def test_the_first_picture_is_of_the_case_that_it_names():
 
 
 def test_a_folder_without_tables_is_refused(tmp_path, capsys):
-    assert run(["readme", "--root", str(tmp_path)]) == 2
-    assert "--root" in capsys.readouterr().err
+    refused(capsys, ["readme", "--root", tmp_path], "--root")
 
 
 def commands(name):

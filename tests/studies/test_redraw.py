@@ -10,8 +10,7 @@ from matplotlib import units
 
 from studies.__main__ import run
 from studies.kit.provenance import seal
-
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
+from studies.measures.published import PUBLISHED
 
 
 def with_a_word(table, column):

@@ -11,15 +11,16 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from given import BLOCK
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import SinePulse, simulate
 from analytic.block import GRAVITY
 from studies.catalogue import CHAPTERS, STUDIES
+from studies.measures.published import PUBLISHED
 from studies.page import page, report
 from studies.page.page import AXES, engine_cases
 from studies.sweep import study as sweep
 
-PUBLISHED = Path(__file__).parents[2] / "studies" / "published"
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
     "sweep": ("--figure", "6", "--sources", "exact", "modified"),
@@ -162,7 +163,6 @@ def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
         report.command(out=made, full=True)
 
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 AMPLITUDE = 0.43333333 * GRAVITY
 """What the page shows first."""
 WIDTHS = (390, 820, 1400)

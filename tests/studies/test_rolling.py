@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import RollingCylinder, SinePulse, Still
 from analytic.response import RollingOutcome
@@ -92,16 +93,13 @@ def test_bad_input_is_one_line(options, problem, capsys):
         if name not in options
         for word in (name, value)
     ]
-    assert run(["compare", *kept, *options]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert problem in line
+    refused(capsys, ["compare", *kept, *options], problem)
 
 
 def test_what_is_missing_or_of_another_scene_is_named(capsys):
-    assert run(["compare", *SIZE[:4]]) == 2
-    assert "--height and --tilt missing; a cylinder" in capsys.readouterr().err
-    assert run(["compare", "--radius", "1", "--width", "1", "--height", "3", "--tilt", "0.5"]) == 2
-    assert "--radius is 1.0; it may be given only with --scene" in capsys.readouterr().err
+    refused(capsys, ["compare", *SIZE[:4]], "--height and --tilt missing; a cylinder")
+    asked = ["compare", "--radius", "1", "--width", "1", "--height", "3", "--tilt", "0.5"]
+    refused(capsys, asked, "--radius is 1.0; it may be given only with --scene")
     with pytest.raises(ValueError, match=r"motion is a SinePulse; .* it must be Still\(\)"):
         respond("exact", FLAT, SinePulse.in_g(0.3, omega=5.0))
     with pytest.raises(ValueError, match="option is 'start'"):

@@ -1,6 +1,5 @@
 """The runner and its results folder: failures, resuming, locks, foreign folders."""
 
-import math
 import os
 import resource
 import signal
@@ -13,6 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from commanding import PATIENCE_S
+from given import BLOCK, FULL_SINE
 
 from analytic import RigidBlock, SinePulse, simulate
 from studies.__main__ import run
@@ -29,8 +29,8 @@ from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * 9.81, omega=2.0 * math.pi, half_cycles=2)
+pytestmark = pytest.mark.processes
+
 HERE = Path(__file__).parent
 SMALL = sweep.plan([6], ["exact"])
 ALONE = Running(jobs=1, time_limit=1.0)
@@ -73,7 +73,7 @@ def sweep_on_a_full_disk(folder):
 
 
 def job(source, **labels):
-    return Job(labels=labels, block=BLOCK, motion=PULSE, source=source)
+    return Job(labels=labels, block=BLOCK, motion=FULL_SINE, source=source)
 
 
 def test_failures_are_tried_again_and_successes_are_not(tmp_path, monkeypatch):
@@ -106,17 +106,17 @@ def test_a_job_is_known_by_everything_that_changes_it():
     base = job("mujoco")
     wider = RigidBlock(width=0.6, height=1.5)
     bouncy = RigidBlock(width=0.5, height=1.5, restitution=0.9)
-    longer = SinePulse(amplitude=PULSE.amplitude, omega=PULSE.omega, half_cycles=3)
+    longer = SinePulse(amplitude=FULL_SINE.amplitude, omega=FULL_SINE.omega, half_cycles=3)
     others = [
         job("mujoco:naive"),
         job("pybullet"),
-        Job(labels={}, block=wider, motion=PULSE, source="mujoco"),
-        Job(labels={}, block=bouncy, motion=PULSE, source="mujoco"),
+        Job(labels={}, block=wider, motion=FULL_SINE, source="mujoco"),
+        Job(labels={}, block=bouncy, motion=FULL_SINE, source="mujoco"),
         Job(labels={}, block=BLOCK, motion=longer, source="mujoco"),
-        Job(labels={}, block=BLOCK, motion=PULSE, source="mujoco", duration=2.0),
-        Job(labels={}, block=BLOCK, motion=PULSE, source="mujoco", times=np.arange(3.0)),
-        Job(labels={}, block=BLOCK, motion=PULSE, source="mujoco", options={"step": 1e-3}),
-        Job(labels={"figure": 6}, block=BLOCK, motion=PULSE, source="mujoco"),
+        Job(labels={}, block=BLOCK, motion=FULL_SINE, source="mujoco", duration=2.0),
+        Job(labels={}, block=BLOCK, motion=FULL_SINE, source="mujoco", times=np.arange(3.0)),
+        Job(labels={}, block=BLOCK, motion=FULL_SINE, source="mujoco", options={"step": 1e-3}),
+        Job(labels={"figure": 6}, block=BLOCK, motion=FULL_SINE, source="mujoco"),
     ]
     assert base.key == job("mujoco").key
     assert len({base.key, *(other.key for other in others)}) == len(others) + 1

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import RigidBlock, SinePulse, simulate
-from engines import ENGINES, registry
+from engines import ENGINES
 from engines.declaration import Stepping
-from engines.registry import FURTHER, announce
+from engines.registry import announce
 from engines.undeclared import undeclared
 from studies import respond
 from studies.__main__ import COMMANDS, run
@@ -28,23 +29,9 @@ from studies.score import STUDY
 from studies.score import study as score
 from studies.score.result import CASE, MEASURES, Requirement, read, required, result_of, since
 from studies.sources import registry as sources
-from studies.sources.registry import SOURCES, resolve
 
 MINE = "my_engine:World"
 """In tests/plugin: a class that builds its world, and no declaration."""
-
-
-@pytest.fixture
-def alone(monkeypatch):
-    """Let what is announced be forgotten after the test."""
-    monkeypatch.setenv(FURTHER, "")
-    kept = dict(SOURCES)
-    yield
-    monkeypatch.undo()
-    registry._places.cache_clear()
-    registry._declared.cache_clear()
-    SOURCES.clear()
-    SOURCES.update(kept)
 
 
 def test_what_builds_a_world_is_an_engine(alone):
@@ -92,10 +79,7 @@ def test_an_engine_that_is_announced_makes_no_row_stale(alone, tmp_path, capsys)
     ],
 )
 def test_what_is_no_engine_is_refused_in_a_line(place, message, alone, tmp_path, capsys):
-    assert run(["score", place, "--out", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert message in error
-    assert error.count("\n") == 1
+    refused(capsys, ["score", place, "--out", tmp_path], message)
 
 
 def test_quick_asks_a_part_of_every_preset():
@@ -140,35 +124,6 @@ def test_the_page_of_an_engine_that_stacks(alone, few, tmp_path, capsys):
         assert rows["outcome"].iloc[0] == ("rocked" if name == "frame" else "slid")
 
 
-def some_of(jobs):
-    """Return two jobs of each table and preset: the first, on which all is well, and another."""
-    seen = Counter()
-    for job in jobs:
-        seen[key := (job.labels["table"], job.source)] += 1
-        if seen[key] in (1, 4):
-            yield job
-
-
-def in_this_process(running, ask):
-    """Return an executor that starts no process."""
-
-    def executor(asked):
-        for number, job in enumerate(asked):
-            yield number, ask(job, resolve(job.source))
-
-    return executor
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """Let a score ask two jobs of each table and preset; give what returns all."""
-    everything = score.score_jobs
-    monkeypatch.setattr(score, "score_jobs", lambda *asked: list(some_of(everything(*asked))))
-    monkeypatch.setattr(score, "answer", lambda case, job, source, limit: score.plain(job, source))
-    monkeypatch.setattr(Running, "executor", in_this_process)
-    return everything
-
-
 def test_the_page(alone, few, tmp_path, capsys):
     """Of an engine that does not declare itself: its numbers are those that `respond` gives."""
     pytest.importorskip("pymunk")
@@ -205,7 +160,7 @@ def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys
     assert (kept["schema"], kept["engine"]) == (1, "mujoco")
     assert kept["versions"]["mujoco"] == version("mujoco")
 
-    jobs = [job for job in some_of(few("mujoco", True)) if job.source == "mujoco:landing"]
+    jobs = [job for job in few("mujoco", True) if job.source == "mujoco:landing"]
     swept = [job for job in jobs if job.labels["table"] == score.SWEEP]
     errors = []
     for job in swept:
@@ -264,24 +219,17 @@ def test_a_requirement_is_of_the_best_preset_or_of_the_one_it_names():
     assert required("naive:failed=0", ENGINES["mujoco"]) == ("naive", "failed", 0.0)
 
 
+SCORE = ["score", "mujoco"]
 WRITTEN = {"schema": 1, "engine": "mujoco", "versions": {}, "presets": {}, "peaks": {}}
-
-
-def refused(capsys, *option):
-    assert run(["score", "mujoco", *option]) == 2
-    error = capsys.readouterr().err
-    assert option[0] in error
-    assert error.count("\n") == 1
-    return error
 
 
 def test_what_is_no_requirement_is_refused_before_anything_runs(capsys, monkeypatch):
     monkeypatch.setattr(score, "carry_out", None)
     of_a_name = ("p90", "p95=1", "P90=1", "best:p90=1", ":p90=1", "fixed:=1", "=1")
     for text in (*of_a_name, "p90=", "p90=x", "p90=-1", "p90=nan", "max=inf", "p90=1=1"):
-        assert repr(text) in refused(capsys, "--require", text)
-    refused(capsys, "--require")  # as a shell writes an empty variable
-    refused(capsys, "--json", "nowhere/result.json")
+        refused(capsys, [*SCORE, "--require", text], "--require", repr(text))
+    refused(capsys, [*SCORE, "--require"], "--require")  # as a shell writes an empty variable
+    refused(capsys, [*SCORE, "--json", "nowhere/result.json"], "--json")
 
 
 BROKEN = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
@@ -294,11 +242,11 @@ FOREIGN = (
 def test_what_is_no_earlier_result_is_refused_before_anything_runs(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(score, "carry_out", None)
     for path in (tmp_path, tmp_path / "nothing", "/dev/zero"):
-        assert "it is no file" in refused(capsys, "--against", str(path))
+        refused(capsys, [*SCORE, "--against", path], "--against", "it is no file")
     kept = tmp_path / "before.json"
     for text in (*BROKEN, *(json.dumps(WRITTEN | other) for other in FOREIGN)):
         kept.write_text(text)
-        assert "schema 1" in refused(capsys, "--against", str(kept))
+        refused(capsys, [*SCORE, "--against", kept], "--against", "schema 1")
     kept.write_text(json.dumps(WRITTEN))
     assert read(kept, ENGINES["mujoco"]) == WRITTEN
 

@@ -8,13 +8,12 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from given import BLOCK, PULSE
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import SinePulse, simulate
 from analytic.response import Reason, Response
 from studies import plot, respond, table
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 TIMES = np.linspace(0.0, 2.0, 501)
 
 

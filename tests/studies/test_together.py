@@ -27,6 +27,8 @@ from studies.kit.jobs import Job, ask, summary
 from studies.kit.runner import run_jobs
 from studies.sources.registry import scene_of
 
+pytestmark = pytest.mark.processes
+
 HERE = Path(__file__).parent
 BATCHED = "one after another"
 WIDE = RigidBlock(width=0.7, height=1.5)
@@ -128,9 +130,9 @@ def test_a_time_limit_holds_for_each_of_a_batch(note):
     assert (sizes(note), drivers) == ([5], [BATCHED] * 5)
     assert "failed" not in {row["outcome"] for row in rows}
     hang = [job(n, options={"density": HANGING if n else 1e3}) for n in range(2)]
-    first, second = rows_of(hang, limit_s=6.0)[0]
+    first, second = rows_of(hang, limit_s=2.5)[0]
     assert first["outcome"] == "at rest"
-    assert second["message"] == "no result within the time limit of 6 s"
+    assert second["message"] == "no result within the time limit of 2.5 s"
 
 
 def killed_run(folder, gate):

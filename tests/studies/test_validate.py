@@ -8,6 +8,7 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import frame_faults, simulate
 from engines.layouts import BEAM_DEPTH, SPACING
@@ -118,10 +119,8 @@ def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
 
 @pytest.mark.parametrize("command", ["validate", "estimate"])
 def test_random_slides_are_refused(command, tmp_path, capsys):
-    assert run([command, "--scene", "slide", "--out", str(tmp_path / "out")]) == 2
-    told = capsys.readouterr().err
-    assert "--scene is 'slide'; it must be among block, frame" in told
-    assert len(told.strip().splitlines()) == 1
+    words = "--scene is 'slide'; it must be among block, frame"
+    refused(capsys, [command, "--scene", "slide", "--out", tmp_path / "out"], words)
 
 
 def test_a_report_counts_the_cases_that_were_drawn(tmp_path):

@@ -6,8 +6,9 @@ import re
 
 import pandas as pd
 import pytest
+from commanding import refused
+from given import BLOCK
 
-from analytic import RigidBlock
 from studies import respond
 from studies.__main__ import run
 from studies.advise.evidence import published_engines
@@ -16,7 +17,6 @@ from studies.cases.drawn import RandomCase
 from studies.measures.formulas import at_step
 from studies.measures.published import PUBLISHED, too_slippery
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
 PUBLISHED_ENGINES = published_engines(PUBLISHED)
 
 
@@ -148,9 +148,5 @@ BAD = [
 @pytest.mark.parametrize(("arguments", "problem"), BAD)
 def test_what_cannot_be_is_one_line(arguments, problem, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert run(arguments) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    (line,) = output.err.splitlines()
-    assert problem in line
+    refused(capsys, arguments, problem)
     assert not (tmp_path / "DIR").exists() or arguments[0] == "estimate"
