@@ -43,6 +43,10 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
             "A block on a cart that leans to the right about its right corner; dashed, where it is "
             "at rest. The cart rolls freely, or on a spring."
         ),
+        "cylinder-scene": (
+            "A cylinder that rolls on its rim about its own centre, which stays where it is; the "
+            "dot is its foot, and dashed is the circle on which that goes round."
+        ),
         "frame-time": (
             "Frames: for each engine and preset a line from the median to the largest error of the "
             "peak, against the run time of a case, both on logarithmic scales."
@@ -54,6 +58,10 @@ pictures, cart-steps.csv and findings.txt; resumable.""",
         "cart-time": (
             "Carts: for each engine and preset a line from the median to the largest error of the "
             "peak, against the run time of a case, both on logarithmic scales."
+        ),
+        "cylinder-time": (
+            "Rolling cylinders: for each engine and preset a line from the median to the largest "
+            "error of the tilt after five turns, against the run time, both on logarithmic scales."
         ),
         "floor": (
             "How far a floor carries a block of what it should, for each engine and each way of "

@@ -22,6 +22,7 @@ from studies.measures.words import part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
 from studies.scenes.carts import carts
 from studies.scenes.cases import jobs
+from studies.scenes.rolling import CYLINDERS, cylinder_lines
 
 
 def millimetres(size: float) -> str:
@@ -185,20 +186,26 @@ def _called(row: dict[str, object]) -> frozenset[tuple[str, object]]:
 def drawings(folder: Path) -> Pictures:
     """Draw each scene, and its engines' errors against their times."""
     from studies.drawing.block import draw_scene
-    from studies.scenes.figure import draw_times
+    from studies.scenes.figure import draw_rolling, draw_times
 
     drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
     for name, told in SCENES.items():
         if len(lines := lines_of(folder / f"{name}.csv", name)):
-            drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
+            found = _finding(told.title, told.words, lines)
+            drawn[f"{name}-time"] = draw_times(lines, found, told.along)
+    if len(lines := cylinder_lines(found_in(folder / "cylinder.csv"))):
+        found = _finding("rolling", "{:.1g}".format, lines)
+        along = "error of the tilt after five turns  [rad]"
+        drawn["cylinder-scene"] = draw_rolling(CYLINDERS[0])
+        drawn["cylinder-time"] = draw_times(lines, found, along)
     return drawn
 
 
-def _finding(told: Told, lines: pd.DataFrame) -> str:
+def _finding(title: str, words: Callable[[float], str], lines: pd.DataFrame) -> str:
     """Say between which median errors the engines of a scene lie, and whose these are."""
     ranked = lines.dropna(subset="median_error").sort_values("median_error")
     low, high = (
-        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
+        f"{words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
         for end in (0, -1)
     )
-    return f"{told.title.capitalize()}: median errors from {low} to {high}"
+    return f"{title.capitalize()}: median errors from {low} to {high}"
