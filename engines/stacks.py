@@ -1,7 +1,7 @@
-"""Bodies that rest on others, in steps that land: what an engine needs for them beside its block.
+"""Bodies that rest on others, where an engine needs something of its own for them.
 
-Such an engine has a module `stacks` in its folder, with SETTINGS, in place of some of those by
-which it lands otherwise, and with its own `build`: found by its name, so that what is said there
+Such an engine has a module `stacks` in its folder, with its own `build`, and SETTINGS in place of
+some of a preset's that is not for stacks otherwise: found by its name, so that what is said there
 concerns nothing that stands alone.
 """
 
@@ -10,13 +10,15 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from engines.declaration import Engine
+from engines.layouts import Ability
 
 
-def stacking(engine: Engine) -> Engine:
-    """Return an engine as its best preset holds stacks, or as it is where it needs nothing."""
-    place = f"{engine.build.__module__.rpartition('.')[0]}.stacks"
-    if not place.startswith("engines.") or find_spec(place) is None:
+def stacking(engine: Engine, preset: str) -> Engine:
+    """Return an engine as one of its presets holds stacks, or as it is where nothing is to add."""
+    place, used = f"{engine.build.__module__.rpartition('.')[0]}.stacks", engine.preset(preset)
+    able = Ability.STACKED in engine.abilities and used.stacked is not None
+    if able or not place.startswith("engines.") or find_spec(place) is None:
         return engine
     own = import_module(place)
-    best = replace(engine.best, stacked=own.SETTINGS)
-    return replace(engine, build=own.build, presets=(*engine.presets[:-1], best))
+    presets = (replace(used, stacked=own.SETTINGS) if it is used else it for it in engine.presets)
+    return replace(engine, build=own.build, presets=tuple(presets), abilities=tuple(Ability))

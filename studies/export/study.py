@@ -73,6 +73,9 @@ def command(
     begin: dict[str, Any] = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     stepped = {} if step is None else {"step": step}
     options = {**begin, **stepped, **yours.options([source], block)[source]}
+    scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
+    if lacking := asked.lacks(scene, used):
+        raise BadInputError(f"--engine is {engine!r}; as a script {lacking}")
     rows = run_jobs(
         [
             Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)
@@ -87,7 +90,6 @@ def command(
     if not found:
         words = "what stands on its base stays at rest, with nothing to tell"
         raise BadInputError(f"--engine is {engine!r}; {words}")
-    scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
     what = Exported(
         engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
     )

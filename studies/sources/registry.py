@@ -59,7 +59,7 @@ class Source:
     def about(self, block: System | CartBlock | RollingCylinder) -> "Source":
         """Return the source as it answers about a system: some are code of their own.
 
-        Of a cart, and of a stack where its steps land, an engine's is, of a cylinder everyone's.
+        Of a cart, and of a stack where it needs that, an engine's is, of a cylinder everyone's.
         """
         if isinstance(block, RollingCylinder):
             preset = self.preset if ":" in self.name else None
@@ -69,10 +69,10 @@ class Source:
         given: Any = self.call
         if isinstance(block, CartBlock):
             return replace(self, call=partial(run_on_cart, **given.keywords), held=carrying)
-        stacks = isinstance(block, RockingFrame) and self.used is self.declared.best
-        if not stacks or stacking(self.declared) is self.declared:
+        held, named = partial(stacking, preset=self.preset), {"preset": self.preset}
+        if not isinstance(block, RockingFrame) or held(self.declared) is self.declared:
             return self
-        return replace(self, call=partial(run_stacked, engine=self.engine), held=stacking)
+        return replace(self, call=partial(run_stacked, **given.keywords | named), held=held)
 
     def check(
         self,
@@ -156,12 +156,14 @@ def run_on_cart(
     return interpreted_first(partial(ride, engine, scene))
 
 
-def run_stacked(block: RockingFrame, motion: Motion, *, engine: str, **options: Any) -> Response:
-    """Let the best preset of an engine run what rests on others; as `run_engine`."""
+def run_stacked(
+    block: RockingFrame, motion: Motion, *, engine: str, preset: str, **options: Any
+) -> Response:
+    """Let an engine run what rests on others by code of its own; as `run_engine`."""
     from engines.run.drive import run
 
-    declared = stacking(ENGINES[engine])
-    scene = scene_of(block, motion, declared.best.name, **options)
+    declared = stacking(ENGINES[engine], preset)
+    scene = scene_of(block, motion, preset, **options)
     return interpreted_first(partial(run, declared, scene))
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from analytic import RigidBlock, RockingFrame, SinePulse, simulate
 from engines import ENGINES
+from engines.registry import OWN
 from engines.stacks import stacking
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
@@ -16,9 +17,11 @@ UNSPLIT = 2e-4
 """Relative error of a peak; where contacts above and below close in different steps it is 0.1."""
 
 
-def test_those_that_land_on_stacks_by_code_of_their_own():
-    own = {name for name, engine in ENGINES.items() if stacking(engine) is not engine}
-    assert own == set(STACKERS)
+def test_those_that_hold_stacks_by_code_of_their_own():
+    engines = dict(ENGINES)
+    best = {n for n, engine in engines.items() if stacking(engine, engine.best.name) is not engine}
+    fixed = {n for n in OWN if stacking(engines[n], "fixed") is not engines[n]}
+    assert (best, fixed) == ({*STACKERS, "newton"}, {"newton"})
 
 
 @pytest.mark.parametrize("name", STACKERS)
@@ -34,6 +37,17 @@ def test_columns_and_beam_land_together(name, columns, load):
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=UNSPLIT)
     assert found.observables["parting"] < 1e-4
     assert found.message == ""
+
+
+@pytest.mark.skipif(not ENGINES["newton"].installed, reason="Newton is not installed")
+@pytest.mark.parametrize("preset", ["naive", "fixed"])
+def test_a_frame_in_newton_lifts_rocks_and_stays_whole(preset):
+    frame = RockingFrame(width=0.5, height=1.5, columns=2, load=0.5)
+    job = Job(labels={}, block=frame, motion=PULSE, source=f"newton:{preset}")
+    found = ask(job, job.asked)
+    assert found.outcome is simulate(frame, PULSE).outcome, found.message
+    assert found.observables["parting"] < 0.1
+    assert found.observables["tilt"] < 0.02
 
 
 @pytest.mark.parametrize("name", STACKERS)

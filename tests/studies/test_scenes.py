@@ -50,11 +50,11 @@ def test_a_frame_is_compared(capsys):
 
 
 def test_a_frame_in_words(capsys):
-    assert run(["compare", *SIZE, *OF_A_FRAME, "--sources", "exact", "mujoco", "newton"]) == 1
+    assert run(["compare", *SIZE, *OF_A_FRAME, "--sources", "exact", "rapier:landing"]) == 1
     said = capsys.readouterr().out
     assert said.startswith("frame   2 columns of B = 0.5 m, H = 1.5 m, load 2: ")
     assert "valid   with friction of " in said
-    assert "newton: not available: Newton is not built here for several bodies" in said
+    assert "rapier:landing: not available: rapier:landing is not built here for bodies" in said
 
 
 def test_a_beam_that_would_tip_is_named(capsys):
