@@ -1,5 +1,6 @@
 """A scene written out for an engine alone: files, and the peak to expect of them."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,8 @@ def command(
     options = {**begin, **stepped, **yours.options([source], block)[source]}
     scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
     if lacking := asked.lacks(scene, used):
-        raise BadInputError(f"--engine is {engine!r}; as a script {lacking}")
+        print(f"failed: {source}: not available: {lacking}, as a script", file=sys.stderr)
+        return 1
     rows = run_jobs(
         [
             Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)

@@ -295,10 +295,6 @@ def test_no_room_for_a_file_leaves_no_part_of_a_script(tmp_path, capsys):
             "columns is 1; it must be a whole number of 2 or more",
         ),
         (
-            ["--engine", "newton:fixed", *SHAKEN, *FRAME],
-            "--engine is 'newton:fixed'; as a script Newton is not built here for several bodies",
-        ),
-        (
             ["--engine", "mujoco", *SHAKEN, "--scene", "frame", "--load", "0"],
             "--load is '0'; it must be",
         ),
