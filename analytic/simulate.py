@@ -86,8 +86,8 @@ def simulate(
         rocking after that come from its energy in either case. A sliding block is followed until it
         stands; a cart on a spring, whose energy decides nothing before, until the peak is decided.
     times : array_like, optional
-        Ground times [s], increasing, at which to sample `Response.history`; it ends with the
-        response.
+        Ground times [s], increasing, at which to sample `Response.history`; it ends where the
+        response is no longer followed: with the motion, unless a `duration` is given.
     tolerance : float, optional
         Truncation error of a step of the exact model, relative to the rotation, from 1e-16 to
         1e-2; the degree of its Taylor series follows from it. The linear models are solved in

@@ -111,7 +111,7 @@ class Preset:
         What the library's defaults get wrong; no tuned preset may miss anything.
     stacked : mapping or None
         Settings in place of some of these where bodies rest on others; None where it cannot be used
-        for such a scene.
+        for such a scene but by code of its own (`engines.stacks`).
     own : mapping
         Of "naive", settings that are not the library's own -> what the library has by itself.
     """

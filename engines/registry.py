@@ -157,14 +157,16 @@ def installed_engines() -> tuple[str, ...]:
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
 
 
-def find(name: str) -> Engine:
-    """Return an engine by its name.
+def find(name: str | Engine) -> Engine:
+    """Return an engine by its name, or as it is given.
 
     Raises
     ------
     ValueError
         If there is none.
     """
+    if isinstance(name, Engine):
+        return name
     if name not in ENGINES:
         raise ValueError(f"engine is {name!r}; it must be one of {', '.join(ENGINES)}")
     return ENGINES[name]

@@ -32,13 +32,13 @@ class NotAvailableError(Exception):
     """An engine that is not installed, or cannot do what is asked of it; one line says why."""
 
 
-def run(engine: str, scene: Scene) -> Response:
+def run(engine: str | Engine, scene: Scene) -> Response:
     """Simulate a scene with an engine.
 
     Parameters
     ----------
-    engine : str
-        A name in `ENGINES`.
+    engine : str or Engine
+        A name in `ENGINES`, or a declaration.
     scene : Scene
         What to simulate, and how.
 

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -81,6 +82,10 @@ def command(
     begin: dict[str, Any] = {} if posed.start == (0.0, 0.0) else {"start": posed.start}
     stepped = {} if step is None else {"step": step}
     options = {**begin, **stepped, **yours.options([source], block)[source]}
+    scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
+    if lacking := asked.lacks(scene, used):
+        print(f"failed: {source}: not available: {lacking}, as a script", file=sys.stderr)
+        return 1
     rows = run_jobs(
         [
             Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)
@@ -95,7 +100,6 @@ def command(
     if not found:
         words = "what stands on its base stays at rest, with nothing to tell"
         raise BadInputError(f"--engine is {engine!r}; {words}")
-    scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
     what = Exported(
         engine=asked, preset=used, scene=scene, watched_s=window, expected=found, exact=exact
     )

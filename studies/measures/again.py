@@ -69,7 +69,8 @@ def commands(
     watched = "" if usual else f" --duration {duration}"
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
-    answered = outcome in ("rocked", "overturned", "slid") and not isinstance(block, CartBlock)
+    # what an engine holds by code of its own has no script
+    answered = outcome in ("rocked", "overturned", "slid") and not resolve(source).about(block).held
     if not (usual and answered and written_out(source)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"

@@ -39,13 +39,21 @@ space, five turns and fifty. What an engine is not built for is a row that says 
             "A block on a cart that leans to the right about its right corner; dashed, where it is "
             "at rest. The cart rolls freely, or on a spring."
         ),
+        "cylinder-scene": (
+            "A cylinder that rolls on its rim about its own centre, which stays where it is; the "
+            "dot is its foot, and dashed is the circle on which that goes round."
+        ),
         **{
             f"{scene}-time": (
-                f"{scene.capitalize()}s: for each engine and preset a line from the median to the "
-                f"largest error of {what}, against the run time of a case, both on logarithmic "
-                "scales."
+                f"{scenes}: for each engine and preset a line from the median to the largest error "
+                f"of {what}, against the run time of a case, both on logarithmic scales."
             )
-            for scene, what in (("frame", "the peak"), ("slide", "a slip"), ("cart", "the peak"))
+            for scene, scenes, what in (
+                ("frame", "Frames", "the peak"),
+                ("slide", "Slides", "a slip"),
+                ("cart", "Carts", "the peak"),
+                ("cylinder", "Rolling cylinders", "the tilt after five turns"),
+            )
         },
         "floor": (
             "How far a floor carries a block of what it should, for each engine and each way of "

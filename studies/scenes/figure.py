@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from scipy.spatial import ConvexHull
 
-from studies.drawing.block import draw_scene
+from analytic import RollingCylinder
+from analytic.motion import FloatArray
+from studies.drawing.block import BLOCK, INK, SOFT, draw_scene
 from studies.drawing.facets import key, preset_dots
 from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, around
@@ -15,10 +22,14 @@ from studies.drawing.styles import name_of, title_of
 from studies.measures.presets import engine_of, in_order, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.wrongness import KINDS
-from studies.scenes.told import SCENES, Told, found_in, lines_of
+from studies.scenes.rolling import CYLINDERS, cylinder_lines
+from studies.scenes.told import SCENES, found_in, lines_of
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
+
+ABOVE = math.radians(18.0)
+"""From which angle over the plane a cylinder is seen."""
 
 
 FLOORS = (
@@ -84,21 +95,53 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     return figure
 
 
+def draw_rolling(cylinder: RollingCylinder) -> Figure:
+    """Draw a cylinder on its rim in space, and, dashed, the circle on which its foot goes round."""
+    state, around = cylinder.at(0.0), np.linspace(0.0, 2.0 * math.pi, 121)
+    ring = np.stack((np.cos(around), np.sin(around), np.zeros(around.size)))
+    rim = (cylinder.radius * state.turned[0] @ ring).T
+    centre = np.array([0.0, 0.0, cylinder.centre_height])
+    lower, upper = (centre + end * cylinder.height * state.axis[0] + rim for end in (-0.5, 0.5))
+    drawing = Figure(figsize=(4.4, 3.4), layout="constrained")
+    axes = drawing.subplots()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    whole = _seen(np.concatenate((lower, upper)))
+    for outline in (whole[ConvexHull(whole).vertices], _seen(upper)):
+        axes.add_patch(Polygon(outline, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
+    foot = state.foot[0]
+    axes.plot(*_seen(np.hypot(*foot[:2]) * ring.T).T, color=SOFT, dashes=(4, 3), zorder=0)
+    axes.plot(*_seen(foot[None]).T, "o", color=INK, markersize=5)
+    return drawing
+
+
+def _seen(points: FloatArray) -> FloatArray:
+    """Return points (n, 3) as they are seen from -y and from above."""
+    x, y, z = points.T
+    return np.stack((x, y * math.sin(ABOVE) + z * math.cos(ABOVE)), axis=1)
+
+
 def pictures(folder: Path) -> Pictures:
     """Draw each scene, its engines' errors against their times, and what there is of floors."""
     drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
     for name, told in SCENES.items():
         if len(lines := lines_of(folder / f"{name}.csv", name)):
-            drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
+            found = _finding(told.title, told.words, lines)
+            drawn[f"{name}-time"] = draw_times(lines, found, told.along)
+    if len(lines := cylinder_lines(found_in(folder / "cylinder.csv"))):
+        found = _finding("rolling", "{:.1g}".format, lines)
+        along = "error of the tilt after five turns  [rad]"
+        drawn["cylinder-scene"] = draw_rolling(CYLINDERS[0])
+        drawn["cylinder-time"] = draw_times(lines, found, along)
     floors = found_in(folder / "floor-summary.csv")
     return drawn | ({} if floors.empty else {"floor": draw_floors(floors)})
 
 
-def _finding(told: Told, lines: pd.DataFrame) -> str:
+def _finding(title: str, words: Callable[[float], str], lines: pd.DataFrame) -> str:
     """Say between which median errors the engines of a scene lie, and whose these are."""
     ranked = lines.dropna(subset="median_error").sort_values("median_error")
     low, high = (
-        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
+        f"{words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
         for end in (0, -1)
     )
-    return f"{told.title.capitalize()}: median errors from {low} to {high}"
+    return f"{title.capitalize()}: median errors from {low} to {high}"

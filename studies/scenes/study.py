@@ -175,11 +175,12 @@ def slide_summary(rows: pd.DataFrame) -> pd.DataFrame:
     lines = []
     for source, part in _available(rows):
         slid = part[part["exact_slips"] > 0]
+        held = (part["exact_slips"] == 0) & (part["outcome"] == Outcome.AT_REST.value)
         lines.append(
             {
                 "source": source,
                 "slides": len(part),
-                "wrong": int(part["slip_error_m"].isna().sum()),
+                "wrong": int((part["slip_error_m"].isna() & ~held).sum()),
                 "largest_slip_error_m": slid["slip_error_m"].max(),
                 "creep_m": part.loc[part["exact_slips"] == 0, "slip_error_m"].max(),
                 "lift_m": part["lift_m"].max(),

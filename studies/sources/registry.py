@@ -9,6 +9,7 @@ from typing import Any, Literal
 from analytic import MODELS, integrate, simulate
 from analytic.cart import CartBlock
 from analytic.cylinder import RollingCylinder
+from analytic.frame import RockingFrame
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -18,6 +19,7 @@ from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
 from engines.parts.compiled import interpreted_first
 from engines.scene import Scene, one_of
+from engines.stacks import stacking
 from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
@@ -41,7 +43,8 @@ class Source:
     It can be sent to another process or machine. `engine` and `preset` are names, the preset by
     default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
     ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
-    that by which it was asked for. `on_cart` is whether it is asked about a block on a cart.
+    that by which it was asked for. `held` is how its engine is taken where what it is
+    asked about is code of its own.
     """
 
     kind: Kind
@@ -51,20 +54,25 @@ class Source:
     stepping: bool = False
     model: str = "exact"
     name: str = ""
-    on_cart: bool = False
+    held: Callable[[Engine], Engine] | None = None
 
     def about(self, block: System | CartBlock | RollingCylinder) -> "Source":
-        """Return the source as it answers about a system: cart and cylinder are code of their own.
+        """Return the source as it answers about a system: some are code of their own.
 
-        Of a cart an engine's is, of a cylinder everyone's.
+        Of a cart, and of a stack where it needs that, an engine's is, of a cylinder everyone's.
         """
         if isinstance(block, RollingCylinder):
             preset = self.preset if ":" in self.name else None
             return replace(self, call=partial(rolled, engine=self.engine, preset=preset))
-        if not self.engine or not isinstance(block, CartBlock) or self.on_cart:
+        if not self.engine or self.held:
             return self
         given: Any = self.call
-        return replace(self, call=partial(run_on_cart, **given.keywords), on_cart=True)
+        if isinstance(block, CartBlock):
+            return replace(self, call=partial(run_on_cart, **given.keywords), held=carrying)
+        held, named = partial(stacking, preset=self.preset), {"preset": self.preset}
+        if not isinstance(block, RockingFrame) or held(self.declared) is self.declared:
+            return self
+        return replace(self, call=partial(run_stacked, **given.keywords | named), held=held)
 
     def check(
         self,
@@ -94,7 +102,7 @@ class Source:
         if isinstance(block, CartBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves a base that moves as it is told, and no cart")
         taken = inspect.signature(self.call).parameters
-        if getattr(self.call, "func", None) in (run_engine, run_on_cart):
+        if getattr(self.call, "func", None) in (run_engine, run_on_cart, run_stacked):
             asked = {**options, "duration": duration, "times": times}
             self.used.chosen(scene_of(block, motion, self.preset, **asked))
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
@@ -105,7 +113,7 @@ class Source:
     def declared(self) -> Engine:
         """What the engine says of itself; KeyError for other sources."""
         engine = ENGINES[self.engine]
-        return carrying(engine) if self.on_cart else engine
+        return self.held(engine) if self.held else engine
 
     @property
     def used(self) -> Preset:
@@ -146,6 +154,17 @@ def run_on_cart(
     """Let an engine run a block on a cart; as `run_engine`."""
     scene = scene_of(block, motion, preset, **options)
     return interpreted_first(partial(ride, engine, scene))
+
+
+def run_stacked(
+    block: RockingFrame, motion: Motion, *, engine: str, preset: str, **options: Any
+) -> Response:
+    """Let an engine run what rests on others by code of its own; as `run_engine`."""
+    from engines.run.drive import run
+
+    declared = stacking(ENGINES[engine], preset)
+    scene = scene_of(block, motion, preset, **options)
+    return interpreted_first(partial(run, declared, scene))
 
 
 def scene_of(

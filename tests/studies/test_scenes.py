@@ -21,9 +21,10 @@ from studies.kit.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, frames, slides, steps
-from studies.scenes.figure import draw_times
+from studies.scenes.figure import draw_times, pictures
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.study import block_summary, floor_summary, reduce, tabulate
+from studies.scenes.rolling import cylinder_lines
+from studies.scenes.study import block_summary, floor_summary, reduce, slide_summary, tabulate
 from studies.scenes.told import SCENES, again, floor_sentence, frame_sentence, kinds_in, lines_of
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
@@ -49,11 +50,11 @@ def test_a_frame_is_compared(capsys):
 
 
 def test_a_frame_in_words(capsys):
-    assert run(["compare", *SIZE, *OF_A_FRAME, "--sources", "exact", "mujoco", "newton"]) == 1
+    assert run(["compare", *SIZE, *OF_A_FRAME, "--sources", "exact", "rapier:landing"]) == 1
     said = capsys.readouterr().out
     assert said.startswith("frame   2 columns of B = 0.5 m, H = 1.5 m, load 2: ")
     assert "valid   with friction of " in said
-    assert "newton: not available: Newton is not built here for several bodies" in said
+    assert "rapier:landing: not available: rapier:landing is not built here for bodies" in said
 
 
 def test_a_beam_that_would_tip_is_named(capsys):
@@ -157,6 +158,24 @@ def test_the_published_scenes_are_told_as_their_summaries_are():
         assert lines["ms"].to_numpy() == pytest.approx(summary[f"ms_a_{name}"].to_numpy())
         if median:
             assert lines[median].to_numpy() == pytest.approx(summary[median].to_numpy())
+
+
+def test_a_block_that_is_held_is_no_wrong_slide():
+    held = {"source": "exact", "exact_slips": 0, "slip_error_m": math.nan, "lift_m": 0.0}
+    kept = {**held, "outcome": "at rest", "reason": "", "wall_s": 0.1}
+    failed = {**kept, "source": "pymunk", "outcome": "failed"}
+    wrong = slide_summary(pd.DataFrame([kept, failed])).set_index("source")["wrong"]
+    assert wrong.to_dict() == {"exact": 0, "pymunk": 1}
+
+
+def test_rolling_cylinders_have_their_pictures():
+    table = read_table(PUBLISHED / "scenes" / "cylinder.csv")
+    lines = cylinder_lines(table).set_index("source")
+    summary = read_table(PUBLISHED / "scenes" / "cylinder-summary.csv").set_index("source")
+    five = summary[summary["turns"] == 5.0].loc[lines.index]
+    assert (lines[[*KINDS]].sum(axis=1) == five["lost"]).all()
+    assert lines["largest_error"].to_numpy() == pytest.approx(five["tilt_error_rad"].to_numpy())
+    assert {"cylinder-scene", "cylinder-time"} <= set(pictures(PUBLISHED / "scenes"))
 
 
 def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
