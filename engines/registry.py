@@ -32,6 +32,14 @@ OWN = {
 """Name of an engine -> where its declaration stands."""
 
 
+VARIANTS = {
+    f"newton-{solver}": f"engines.newton.others:{solver.upper().replace('-', '_')}"
+    for solver in ("featherstone", "mujoco", "semi-implicit", "steel")
+}
+"""Engines once more with another solver: found by their names, and in no list of engines; what a
+study tries on the one that is listed (`engines.parts.factors.Level.source`) are these."""
+
+
 class UnloadableError(OSError, ValueError):
     """An engine that stands nowhere; the message is one line that says why."""
 
@@ -40,7 +48,9 @@ class Engines(Mapping[str, Engine]):
     """Name -> declaration, read when an engine is first asked for; no library is imported."""
 
     def __getitem__(self, name: str) -> Engine:
-        return _declared(name, _places()[name])
+        listed = _places()
+        place = listed[name] if name in listed else EntryPoint(name, VARIANTS[name], GROUP)
+        return _declared(name, place)
 
     def __iter__(self) -> Iterator[str]:
         return iter(_places())

@@ -24,7 +24,10 @@ STILL = f"{OWN_STEP}, on a base at rest"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """One way to set an engine: a preset and what differs from it; factor is empty if nothing."""
+    """One way to set an engine: a preset and what differs from it; factor is empty if nothing.
+
+    `source` is who is asked: the engine's preset, but for another engine in its place.
+    """
 
     engine: str
     preset: str
@@ -33,6 +36,10 @@ class Variant:
     settings: Mapping[str, Any] = field(default_factory=dict)
     scene: Mapping[str, Any] = field(default_factory=dict)
     trap: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "source", self.source or f"{self.engine}:{self.preset}")
 
     @property
     def name(self) -> str:
@@ -102,4 +109,5 @@ def _levels(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
                 settings=item.settings,
                 scene=item.scene,
                 trap=item.trap,
+                source=item.source,
             )

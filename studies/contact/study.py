@@ -131,7 +131,7 @@ def job_of(variant: Variant, kind: str, case: Case, quick: bool, own_step: bool 
         },
         block=case.block,
         motion=case.motion,
-        source=f"{variant.engine}:{variant.preset}",
+        source=variant.source,
         duration=window,
         times=np.linspace(0.0, window, SAMPLES),
         options=options,

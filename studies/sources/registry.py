@@ -18,6 +18,7 @@ from engines.cart import carrying, ride
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import System
 from engines.parts.compiled import interpreted_first
+from engines.registry import VARIANTS
 from engines.scene import Scene, one_of
 from engines.stacks import stacking
 from studies.sources.rolling import rolled, space_scene
@@ -205,7 +206,7 @@ SOURCES: dict[str, Source] = {
         "solver", partial(integrate, method="average-acceleration"), stepping=True
     ),
     **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
-    **{name: _engine(name, engine.best.name) for name, engine in ENGINES.items()},
+    **{name: _engine(name, ENGINES[name].best.name) for name in (*ENGINES, *VARIANTS)},
 }
 """Every source; a new model or engine appears here by being registered in its own storey."""
 

@@ -9,14 +9,17 @@ from uses import BLOCK, HERE, SHAKEN, error, pulse, rocked, scene
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Response
+from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
 from engines.declaration import AT_REST, Stepping
 from engines.newton import models as newton_models
+from engines.registry import VARIANTS
 from engines.run.drive import build, run
 from engines.run.look import Look
+from studies.cases.variants import variants
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
+from studies.sources.registry import SOURCES
 
 installed = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
 
@@ -140,3 +143,36 @@ def test_what_compiles_itself_does_so_outside_the_time_limit(tmp_path, monkeypat
     engine = replace(ENGINES["newton"], library="numpy")
     monkeypatch.setattr("engines.registry._declared", lambda name, place: engine)
     assert [r.message for _, r in Local(1, 3.0, ask)([job])] == ["compiled"]
+
+
+OTHERS = [name for name in VARIANTS if name.startswith("newton-")]
+"""Its other solvers, each an engine that no list names."""
+
+
+def has_warp(name):
+    return name != "newton-mujoco" or ENGINES["warp"].installed
+
+
+@installed
+@pytest.mark.parametrize("name", OTHERS)
+def test_another_solver_holds_the_block(name):
+    """Below g tan(alpha) nothing lifts; above, its peak is near the exact one at an ordinary step.
+
+    The same run after another one of the same model answers the same to the bit.
+    """
+    motion = pulse(1.3, 3.0, 1)
+    first, still, again = (rocked(name, it) for it in (motion, pulse(0.9, 1.0), motion))
+    if not has_warp(name):
+        assert first.reason is Reason.UNAVAILABLE
+        assert first.message.endswith("pip install 'rocking[newton,warp]'")
+        return
+    assert (first.outcome, still.outcome) == (Outcome.ROCKED, Outcome.AT_REST)
+    assert first.peak_ratio == pytest.approx(simulate(BLOCK, motion).peak_ratio, rel=0.03)
+    assert (again.peak_ratio, again.steps) == (first.peak_ratio, first.steps)
+
+
+def test_the_other_solvers_are_variants_and_no_engines_of_a_list():
+    asked = {each.source.partition(":")[0] for each in variants("newton")}
+    assert asked == {"newton", *OTHERS}
+    assert not {*ENGINES} & {*OTHERS}
+    assert {*OTHERS} <= {*SOURCES}
