@@ -36,6 +36,10 @@ class MissingError(Exception):
     """A release that cannot be had, or releases that cannot be asked for; one line says why."""
 
 
+class NoWheelError(MissingError):
+    """A release of which there is no package for this Python, though pip lists it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Release:
     """A release of an engine's package.
@@ -158,6 +162,9 @@ OLD_NUMPY = ("numpy<2", "pandas<3")
 BUILT_WITH_OLD_NUMPY = "numpy.core.multiarray failed to import"
 """What it says without."""
 
+NO_WHEEL = "No matching distribution"
+"""What pip says where no package of a release suits this Python."""
+
 USABLE = (0, 1)
 """Exit codes of a run that left its table; 1 where rows failed."""
 
@@ -173,11 +180,14 @@ class Asked:
         A row for each case and preset, the columns of answers.csv; None where it could not be had.
     problem : str
         Why there are no answers.
+    has_wheel : bool
+        Whether there is a package of it for this Python.
     """
 
     release: Release
     answers: pd.DataFrame | None
     problem: str = ""
+    has_wheel: bool = True
 
 
 def ask(release: Release, out: Path, environments: Path, options: Sequence[str]) -> Asked:
@@ -204,7 +214,7 @@ def ask(release: Release, out: Path, environments: Path, options: Sequence[str])
         if (found := set(answers["release"])) != {release.version}:
             raise MissingError(f"{', '.join(sorted(found))} was loaded in its stead")
     except MissingError as error:
-        return Asked(release, None, str(error))
+        return Asked(release, None, str(error), not isinstance(error, NoWheelError))
     return Asked(release, answers)
 
 
@@ -230,4 +240,6 @@ def fill(folder: Path, release: Release) -> None:
 def _install(folder: Path, *requirements: str) -> None:
     done = pip("install", "--target", str(folder), "--quiet", "--no-input", *requirements)
     if done.returncode:
-        raise MissingError(f"cannot be installed: {complaint(done)}")
+        why = complaint(done)
+        kind = NoWheelError if NO_WHEEL in why else MissingError
+        raise kind(f"cannot be installed: {why}")

@@ -146,7 +146,12 @@ def command(
 
     def tabulate(_: object) -> Tables:
         each = tqdm(wanted, disable=None, unit="release")
-        return {"releases": releases_table([ask(one, out, environments, options) for one in each])}
+        asked = [ask(one, out, environments, options) for one in each]
+        # pip lists what was never built for this Python, too
+        return {"releases": releases_table([it for it in asked if it.has_wheel or is_named(it)])}
+
+    def is_named(it: Asked) -> bool:
+        return f"{it.release.engine}=={it.release.version}" in releases
 
     growing = {"engine": engines, "release": releases}
     plan = Plan(settings={"quick": quick}, growing=growing, tabulate=tabulate)
