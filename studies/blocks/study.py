@@ -182,7 +182,7 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
     that the search did not see.
     """
     of_exact = (ANSWERS, "exact")
-    facts = {_case(row): row for row in rows if (row["table"], row["source"]) == of_exact}
+    facts = {_case(row): row for row in rows if (row["table"], row.get("source")) == of_exact}
     margins = {_case(row)[:2]: row for row in rows if row["table"] == MARGINS}
     falls: dict[tuple[Any, ...], float] = {}
     for (name, record, scale), row in facts.items():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pandas as pd
 
-from studies.measures.presets import engine_of, is_engine
+from studies.measures.presets import engine_of
 from studies.measures.words import listed, out_of, part
-from studies.sources.registry import original_of
+from studies.sources.registry import original_of, resolve
 
 CASE = ["figure", "aspect", "width_m", "omega_over_p"]
 
@@ -24,8 +24,8 @@ def port_table(rows: pd.DataFrame) -> pd.DataFrame:
     }
     lines = []
     for source, found in answers.items():
-        engine = engine_of(str(source))
-        beside = str(source).replace(engine, original_of(engine)) if is_engine(str(source)) else ""
+        engine = resolve(str(source)).engine
+        beside = str(source).replace(engine, original_of(engine)) if engine else ""
         if beside not in answers:
             continue
         plain = answers[beside].reindex(found.index)

@@ -74,7 +74,7 @@ def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
         ]
     )
     text = sweep.first_claim(lines)
-    assert "2 engines have the fall wrong in up to 1 (pybullet) of 10 cases each" in text
+    assert "2 engines have the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
     assert "with steps that land on impacts, one engine has none wrong of 10 cases" in text
     assert "by linearization: housner the fall wrong in 2." in text
     table = sweep.preset_table(lines)

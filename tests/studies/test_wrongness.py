@@ -104,8 +104,8 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
     many = pd.concat([many, lines.assign(source="pymunk:naive")], ignore_index=True)
     table = sweep.preset_table(many)
     said = (
-        "3 engines have the fall wrong in 2 each, at rest for rocked in up to 2 (drake) and no "
-        "answer in up to 1 (drake) of 6 cases each, and peaks off by up to "
+        "3 engines have the fall wrong in 2 each, at rest for rocked in up to 2 (Drake) and no "
+        "answer in up to 1 (Drake) of 6 cases each, and peaks off by up to "
     )
     told = sweep.verdict(table, posed(rows))
     assert told.startswith(
