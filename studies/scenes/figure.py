@@ -129,7 +129,7 @@ def pictures(folder: Path) -> Pictures:
             found = _finding(told.title, told.words, lines)
             drawn[f"{name}-time"] = draw_times(lines, found, told.along)
     if len(lines := cylinder_lines(found_in(folder / "cylinder.csv"))):
-        found = _finding("rolling", "{:.1g}".format, lines)
+        found = _finding("rolling", "{:.1g} rad".format, lines)
         along = "error of the tilt after five turns  [rad]"
         drawn["cylinder-scene"] = draw_rolling(CYLINDERS[0])
         drawn["cylinder-time"] = draw_times(lines, found, along)
