@@ -227,7 +227,7 @@ def take_step(
     if way > 0:
         x, peak = 2.0, max(peak, value(d, order, 1.0))
     elif way < 0 and lead == 0:
-        x = bracketed_root(d, order, 0.0, 1.0) if value(d, order, 1.0) < 0.0 else 2.0
+        x = bracketed_root(d, order, 0.0, 1.0, False) if value(d, order, 1.0) < 0.0 else 2.0
     else:
         x = first_crossing(d, order, lead, 0.0, spare)
         peak, _ = highest(d, order, lead, min(x, 1.0), peak, spare)

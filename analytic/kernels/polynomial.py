@@ -25,6 +25,9 @@ MAX_DEPTH = 45
 NEWTON_DONE = 1e-9
 """Relative length of the last Newton step of a root."""
 
+EDGE = 1e-12
+"""Part of a bracket in which a chord's zero is taken to be at its end."""
+
 SAME_ROOT = 1e-15
 """Distance within which a root is not told from another."""
 
@@ -130,6 +133,15 @@ def sign_changes(b: FloatArray, degree: int) -> int:
 
 
 @inner
+def last_sign(b: FloatArray, degree: int) -> float:
+    """Return the last of b[0..degree] that is not zero; 0 where all are."""
+    for i in range(degree, -1, -1):
+        if b[i] != 0.0:
+            return b[i]
+    return 0.0
+
+
+@inner
 def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
     """Replace `b` by its left half and write its right half into `right`."""
     right[degree] = b[degree]
@@ -140,21 +152,23 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
 
 
 @inner
-def bracketed_root(a: FloatArray, degree: int, low: float, high: float) -> float:
+def bracketed_root(a: FloatArray, degree: int, low: float, high: float, rising: bool) -> float:
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
 
-    It begins where the chord between the two ends is zero.
+    It begins where the chord between the two ends is zero, but in the middle where that is at an
+    end: another root may be there, on the border of the next interval.
 
     Parameters
     ----------
     a : ndarray (>= degree + 1,)
     degree : int
-    low, high : float, where the values are not of the same sign; low is 0 or more
+    low, high : float, not less than 0; where `a` has other signs, or is a rounding off zero
+    rising : bool, whether it is positive at high
     """
     first, last = value(a, degree, low) if low > 0.0 else a[0], value(a, degree, high)
-    rising = last > first
-    x = low + (high - low) * (first / (first - last))
-    if not low < x < high:
+    x = low + (high - low) * (first / (first - last)) if first != last else low
+    edge = EDGE * (high - low)
+    if not low + edge < x < high - edge:
         x = 0.5 * (low + high)
     for _ in range(100):
         f, gradient = value_and_slope(a, degree, x)
@@ -183,7 +197,7 @@ def only_root(a: FloatArray, degree: int, start: float) -> float:
     last = value(a, degree, 1.0)
     if a[0] * last > 0.0 or a[0] == 0.0:
         return 2.0
-    root = bracketed_root(a, degree, 0.0, 1.0) if last != 0.0 else 1.0
+    root = bracketed_root(a, degree, 0.0, 1.0, last > 0.0) if last != 0.0 else 1.0
     return root if root > start + SAME_ROOT else 2.0
 
 
@@ -219,7 +233,9 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
             width *= 0.5
             continue
         if changes == 1:
-            root = bracketed_root(a, degree, low, low + width)
+            # of a root on the border of two intervals the signs here say in which of them it is,
+            # those of values would say it of each anew
+            root = bracketed_root(a, degree, low, low + width, last_sign(b, degree) > 0.0)
             if root > start + SAME_ROOT:
                 return root
         low += width

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from studies.drawing.facets import key, panels
 from studies.drawing.styles import preset_style, title_of
-from studies.measures.presets import in_words, told
+from studies.measures.presets import told
 from studies.versions.tables import CHANGED, answered
 
 COLUMNS = 2
@@ -41,13 +41,13 @@ def draw_versions(lines: pd.DataFrame, changes: pd.DataFrame) -> Figure:
         f"at a grey line an answer moved by more than {CHANGED:g}",
         fontsize=11,
     )
-    key(drawing, [_handle(preset) for preset in lines["preset"].unique() if preset], across=4)
+    key(drawing, [_handle(preset) for preset in lines["preset"].unique() if preset], across=5)
     return drawing
 
 
 def _handle(preset: str) -> Line2D:
     look = {**preset_style(preset).points(6.0), "linestyle": told(preset).line}
-    return Line2D([], [], **look, label=in_words(preset))
+    return Line2D([], [], **look, label=told(preset).short)
 
 
 def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
@@ -70,6 +70,6 @@ def _panel(axes: Axes, lines: pd.DataFrame, changes: pd.DataFrame) -> None:
             median = pd.concat([median.rename(index=lambda at: at - ALONE),
                                 median.rename(index=lambda at: at + ALONE)])  # fmt: skip
         axes.plot(median, line, color=style.colour, linewidth=1.3)
-        aside = APART * len(releases) * (number - (len(presets) - 1) / 2)
+        aside = min(APART * len(releases), 0.2) * (number - (len(presets) - 1) / 2)
         axes.plot(both.index + aside, both["max_error"], **style.points(4.5))
     axes.grid(alpha=0.25)

@@ -1,7 +1,7 @@
 """Roots on the unit interval: none missed, each once."""
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
@@ -28,6 +28,9 @@ def all_roots(coefficients):
 
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.floats(-0.6, 1.6), min_size=1, max_size=9), st.floats(0.1, 10))
+# one on the border of two intervals, and another beside it
+@example([1.1985469861617877, 1.3346662292034783, 1.1, 0.5, 0.36, -0.03330319795478531], 7.46778962)
+@example([1.1985469861617877, 1.3346662292034783, 1.1, 0.5, 0.359375, -0.03330319795478531], 7.4678)
 def test_the_roots_put_in_come_out(roots, scale):
     roots = [r for r in roots if abs(r) > 1e-3 and abs(r - 1) > 1e-3]
     gaps = np.diff(sorted(roots))
