@@ -1,5 +1,6 @@
 """A results folder: who may write to it, what it belongs to, and the rows finished so far."""
 
+import errno
 import fcntl
 import gzip
 import hashlib
@@ -31,6 +32,9 @@ JOURNAL, LOCK, PROVENANCE = "journal.jsonl", ".lock", "provenance.json"
 PACKED = ".gz"
 """What the name of a packed journal or table ends in; one that is not packed is the newer."""
 
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What a write says of which nothing was written; of a part of it nothing is said."""
 
 _LINE = re.compile(rb'\{"crc": "([0-9a-f]{8})", (.*\})', re.DOTALL)
 
@@ -324,5 +328,10 @@ def _damage(folder: Path, number: int) -> FolderError:
 
 def _write(descriptor: int, entry: Mapping[str, Any]) -> None:
     line = seal(entry)
-    if os.write(descriptor, line) < len(line):
-        raise OSError("the disk is full")
+    try:
+        if os.write(descriptor, line) == len(line):
+            return
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+    raise OSError("the disk is full")
