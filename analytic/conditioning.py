@@ -15,8 +15,9 @@ from analytic.block import Rocker
 from analytic.cases import housner_restitutions, law_of, pose, write_pulse
 from analytic.kernels.compiled import form_for, kernel, listed
 from analytic.kernels.derivatives import AMPLITUDE, RESTITUTION, condition
-from analytic.kernels.excursions import Notes, march, workspace
+from analytic.kernels.excursions import march, workspace
 from analytic.kernels.law import UPRIGHT
+from analytic.kernels.notes import Notes
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray, Motion

@@ -13,20 +13,10 @@ from analytic.cart_motion import ridden
 from analytic.cases import law_of, pose, write_pulse
 from analytic.checks import finite
 from analytic.kernels.compiled import form_for, kernel, listed
-from analytic.kernels.excursions import (
-    BROKEN,
-    IMPACT,
-    OVERTURNED,
-    RESTED,
-    TOO_LONG,
-    UPLIFT,
-    End,
-    Notes,
-    march,
-    workspace,
-)
+from analytic.kernels.excursions import BROKEN, OVERTURNED, TOO_LONG, End, march, workspace
 from analytic.kernels.forces import NOTHING_YET
 from analytic.kernels.law import UPRIGHT
+from analytic.kernels.notes import IMPACT, RESTED, UPLIFT, Notes
 from analytic.kernels.rest import strongest_between
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model

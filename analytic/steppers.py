@@ -17,21 +17,15 @@ from analytic.kernels.compiled import inner, kernel, listed, spend
 from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
-    IMPACT,
     LYING,
     OVERTURNED,
-    RESTED,
     ROCKED,
-    START,
     TOO_LONG,
-    UPLIFT,
     VANISHING,
     End,
-    Notes,
-    note,
-    sample_rest,
 )
 from analytic.kernels.law import Law, Start, State
+from analytic.kernels.notes import IMPACT, RESTED, START, UPLIFT, Notes, note, sample_rest
 from analytic.kernels.rest import (
     acceleration,
     after_impact,

@@ -13,16 +13,9 @@ import numpy as np
 
 from analytic.kernels.closed_form import free_peak, work_to
 from analytic.kernels.compiled import inner, kernel, listed, maker
-from analytic.kernels.excursions import (
-    RESTED,
-    ROCKED,
-    START,
-    UPLIFT,
-    Notes,
-    expand,
-    march,
-)
+from analytic.kernels.excursions import ROCKED, expand, march
 from analytic.kernels.law import FloatArray, Law, Start, State
+from analytic.kernels.notes import RESTED, START, UPLIFT, Notes
 from analytic.kernels.polynomial import ORDER, highest, slope, stretch, value
 from analytic.kernels.rest import acceleration, ground, segment_at
 from analytic.kernels.taylor import Accuracy

@@ -20,6 +20,7 @@ from analytic.kernels.forces import (
     watch_train,
 )
 from analytic.kernels.law import FloatArray, Law, Start, State
+from analytic.kernels.notes import IMPACT, RESTED, START, UPLIFT, Notes, note, sample_rest
 from analytic.kernels.polynomial import (
     MAX_DEPTH,
     ORDER,
@@ -49,7 +50,6 @@ from analytic.kernels.taylor import (
 )
 
 AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
-UPLIFT, IMPACT, RESTED, START = 0.0, 1.0, 2.0, 3.0
 FREE, HIT, FALLEN, LOST = 0, 1, 2, 3
 """What a step ends with: none of these, an impact, the block on its side, an overflow."""
 LYING = 0.5 * math.pi
@@ -62,21 +62,6 @@ FAR = 1e3
 a root much closer to the step's begin than its end could be overlooked."""
 LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
-
-
-class Notes(NamedTuple):
-    """What to write down on the way; each array may be empty.
-
-    times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
-    (capacity, 4): kind, time, velocity before, velocity after; of an uplift the lead, and of a
-    start off rest the rotation, in place of the velocity before. limits (4,): the contact
-    forces, as in `analytic.kernels.forces`.
-    """
-
-    times: FloatArray
-    samples: FloatArray
-    log: FloatArray
-    limits: FloatArray
 
 
 class End(NamedTuple):
@@ -103,26 +88,6 @@ class Step(NamedTuple):
     y: float
     v: float
     peak: float
-
-
-@inner
-def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
-    """Write an event into the log if it has room; return the number of events so far.
-
-    Parameters
-    ----------
-    log : ndarray (capacity, 4), columns as in `Notes`
-    n : int, number of events before this one
-    kind : float, UPLIFT, IMPACT, RESTED or START
-    tau : float, its time [1/p]
-    before, after : float, velocities s v [rad p], or what `Notes` says
-    """
-    if n < log.shape[0]:
-        log[n, 0] = kind
-        log[n, 1] = tau
-        log[n, 2] = before
-        log[n, 3] = after
-    return n + 1
 
 
 @maker
@@ -285,22 +250,6 @@ def sample_step(
             theta, rate = value(d, order, at / h), slope(d, order, at / h) / h
         notes.samples[0, n] = begin.side * theta
         notes.samples[1, n] = begin.side * rate
-        n += 1
-    return n
-
-
-@inner
-def sample_rest(notes: Notes, until: float, n: int) -> int:
-    """Sample a rest up to a time; return the number of samples so far.
-
-    Parameters
-    ----------
-    notes : Notes, whose samples are written
-    until : float, end of the rest [1/p]
-    n : int, number of samples before
-    """
-    while n < len(notes.times) and notes.times[n] <= until:
-        notes.samples[0, n] = notes.samples[1, n] = 0.0
         n += 1
     return n
 

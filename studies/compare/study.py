@@ -53,10 +53,10 @@ from studies.kit.posing import (
     Standing,
     Width,
     both_sizes,
-    note_unusual,
     refuse_endless,
 )
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.unusual import note_unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
 from studies.sources.registry import DEFAULT_EFFORT, Effort, core_sources

@@ -270,11 +270,6 @@ def first_claim(table: pd.DataFrame, rested: pd.DataFrame) -> str:
         "nor lift it off."
     )
     return " ".join(filter(None, (said, rest_claim(rested))))
-    return (
-        f"As documented, outcome and peak (within {part(CLOSE)}) are right in "
-        f"{' to '.join(ends)} of {int(sums['cases'].iloc[0])} pulses that neither slide a block "
-        "nor lift it off."
-    )
 
 
 def _whole(value: float) -> str:

@@ -1,10 +1,7 @@
-"""From the options of a command line to what stands on the base, how that moves, and the start.
-
-Slips of a unit: what was meant in another one is asked about, what is only unusual is noted.
-"""
+"""From the options of a command line to what stands on the base, how that moves, and the start."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
@@ -34,7 +31,6 @@ from studies.kit.arguments import (
     one_of,
     refuse_given,
 )
-from studies.kit.refusing import say
 
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
 OF_A_RECORD = ("units", "scale", "pga", "baseline")
@@ -392,44 +388,3 @@ WHERE_IT_ROCKS = "only where something rocks"
 
 ONE_BLOCK = Standing()
 """One block."""
-
-
-SMALL_M, LARGE_M = 0.005, 20.0
-"""Sizes [m] beyond which a block is unusual."""
-STRONG_G = 2.0
-"""Amplitude of a pulse [g] from which it is unusual."""
-STRONG_RECORD_G = 3.0
-"""The same of a record; the strongest ever recorded had some 3 to 4 g."""
-SLOW_RAD_S = 1.0
-"""Frequency of a pulse [rad/s] below which it is unusual: its period is more than 6 s."""
-
-
-def note_unusual(width: float, height: float, excitation: Excitation, motion: Motion) -> None:
-    """Say on stderr which values are unusual, and what they are in another unit."""
-    for words in _unusual(width, height, excitation, motion):
-        say(f"note: {words}")
-
-
-def _unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
-    for name, size in (("width", width), ("height", height)):
-        if size > LARGE_M:
-            less = 1e-3 * size
-            yield f"--{name} is {size:g} m, large for a block; --{name} {less:g} for as many mm"
-        if size < SMALL_M:
-            yield f"--{name} is {size:g} m, small for a block"
-    if given.amplitude is not None and given.amplitude > STRONG_G:
-        less = given.amplitude / GRAVITY
-        yield (
-            f"--amplitude is {given.amplitude:g} g, strong for a pulse; "
-            f"--amplitude {less:.4g} for as many m/s²"
-        )
-    if given.omega is not None and given.omega < SLOW_RAD_S:
-        more = 2.0 * math.pi * given.omega
-        yield f"--omega is {given.omega:g} rad/s, slow for a pulse; {more:.4g} for as many Hz"
-    if given.tilt is not None and abs(given.tilt) > 1.0 and not given.degrees:
-        yield f"--tilt is {given.tilt:g} α, from where a block falls; --degrees for an angle"
-    if isinstance(motion, Record) and motion.peak > STRONG_RECORD_G * GRAVITY:
-        yield (
-            f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record; "
-            "its header, or --units, says in which unit it is"
-        )

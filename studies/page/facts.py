@@ -8,19 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from analytic.block import GRAVITY, RigidBlock
-from analytic.motion import SinePulse
-from analytic.response import Response
 from engines import ENGINES
 from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
-from studies.cases.paper import free_rocking_window
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
-from studies.kit.jobs import Job, ask
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings
@@ -36,12 +30,10 @@ from studies.measures.words import (
     out_of,
     part,
     per_cent,
-    signed,
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
 from studies.scenes.told import SCENES, lines_of
-from studies.sources.registry import core_sources, resolve
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -322,17 +314,6 @@ def _typical(chosen: Mapping[str, Any] | None) -> tuple[str, str, str, str]:
     return (*_cheapest(chosen), part(chosen["typical_error"]), wrong)
 
 
-def hero_lines(published: Path) -> dict[str, str]:
-    """Return the outcome of each source of the first picture, or how far its peak is off."""
-    lines = hero_summary(pd.read_csv(published / "hero" / "hero.csv"))
-    return {
-        str(row["source"]): signed(float(row["error"]))
-        if row["outcome"] == "rocked"
-        else str(row["outcome"])
-        for _, row in lines.iterrows()
-    }
-
-
 def counts(published: Path) -> dict[str, int]:
     """Return how many cases the tables on the first screen are about."""
     lines = pd.read_csv(published / "precision" / "work-precision.csv")
@@ -403,44 +384,3 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table of cells that are text; a bar in a cell would end it."""
     lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
     return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)
-
-
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
-SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
-SAMPLES = 401
-
-
-def measure_hero(path: Path) -> None:
-    """Ask every source for its history of the case, and write one table of them."""
-    window = free_rocking_window(BLOCK, PULSE)
-    times = np.linspace(0.0, window, SAMPLES)
-    parts = []
-    for name in SOURCES:
-        source = resolve(name)
-        job = Job(labels={}, block=BLOCK, motion=PULSE, source=name, duration=window, times=times)
-        parts.append(_samples(name, ask(job, source)))
-    text = pd.concat(parts, ignore_index=True).to_csv(index=False, na_rep="nan")
-    provenance.write_text(path, text)
-
-
-def _samples(name: str, response: Response) -> pd.DataFrame:
-    if response.history is None:
-        raise ValueError(f"{name} has no history: {response.message or response.outcome.value}")
-    return pd.DataFrame(
-        {
-            "source": name,
-            "outcome": response.outcome.value,
-            "peak_ratio": response.peak_ratio,
-            "time_s": response.history.time.round(9),
-            "theta_ratio": (response.history.theta / BLOCK.alpha).round(9),
-        }
-    )
-
-
-def hero_summary(samples: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each source: its outcome, its peak and the error of that."""
-    lines = samples.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
-    exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
-    survived = lines["outcome"] == "rocked"
-    return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))

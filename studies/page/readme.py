@@ -15,7 +15,7 @@ from studies.kit.journal import PROVENANCE
 from studies.kit.provenance import check, seal
 from studies.measures.published import dictionary
 from studies.measures.words import capital, meant
-from studies.page import engine_facts, facts
+from studies.page import engine_facts, facts, hero
 from studies.page.engine_facts import objections, slippery
 from studies.sweep.study import verdict
 
@@ -41,14 +41,14 @@ def command(*, root: Path = Path()) -> int:
     for study, chapter in CHAPTERS:
         check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
     folder.mkdir(exist_ok=True)
-    facts.measure_hero(folder / "hero.csv")
+    hero.measure(folder / "hero.csv")
     made_with = {**provenance.subject("readme"), **provenance.versions()}
     provenance.write_text(folder / PROVENANCE, json.dumps(made_with, indent=2) + "\n")
     seal(folder)
     samples = pd.read_csv(folder / "hero.csv")
     drawn = {
         "block": draw_block(),
-        "hero": draw_hero(facts.BLOCK, samples, facts.hero_summary(samples)),
+        "hero": draw_hero(hero.BLOCK, samples, hero.summary(samples)),
     }
     save_all(drawn, folder)
     for path, text in pages(root).items():
@@ -84,7 +84,7 @@ def pages(root: Path) -> dict[Path, str]:
         "ports": facts.ports(published),
         "choices_all": facts.choices_text(steps),
         "counts": facts.counts(published),
-        "hero": facts.hero_lines(published),
+        "hero": hero.errors(published),
         "made": facts.made(published),
         "helps": engine_facts.helps(published),
         "beside_own": engine_facts.beside_own(),

@@ -159,7 +159,7 @@ EDITS = {
     "the run": ("engines/run/drive.py", "LOOK_AROUND = 256", "LOOK_AROUND = 257", ENGINE),
     "steps that land": ("engines/run/landing.py", "return ", "return 1 + ", ENGINE),
     "what is watched": ("engines/watching/observe.py", "return ", "return 1 + ", ENGINE),
-    "a kernel": ("analytic/kernels/excursions.py", "return n + 1", "return n + 2", {"exact"}),
+    "a kernel": ("analytic/kernels/notes.py", "return n + 1", "return n + 2", {"exact"}),
     "a peer": ("studies/sources/scipy_peers.py", "return ", "return 1 + ", {"rk45"}),
     "the reduction": ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', set(SOURCES)),
     "a registry's line": (
@@ -212,7 +212,7 @@ def test_how_a_record_was_read_is_no_part_of_its_rows(file, part, copy):
 
 
 def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
-    edit(copy, "analytic/kernels/excursions.py", "return n + 1", "return n + 2")
+    edit(copy, "analytic/kernels/notes.py", "return n + 1", "return n + 2")
     assert stale(stability.reduce, copy) == set(SOURCES)
     assert stale(contact.reduce, copy) == {"exact"}
 

@@ -4,6 +4,7 @@ import gzip
 import itertools
 import json
 import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,19 @@ def test_a_journal_that_ends_anywhere_goes_on_with_its_whole_lines(tmp_path):
         path.write_bytes(content[:length])
         whole = [line for line in content[:length].split(b"\n")[:-1] if b'"row"' in line]
         assert kept(tmp_path) == dict(list(ROWS.items())[: len(whole)])
+
+
+@pytest.mark.parametrize("room", [0, 5])
+def test_a_disk_is_full_to_the_byte_or_in_the_middle_of_a_row(room, tmp_path):
+    path, (usual, most) = fill(tmp_path), resource.getrlimit(resource.RLIMIT_FSIZE)
+    with open_journal(tmp_path, SUBJECT, ()) as journal:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + room, most))
+        try:
+            with pytest.raises(OSError, match="the disk is full"):
+                journal.append("another", ROWS["key 0"], MAKERS[0])
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (usual, most))
+    assert kept(tmp_path) == ROWS
 
 
 @pytest.mark.parametrize("place", [1, 3, 4])

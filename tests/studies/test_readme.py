@@ -14,7 +14,7 @@ from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
 from studies.kit.tables import read_table
-from studies.page import facts, readme
+from studies.page import facts, hero, readme
 from studies.page.engine_facts import objections
 from studies.page.facts import table
 
@@ -246,7 +246,7 @@ def test_a_bar_does_not_end_a_cell():
 
 def test_the_first_picture_is_of_the_case_that_it_names():
     """Figure 5-b of the paper: exact 0.3852, and Housner's linearization overturns."""
-    lines = facts.hero_summary(pd.read_csv(PUBLISHED / "hero" / "hero.csv")).set_index("source")
+    lines = hero.summary(pd.read_csv(PUBLISHED / "hero" / "hero.csv")).set_index("source")
     assert lines.loc["exact", "peak_ratio"] == pytest.approx(0.3852, abs=5e-5)
     assert lines.loc["housner", "outcome"] == "overturned"
     assert set(lines.index) == set(facts.SOURCES)
