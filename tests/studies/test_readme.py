@@ -249,7 +249,7 @@ def test_the_first_picture_is_of_the_case_that_it_names():
     lines = hero.summary(pd.read_csv(PUBLISHED / "hero" / "hero.csv")).set_index("source")
     assert lines.loc["exact", "peak_ratio"] == pytest.approx(0.3852, abs=5e-5)
     assert lines.loc["housner", "outcome"] == "overturned"
-    assert set(lines.index) == set(facts.SOURCES)
+    assert set(lines.index) == set(hero.SOURCES)
 
 
 def test_a_folder_without_tables_is_refused(tmp_path, capsys):
