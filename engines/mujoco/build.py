@@ -113,6 +113,7 @@ class MujocoWorld:
             found = model.body_inertia[number]
             pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}
         pairs |= {name: self._read_option(name) for name in OPTIONS}
+        pairs["diagexact"] = (s.diagexact, self._exact)
         impedance = impedance_of(scene, s, dt_s)
         if impedance is not None:
             pairs |= {
@@ -121,6 +122,11 @@ class MujocoWorld:
             }
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
         return disagreement(pairs)
+
+    @property
+    def _exact(self) -> bool:
+        bit = getattr(self._mj.mjtEnableBit, "mjENBL_DIAGEXACT", 0)  # earlier releases have none
+        return bool(self._option.enableflags & int(bit))
 
     def _read_option(self, name: str) -> tuple[Any, Any]:
         """Return a wanted option as the library numbers it, and the option as it is."""

@@ -38,15 +38,21 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     margin = (s.margin or 0.0) * scene.system.width
     named = ((name, getattr(s, name)) for name in OPTIONS)
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
+    exact = "" if s.diagexact is None else _flag("diagexact", on=s.diagexact)
     common = f'{_friction(s)} margin="{margin}"'
     bodies = "".join(_body(scene, number, s, common) for number in range(len(scene.bodies)))
     floor, weld = _floor(scene, s) if welded(scene, s) else ("", "")
     contact = f' margin="{margin}" solimp="{_row(impedance_of(scene, s, dt_s) or ())}" '
     pairs = "" if s.impedance is None else "".join(_pairs(scene, s, contact))
     return (
-        f"<mujoco><option {options}/>{_assets(scene, s)}<worldbody>{_base(scene, s)}{bodies}"
+        f"<mujoco><option {options}>{exact}</option>{_assets(scene, s)}"
+        f"<worldbody>{_base(scene, s)}{bodies}"
         f"{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
     )
+
+
+def _flag(name: str, *, on: bool) -> str:
+    return f'<flag {name}="{"enable" if on else "disable"}"/>'
 
 
 def _body(scene: Scene, number: int, s: MujocoSettings, common: str) -> str:

@@ -50,6 +50,9 @@ class MujocoSettings:
         Radius of the corner spheres over the width.
     cone, solver, jacobian, tolerance, iterations, impratio, noslip_iterations : optional
         Options of the contact solver.
+    diagexact : bool or None
+        Scale each contact's regularization by the inertia that it feels, not by an estimate of it
+        made where the bodies were built.
     integrator : str or None
         "Euler", "RK4", "implicit" or "implicitfast".
     damping, sliding_damping : float or None
@@ -91,6 +94,7 @@ class MujocoSettings:
     jacobian: str | None = None
     tolerance: float | None = setting(least=0.0)
     iterations: int | None = setting(least=0)
+    diagexact: bool | None = None
     impratio: float | None = setting(least=0.0)
     # a reference with one zero would be replaced by the library's default
     damping: float | None = setting(above=0.0, beside=("sliding_damping", "stiffness"))
@@ -235,6 +239,7 @@ FACTORS = (
         by_default=False,
     ),
     factor("impratio", level("100", impratio=100.0)),
+    factor("diagexact", level("exact", BOTH, diagexact=True), name="inertia of a contact"),
     factor("noslip_iterations", level("10 iterations", BOTH, noslip_iterations=10), name="noslip"),
     factor(
         "integrator",

@@ -58,6 +58,7 @@ def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
         "solverResidualThreshold": s.residual,
         "contactERP": s.contact_erp,
         "frictionERP": s.friction_erp,
+        "erp": s.constraint_erp,
         "contactSlop": s.contact_slop,
         "contactBreakingThreshold": kept_gap(scene, s, dt_s),
         "constraintSolverType": s.solver and Constant(SOLVERS[s.solver]),

@@ -69,8 +69,9 @@ class BulletSettings:
         Of the contact solver: how many at most, and the squared velocity [m2/s2] at which they end.
     sweeps : float or None
         Iterations over 1/sin^2(alpha), where `iterations` are None.
-    contact_erp, friction_erp : float or None
-        Part of a position error that a step corrects.
+    contact_erp, friction_erp, constraint_erp : float or None
+        Part of a position error that a step corrects: of contacts, of their friction anchor, and
+        of the constraint that holds a base.
     friction_anchor : bool
         Hold the point of contact by its position, too.
     contact_slop : float or None
@@ -116,6 +117,7 @@ class BulletSettings:
     residual: float | None = None
     contact_erp: float | None = None
     friction_erp: float | None = None
+    constraint_erp: float | None = setting(least=0.0, most=1.0)
     friction_anchor: bool = False
     contact_slop: float | None = None
     breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
@@ -226,6 +228,12 @@ FACTORS = (
     ),
     factor("contact_erp", level("0", contact_erp=0.0), name="contact ERP"),
     factor("friction_erp", level("1", friction_erp=1.0), name="friction ERP"),
+    factor(
+        "constraint_erp",
+        level("0.8", (DEFAULT,), constraint_erp=0.8),
+        name="constraint ERP",
+        by_default=False,
+    ),
     factor("contact_slop", level("1 mm", contact_slop=1e-3)),
     factor(
         "friction_anchor",

@@ -69,7 +69,8 @@ def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
         **{"friction": float(s.friction), "restitution": s.restitution, "base_restitution": base},
         **{"substeps": s.substeps, "iterations": s.iterations_of(scene)},
         **{"stabilization": s.stabilization, "recycling": s.recycling, "coulomb": s.coulomb},
-        **{"warm_starting": s.warm_starting, "sleeping": s.sleeping, "target": target},
+        **{"warm_starting": s.warm_starting, "bias_friction": s.friction_in_bias_pass},
+        **{"sleeping": s.sleeping, "target": target},
         spring=s.spring_of(dt_s),
     )
 
@@ -90,6 +91,8 @@ def build(rapier: Any, n: Any, s: Any) -> Any:
         parameters.warmstart_coefficient = s.warm_starting
     if s.coulomb is not None:
         parameters.friction_model = rapier.FrictionModel.COULOMB
+    if s.bias_friction is not None:
+        parameters.friction_in_bias_pass = s.bias_friction
     if s.spring is not None:
         spring = rapier.SpringCoefficients(*s.spring)
         parameters.contact_softness = parameters.static_contact_softness = spring

@@ -62,6 +62,8 @@ class RapierSettings(Counted):
         ratio of two steps.
     coulomb : bool or None
         Give each contact a friction of its own instead of one to all four.
+    friction_in_bias_pass : bool or None
+        Whether friction is solved, too, where a step corrects depths.
     sleeping : bool or None
         Whether a block that has hardly moved for half a second is no longer simulated.
     units : float or None
@@ -100,6 +102,7 @@ class RapierSettings(Counted):
     recycling: bool | None = None
     warm_starting: float | None = setting(least=0.0, most=1.0)
     coulomb: bool | None = None
+    friction_in_bias_pass: bool | None = None
     sleeping: bool | None = None
     units: float | None = setting(above=0.0)
     centred: bool = False
@@ -232,6 +235,11 @@ FACTORS = (
     ),
     factor("warm_starting"),
     factor("coulomb", level("Coulomb", BOTH, coulomb=True), name="friction model"),
+    factor(
+        "friction_in_bias_pass",
+        level("on", BOTH, friction_in_bias_pass=True),
+        name="friction while depths are corrected",
+    ),
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
     Factor(
         "geometry",

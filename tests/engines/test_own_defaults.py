@@ -146,13 +146,26 @@ def test_what_is_called_without_effect_has_none(engine, changed):
     assert peak(engine, **changed) == peak(engine) > 0.0
 
 
+WITH_EFFECT = [
+    ("mujoco", {"diagexact": True}),
+    ("pybullet", {"constraint_erp": 0.8}),
+    ("rapier", {"friction_in_bias_pass": True}),
+]
+
+
+@pytest.mark.parametrize(("engine", "changed"), WITH_EFFECT)
+def test_what_the_table_says_the_block_feels_moves_its_peak(engine, changed):
+    if engine not in HERE:
+        pytest.skip("it is not installed")
+    assert abs(peak(engine, **changed) - peak(engine)) > 0.01
+
+
 @pytest.mark.skipif("rapier" not in HERE, reason="it is not installed")
 @pytest.mark.parametrize(
     ("changed", "felt"),
     [
         ({"normalized_allowed_linear_error": 0.0, "contact_clustering": False}, False),
         ({"normalized_max_corrective_velocity": 0.3, "max_ccd_substeps": 0}, False),
-        ({"friction_in_bias_pass": True}, True),
         ({"normalized_prediction_distance": 0.002}, True),
     ],
 )
