@@ -12,6 +12,7 @@ import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.cart import CartBlock
+from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.slide import SlidingBlock
@@ -56,7 +57,7 @@ def commands(
     """
     if missing := _without_option(block, motion, options):
         return f"no option asks for {missing}", ""
-    words = {**_scene_of(block), "width": block.width, "height": block.height}
+    words = _scene_of(block)
     if isinstance(motion, SinePulse):
         words |= {"half-cycles": motion.half_cycles, "amplitude": _in_g(motion.amplitude)}
         words |= {"omega": motion.omega} | ({"phase": motion.phase} if motion.phase else {})
@@ -133,23 +134,36 @@ def _without_option(block: System, motion: Motion, options: Mapping[str, Any]) -
 def _asked(block: System) -> System:
     """Return what the options of the command line make of a block."""
     options = _scene_of(block)
-    kinds: dict[str, Any] = {"frame": RockingFrame, "slide": SlidingBlock, "cart": CartBlock}
-    kind = kinds.get(options.pop("scene", ""), RigidBlock)
-    named = {name.replace("-", "_"): value for name, value in options.items()}
-    asked: System = kind(width=block.width, height=block.height, **named)
+    kind = KINDS.get(options.pop("scene", ""), RigidBlock)
+    asked: System = kind(**{name.replace("-", "_"): value for name, value in options.items()})
     return asked
 
 
-def _scene_of(block: System) -> dict[str, Any]:
-    """Return the options that name a scene, none of one block."""
-    if isinstance(block, SlidingBlock):
-        return {"scene": "slide", "friction": block.friction}
-    if isinstance(block, RockingFrame):
-        return {"scene": "frame", "columns": block.columns, "load": block.load}
-    if isinstance(block, CartBlock):
-        spring = {"stiffness": block.stiffness} if block.stiffness else {}
-        return {"scene": "cart", "mass-ratio": block.mass_ratio, **spring}
-    return {}
+KINDS: Mapping[str, Any] = {
+    "frame": RockingFrame,
+    "slide": SlidingBlock,
+    "cart": CartBlock,
+    "cylinder": RollingCylinder,
+}
+"""What `--scene` poses."""
+
+
+def _scene_of(block: Any) -> dict[str, Any]:
+    """Return the options that name a scene, none of one block, and its sizes."""
+    scene = next((name for name, kind in KINDS.items() if isinstance(block, kind)), "")
+    names = {"": ("width", "height"), **OPTIONS}[scene]
+    spring = ("stiffness",) if scene == "cart" and block.stiffness else ()
+    sizes = {name: getattr(block, name.replace("-", "_")) for name in (*names, *spring)}
+    return {**({"scene": scene} if scene else {}), **sizes}
+
+
+OPTIONS = {
+    "frame": ("columns", "load", "width", "height"),
+    "slide": ("friction", "width", "height"),
+    "cart": ("mass-ratio", "width", "height"),
+    "cylinder": ("radius", "height", "tilt"),
+}
+"""Their options."""
 
 
 def _in_g(amplitude: float) -> float:

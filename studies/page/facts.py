@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,7 @@ from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
+from studies.measures.again import worst_again
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
@@ -24,6 +26,7 @@ from studies.measures.posed import Posed, posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.words import (
+    capital,
     duration,
     in_kinds,
     listed,
@@ -33,7 +36,7 @@ from studies.measures.words import (
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
-from studies.scenes.told import SCENES, lines_of
+from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -151,11 +154,24 @@ def presets_short(lines: pd.DataFrame) -> str:
     """
     best = lines["engine"].map(lambda name: ENGINES[str(name)].best.name)
     lines = lines[lines["preset"].isin(("naive", RECOMMENDED)) | (lines["preset"] == best)]
+    return by_preset(lines.rename(columns={"median": "median_error", "max": "largest_error"}))
+
+
+def by_preset(lines: pd.DataFrame, say: Callable[[float], str] = part) -> str:
+    """Return a table of Markdown: a row for each engine, a cell for each preset.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        engine, preset, the kinds of wrong outcomes, median_error, largest_error and ms.
+    say : callable, optional
+        What says an error.
+    """
     names = shared(lines)
     heads = [f"{as_told(name).short} `:{name}`" for name in names]
     rows = []
     for engine, mine in lines.groupby("engine", sort=False):
-        cells = {row["preset"]: _short(row) for _, row in mine.iterrows()}
+        cells = {row["preset"]: _short(row, say) for _, row in mine.iterrows()}
         alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
         shown = [cells.get(name, "–") for name in names]
         if alone and shown[-1] == "–":
@@ -164,13 +180,15 @@ def presets_short(lines: pd.DataFrame) -> str:
     return table(("", *heads), rows)
 
 
-def _short(row: pd.Series[Any]) -> str:
+def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
     wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
-    parts = (
+    parts = [
         f"**{wrong}**" if any(row[list(KINDS)]) else wrong,
-        f"{part(row['median'])}, max {part(row['max'])}",
+        f"{say(row['median_error'])}, max {say(row['largest_error'])}",
         duration(1e-3 * row["ms"]),
-    )
+    ]
+    if math.isnan(row["median_error"]):
+        del parts[1]
     return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
 
 
@@ -202,11 +220,10 @@ def scenes(published: Path) -> str:
     """
     block = presets(published).rename(columns={"median": "median_error"})
     held: list[tuple[str, pd.DataFrame, Callable[[float], str]]] = [("a block", block, part)]
-    if (published / "scenes" / "provenance.json").is_file():
-        held += [
-            (known.title, lines_of(published / "scenes" / f"{name}.csv", name), known.words)
-            for name, known in SCENES.items()
-        ]
+    held += [
+        (SCENES[name].title, lines, SCENES[name].words)
+        for name, lines in by_scene(published / "scenes").items()
+    ]
     heads = [f"{title}, {lines['cases'].max()} cases" for title, lines, _ in held]
     engines = dict.fromkeys(engine_of(source) for _, lines, _ in held for source in lines["source"])
     rows = [
@@ -214,6 +231,48 @@ def scenes(published: Path) -> str:
         for name in engines
     ]
     return table(("", *heads), rows)
+
+
+def scenes_told(published: Path) -> list[dict[str, str]]:
+    """Return each scene in words: what was found, a table of engines and presets, the worst."""
+    folder, sections = published / "scenes", []
+    known = by_scene(folder)
+    worst = again(folder) if known else pd.DataFrame()
+    for name, lines in known.items():
+        told, source = SCENES[name], lines["source"]
+        posed = lines.assign(engine=source.map(engine_of), preset=source.map(preset_of))
+        commands = worst_again(worst[worst["scene"] == name])["command"]
+        sections.append(
+            {
+                "name": name,
+                "title": capital(told.title),
+                "claim": sentence(name, lines),
+                "asked": told.asked,
+                "cases": f"{lines['cases'].max()}",
+                "table": by_preset(posed, told.words),
+                "worst": "\n".join(commands),
+            }
+        )
+    return sections
+
+
+def floors(published: Path) -> dict[str, str]:
+    """Return what is found of moving floors, and the table of them; empty without any."""
+    lines = found_in(published / "scenes" / "floor-summary.csv")
+    if lines.empty:
+        return {}
+    heads, ways = (
+        ("", "moved by", "carries", "after 1 s of rest"),
+        ("carried", "carried_after_rest"),
+    )
+    rows = [
+        (
+            *(ENGINES[line["engine"]].title, line["floor"]),
+            *(f"{round(100.0 * line[name], 1) + 0.0:g} %" for name in ways),
+        )
+        for _, line in lines.iterrows()
+    ]
+    return {"claim": floor_sentence(lines), "table": table(heads, rows)}
 
 
 def _scene(lines: pd.DataFrame, engine: str, say: Callable[[float], str]) -> str:

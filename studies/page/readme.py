@@ -17,6 +17,7 @@ from studies.measures.published import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero
 from studies.page.engine_facts import objections, slippery
+from studies.scenes import STUDY as SCENES_STUDY
 from studies.sweep.study import verdict
 
 PUBLISHED = Path("studies", "published")
@@ -78,6 +79,9 @@ def pages(root: Path) -> dict[Path, str]:
         "missing": facts.missing(published),
         "presets": facts.presets_short(lines),
         "scenes": facts.scenes(published),
+        "scenes_told": facts.scenes_told(published),
+        "floors": facts.floors(published),
+        "captions": SCENES_STUDY.captions,
         "presets_all": facts.presets_text(lines),
         "models": facts.models(published),
         "advised": facts.advised(published),
@@ -105,5 +109,6 @@ def pages(root: Path) -> dict[Path, str]:
             (root / "README.md", "readme.md.jinja"),
             (published / "README.md", "published.md.jinja"),
             (published / "engines.md", "engines.md.jinja"),
+            (published / "scenes.md", "scenes.md.jinja"),
         )
     }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +21,7 @@ from studies.drawing.styles import name_of, title_of
 from studies.measures.presets import engine_of, in_order, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.wrongness import KINDS
-from studies.scenes.rolling import CYLINDERS, cylinder_lines
-from studies.scenes.told import SCENES, found_in, lines_of
+from studies.scenes.told import SCENES, Told, by_scene, found_in
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
@@ -121,27 +119,28 @@ def _seen(points: FloatArray) -> FloatArray:
     return np.stack((x, y * math.sin(ABOVE) + z * math.cos(ABOVE)), axis=1)
 
 
+def draw_told(told: Told) -> Figure:
+    """Draw a scene at rest, dashed, and as it moves."""
+    if isinstance(told.system, RollingCylinder):
+        return draw_rolling(told.system)
+    return draw_scene(told.system, told.at)
+
+
 def pictures(folder: Path) -> Pictures:
     """Draw each scene, its engines' errors against their times, and what there is of floors."""
-    drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
-    for name, told in SCENES.items():
-        if len(lines := lines_of(folder / f"{name}.csv", name)):
-            found = _finding(told.title, told.words, lines)
-            drawn[f"{name}-time"] = draw_times(lines, found, told.along)
-    if len(lines := cylinder_lines(found_in(folder / "cylinder.csv"))):
-        found = _finding("rolling", "{:.1g} rad".format, lines)
-        along = "error of the tilt after five turns  [rad]"
-        drawn["cylinder-scene"] = draw_rolling(CYLINDERS[0])
-        drawn["cylinder-time"] = draw_times(lines, found, along)
+    drawn = {f"{name}-scene": draw_told(told) for name, told in SCENES.items()}
+    for name, lines in by_scene(folder).items():
+        told = SCENES[name]
+        drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
     floors = found_in(folder / "floor-summary.csv")
     return drawn | ({} if floors.empty else {"floor": draw_floors(floors)})
 
 
-def _finding(title: str, words: Callable[[float], str], lines: pd.DataFrame) -> str:
+def _finding(told: Told, lines: pd.DataFrame) -> str:
     """Say between which median errors the engines of a scene lie, and whose these are."""
     ranked = lines.dropna(subset="median_error").sort_values("median_error")
     low, high = (
-        f"{words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
+        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
         for end in (0, -1)
     )
-    return f"{title.capitalize()}: median errors from {low} to {high}"
+    return f"{told.title.capitalize()}: median errors from {low} to {high}"

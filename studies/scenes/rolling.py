@@ -8,13 +8,10 @@ from collections.abc import Iterator, Sequence
 import pandas as pd
 
 from analytic import RollingCylinder, Still
-from analytic.response import Outcome, RollingOutcome
+from analytic.response import RollingOutcome
 from engines.declaration import Stepping
 from studies.kit.jobs import Job
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.rolling import ERRORS, TURNS
-from studies.measures.words import listed
-from studies.measures.wrongness import FALL, NO_ANSWER, REST
 from studies.sources.registry import resolve
 
 CYLINDERS = (
@@ -93,48 +90,3 @@ def _asked(rows: pd.DataFrame) -> list[tuple[tuple[str, float], pd.DataFrame]]:
         return []
     asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
     return list(asked.groupby(["source", "turns"], sort=False))  # type: ignore[arg-type]
-
-
-def cylinder_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the tilts of cylinders are, and how many are lost."""
-    if lines.empty:
-        return ""
-    after = lines[lines["turns"] == TURNS[0]]
-    presets, said = after["source"].map(preset_of), []
-    for preset in in_order(presets):
-        mine = after[presets == preset]
-        lost = f", {mine['lost'].sum()} of {mine['cylinders'].sum()} lost,"
-        most = mine["tilt_error_rad"].max()
-        said.append(f"{most:.1g} rad{lost if mine['lost'].any() else ''} {in_words(preset)}")
-    return (
-        f"After {TURNS[0]:g} turns the tilt of a rolling cylinder is off by up to {listed(said)}."
-    )
-
-
-def cylinder_lines(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each engine and preset, as `studies.scenes.told.lines_of` does.
-
-    Errors are those of the tilt [rad] after the fewest turns; a cylinder that does not roll on
-    counts as fallen.
-    """
-    rows = _of_engines(table)
-    lines = []
-    for source, mine in rows.groupby("source", sort=False):
-        failed, size = mine["became"] == Outcome.FAILED.value, mine["tilt_error_rad"].abs()
-        lost = (mine["became"] != RollingOutcome.ROLLED.value) & ~failed
-        lines.append(
-            {
-                "source": source,
-                **{FALL: int(lost.sum()), REST: 0, NO_ANSWER: int(failed.sum())},
-                **{"median_error": size.median(), "largest_error": size.max()},
-                "ms": 1e3 * mine["wall_s"].mean(),
-            }
-        )
-    return pd.DataFrame(lines)
-
-
-def _of_engines(table: pd.DataFrame) -> pd.DataFrame:
-    if table.empty:
-        return table
-    asked = table["source"].map(is_engine) & (table["reason"].fillna("") != "UNAVAILABLE")
-    return table[asked & (table["turns"] == TURNS[0]) & (table["step_part"] == PARTS[0])]

@@ -20,22 +20,15 @@ from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.again import WORST_AGAIN, worst_again
-from studies.measures.presets import engine_of, is_engine, preset_of
+from studies.measures.presets import engine_of, preset_of
 from studies.measures.rolling import reduced
+from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
 from studies.scenes.carts import cart_row, cart_steps, cart_summary, carts
 from studies.scenes.cases import jobs
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table
-from studies.scenes.told import (
-    again,
-    cart_sentence,
-    floor_sentence,
-    found_in,
-    frame_sentence,
-    shown,
-    slide_sentence,
-)
+from studies.scenes.rolling import cylinder_summary, cylinder_table
+from studies.scenes.told import SCENES, again, by_scene, ends, floor_sentence, found_in, shown
 from studies.sources.registry import core_sources
 
 __all__ = ["again", "command", "headline", "report", "shown"]
@@ -245,18 +238,11 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def engines_in(folder: Path) -> list[pd.DataFrame]:
-    """Return the lines of the summaries that are of engines."""
-    tables = [found_in(folder / f"{name}.csv") for name in TABLES]
-    return [
-        table[table["source"].map(is_engine).astype(bool)] if "source" in table else table
-        for table in tables
-    ]
-
-
 def headline(folder: Path) -> str:
-    """Say what the frames, the slides, the floors, the carts and the cylinders show."""
-    frames, slides, floors, _, on_carts, rolling = engines_in(folder)
-    of_bodies = frame_sentence(frames), slide_sentence(slides), floor_sentence(floors)
-    said = (*of_bodies, cart_sentence(on_carts), cylinder_sentence(rolling))
-    return " ".join(filter(None, said)) or "No engine that was asked is built for these scenes."
+    """Say how far off each scene is as documented and at best, and what floors carry."""
+    said = [f"{SCENES[name].title} {ends(name, lines)}" for name, lines in by_scene(folder).items()]
+    floors = floor_sentence(found_in(folder / "floor-summary.csv"))
+    if not said:
+        return floors or "No engine that was asked is built for these scenes."
+    words = f"Off by up to, as documented → with the best preset asked: {listed(said)}."
+    return " ".join(filter(None, (words, floors)))

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from analytic import CartBlock, RockingFrame, SlidingBlock
-from analytic.response import Outcome
+from analytic.response import Outcome, RollingOutcome
 from engines import ENGINES
-from engines.layouts import System
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.words import listed, part
-from studies.measures.wrongness import FALL, NO_ANSWER, REST, counted, kinds_of
+from studies.measures.rolling import TURNS
+from studies.measures.words import listed, out_of, part
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of
 from studies.scenes.carts import carts
-from studies.scenes.cases import jobs
+from studies.scenes.cases import COLUMNS as COLUMNS_OF_FRAMES
+from studies.scenes.cases import LOADS, PHASES, PULSES, jobs
+from studies.scenes.rolling import CYLINDERS, PARTS
 
 
 def millimetres(size: float) -> str:
@@ -28,44 +30,82 @@ def millimetres(size: float) -> str:
     return f"{float(f'{1e3 * size:.2g}'):g} mm"
 
 
+def radians(size: float) -> str:
+    """Return an angle [rad] in words."""
+    return f"{size:.2g} rad"
+
+
 class Told(NamedTuple):
     """How a scene is told: its table is NAME.csv, and the `error` one of its columns.
 
-    It is drawn at a rotation [rad], or a place [m] where nothing rocks; `words` says an error.
+    Attributes
+    ----------
+    title, asked : str
+        What it is, and which of its cases an engine was asked.
+    system : System, CartBlock or RollingCylinder
+        What is drawn, at the rotation `at` [rad], or the place [m] where nothing rocks.
+    error, words, along : str, callable, str
+        Column of the error, how one is said, and what stands along its axis.
+    subject, lost : str
+        What is off, as a sentence begins, and what a wrong outcome is called.
     """
 
     title: str
-    system: System
+    asked: str
+    system: Any
     at: float
     error: str
     words: Callable[[float], str]
     along: str
+    subject: str
+    lost: str = "wrong"
 
 
 SCENES = {
     "frame": Told(
         title="a rocking frame",
+        asked=(
+            f"{listed([f'{count}' for count in COLUMNS_OF_FRAMES])} columns under beams of "
+            f"{listed([f'{load:g}' for load in LOADS])} times their mass, {len(PULSES)} pulses; "
+            f"equal steps at {PHASES} places of the first impact in a step"
+        ),
         system=RockingFrame(width=0.5, height=1.5, columns=2, load=2.0),
         at=0.12,
         error="error",
         words=part,
         along="error of the largest rotation, relative  [–]",
+        subject="The peak of a rocking frame is",
     ),
     "slide": Told(
         title="a sliding block",
+        asked="a pulse at three coefficients of friction, a launched cube, and a block that holds",
         system=SlidingBlock(width=1.0, height=0.5, friction=0.2),
         at=0.3,
         error="slip_error_m",
         words=millimetres,
         along="error of a slip  [m]",
+        subject="The slips of a block are",
     ),
     "cart": Told(
         title="a block on a cart",
+        asked="four ratios of the masses and two springs, three pulses, three places in a step",
         system=CartBlock(width=0.5, height=1.5, mass_ratio=0.5),
         at=0.12,
         error="error",
         words=part,
         along="error of the largest rotation, relative  [–]",
+        subject="The peak of a block on a cart is",
+    ),
+    "cylinder": Told(
+        title="a rolling cylinder",
+        asked=f"a flat one, a tall one and a coin, {TURNS[0]:g} turns about their own centres",
+        system=CYLINDERS[0],
+        at=0.0,
+        error="tilt_error_rad",
+        words=radians,
+        along="error of the tilt after five turns  [rad]",
+        subject=f"After {TURNS[0]:g} turns the tilt of a rolling cylinder is",
+        lost="lost",
     ),
 }
 """Scenes that have a section of their own, by name."""
@@ -115,7 +155,14 @@ def asked(path: Path, name: str) -> pd.DataFrame:
     if rows.empty:
         return pd.DataFrame(columns=["source", SCENES[name].error, "wall_s"])
     kept = rows["source"].map(is_engine) & (rows["reason"] != "UNAVAILABLE")
-    return rows[kept & (rows["refined"] == 1.0) if "refined" in rows else kept]
+    for column, value in OWN.items():
+        if column in rows:
+            kept &= rows[column] == value
+    return rows[kept]
+
+
+OWN = {"refined": 1.0, "turns": TURNS[0], "step_part": PARTS[0]}
+"""Columns of rows that differ in steps or in how long they last, and which are told."""
 
 
 def found_in(path: Path) -> pd.DataFrame:
@@ -125,7 +172,14 @@ def found_in(path: Path) -> pd.DataFrame:
 
 
 def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:
-    """Return the kind of each wrong outcome: by the exact peak, or else by the error's absence."""
+    """Return the kind of each wrong outcome: by the exact peak, or else by the error's absence.
+
+    A cylinder that does not roll on counts as fallen.
+    """
+    if "became" in rows:
+        failed = rows["became"] == Outcome.FAILED.value
+        lost = rows["became"] != RollingOutcome.ROLLED.value
+        return pd.Series(np.select([failed, lost], [NO_ANSWER, FALL], ""), rows.index)
     if "exact" in rows:
         peak = rows["exact"].to_numpy(float)
         right = np.select(
@@ -139,12 +193,15 @@ def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:
     return pd.Series(np.select([failed, fell, lost], [NO_ANSWER, FALL, REST], ""), rows.index)
 
 
+def by_scene(folder: Path) -> dict[str, pd.DataFrame]:
+    """Return the lines of each scene's engines, by the name of a scene that one of them holds."""
+    lines = {name: lines_of(folder / f"{name}.csv", name) for name in SCENES}
+    return {name: mine for name, mine in lines.items() if len(mine)}
+
+
 def shown(folder: Path) -> dict[str, pd.DataFrame]:
-    """Return the lines of each scene's engines, by title."""
-    return {
-        f"Engines on {told.title}": lines_of(folder / f"{name}.csv", name)
-        for name, told in SCENES.items()
-    }
+    """Return the same by title."""
+    return {f"Engines on {SCENES[name].title}": it for name, it in by_scene(folder).items()}
 
 
 def again(folder: Path) -> pd.DataFrame:
@@ -159,7 +216,8 @@ def again(folder: Path) -> pd.DataFrame:
         size = rows[told.error].abs().where(~wrong, np.inf).groupby(rows["source"], sort=False)
         places = size.idxmax()
         for place in places.loc[size.max().sort_values(ascending=False, kind="stable").index]:
-            worst[name, place] = {"scene": name, **rows.loc[place].dropna().to_dict()}
+            row = rows.rename(columns={"became": "outcome"}).loc[place].dropna().to_dict()
+            worst[name, place] = {"scene": name, **row}
     quick = bool(provenance.record_of(folder)["settings"]["quick"])
     sources = list(dict.fromkeys(row["source"] for row in worst.values()))
     every = [*jobs(sources, quick), *carts(sources, quick)]
@@ -188,31 +246,32 @@ RIDES = 0.9
 """Part of a floor's way over which a block that rides on it is carried at least."""
 
 
-def frame_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the engines' frames are; empty without any."""
-    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
-    return f"The peak of a rocking frame is off by up to {listed(said)}." if said else ""
+def sentence(name: str, lines: pd.DataFrame) -> str:
+    """Say for each preset how far off a scene's engines are, and how many outcomes are wrong.
 
-
-def cart_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the peaks on carts are; empty without any."""
-    said = [f"{part(most)} {words}" for words, most in _largest(lines, "largest_error")]
-    return f"The peak of a block on a cart is off by up to {listed(said)}." * bool(said)
-
-
-def slide_sentence(lines: pd.DataFrame) -> str:
-    """Say for each preset how far off the slips are; empty without any."""
-    largest = _largest(lines, "largest_slip_error_m")
-    said = [f"{float(f'{1e3 * most:.2g}'):g} mm {words}" for words, most in largest]
-    return f"The slips of a block are off by up to {listed(said)}." if said else ""
-
-
-def _largest(lines: pd.DataFrame, column: str) -> list[tuple[str, float]]:
+    Parameters
+    ----------
+    name : str
+        Of the scene.
+    lines : DataFrame
+        As of `lines_of`; without any nothing is said.
+    """
+    told, said = SCENES[name], []
     presets = lines["source"].map(preset_of)
-    return [
-        (in_words(preset), float(lines.loc[presets == preset, column].max()))
-        for preset in in_order(presets)
-    ]
+    for preset in in_order(presets):
+        mine = lines[presets == preset]
+        wrong = int(mine[list(KINDS)].to_numpy().sum())
+        beside = f", {out_of(wrong, mine['cases'].sum())} {told.lost}," if wrong else ""
+        said.append(f"{told.words(mine['largest_error'].max())}{beside} {in_words(preset)}")
+    return f"{told.subject} off by up to {listed(said)}." if said else ""
+
+
+def ends(name: str, lines: pd.DataFrame) -> str:
+    """Return by how much a scene is off as documented and with the last preset that was asked."""
+    presets = lines["source"].map(preset_of)
+    known = in_order(presets)
+    sizes = [lines.loc[presets == each, "largest_error"].max() for each in (known[0], known[-1])]
+    return " → ".join(map(SCENES[name].words, sizes[: len(known)]))
 
 
 def floor_sentence(lines: pd.DataFrame) -> str:

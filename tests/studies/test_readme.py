@@ -21,7 +21,8 @@ from studies.page.facts import table
 PUBLISHED = ROOT / readme.PUBLISHED
 
 
-PAGES = ("README.md", *(f"studies/published/{name}" for name in ("README.md", "engines.md")))
+PUBLISHED_PAGES = ("README.md", "engines.md", "scenes.md")
+PAGES = ("README.md", *(f"studies/published/{name}" for name in PUBLISHED_PAGES))
 PROSE = (*PAGES, "studies/GUIDE.md", ".github/CONTRIBUTING.md")
 TABLES = ("studies/published/columns.csv",)
 
@@ -67,7 +68,7 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     shutil.copytree(PUBLISHED, copy)
     (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
     assert "3.8 % → 9.4·10⁻⁵" in drake
-    assert drake.count("|") == 6
+    assert drake.count("|") == 7
     (newton,) = (line for line in facts.scenes(copy).splitlines() if "Newton" in line)
     assert " | – | " in newton
     path = copy / "scenes" / "frame.csv"
@@ -213,7 +214,7 @@ def test_the_engine_of_the_readme_is_as_short_as_it_says():
 
 
 def test_every_link_of_a_page_leads_somewhere():
-    assert {PUBLISHED / "README.md", PUBLISHED / "engines.md"} == set(PUBLISHED.glob("*.md"))
+    assert {PUBLISHED / name for name in PUBLISHED_PAGES} == set(PUBLISHED.glob("*.md"))
     for path in (ROOT / name for name in (*PROSE, "analytic/EQUATIONS.md")):
         text = path.read_text(encoding="utf-8")
         targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)

@@ -16,7 +16,7 @@ from studies.__main__ import run
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, short
 from studies.measures.rolling import reduced
-from studies.scenes.rolling import cylinder_sentence, cylinder_summary, cylinder_table, cylinders
+from studies.scenes.rolling import cylinder_summary, cylinder_table, cylinders
 from studies.sources.rolling import _outcome, seen, space_scene, steady_states
 
 FLAT = RollingCylinder(radius=0.5, height=0.5, tilt=0.2)
@@ -142,13 +142,4 @@ def test_rows_are_summarized():
     assert naive[1] > 0.9 * naive[0] > 0.1
     assert lines.loc["exact", "tilt_error_rad"] < 1e-14
     assert math.isnan(lines.loc["exact", "half_step_tilt_error_rad"])
-    assert cylinder_sentence(pd.DataFrame()) == "" and cylinder_summary(pd.DataFrame()).empty
-    told = pd.DataFrame([
-        {"source": "mujoco:naive", "turns": 5.0, "tilt_error_rad": 0.1, "cylinders": 3, "lost": 0},
-        {"source": "physx:naive", "turns": 5.0, "tilt_error_rad": 0.3, "cylinders": 3, "lost": 2},
-        {"source": "mujoco:fixed", "turns": 50.0, "tilt_error_rad": 9.0, "cylinders": 3, "lost": 0},
-    ])  # fmt: skip
-    assert cylinder_sentence(told) == (
-        "After 5 turns the tilt of a rolling cylinder is off by up to 0.3 rad, 2 of 6 lost, as "
-        "their documentation shows them."
-    )
+    assert cylinder_summary(pd.DataFrame()).empty

@@ -23,9 +23,16 @@ from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, frames, slides, steps
 from studies.scenes.figure import draw_times, pictures
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.rolling import cylinder_lines
 from studies.scenes.study import block_summary, floor_summary, reduce, slide_summary, tabulate
-from studies.scenes.told import SCENES, again, floor_sentence, frame_sentence, kinds_in, lines_of
+from studies.scenes.told import (
+    SCENES,
+    again,
+    ends,
+    floor_sentence,
+    kinds_in,
+    lines_of,
+    sentence,
+)
 
 FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
 PULSE = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
@@ -169,8 +176,7 @@ def test_a_block_that_is_held_is_no_wrong_slide():
 
 
 def test_rolling_cylinders_have_their_pictures():
-    table = read_table(PUBLISHED / "scenes" / "cylinder.csv")
-    lines = cylinder_lines(table).set_index("source")
+    lines = lines_of(PUBLISHED / "scenes" / "cylinder.csv", "cylinder").set_index("source")
     summary = read_table(PUBLISHED / "scenes" / "cylinder-summary.csv").set_index("source")
     five = summary[summary["turns"] == 5.0].loc[lines.index]
     assert (lines[[*KINDS]].sum(axis=1) == five["lost"]).all()
@@ -181,11 +187,12 @@ def test_rolling_cylinders_have_their_pictures():
 def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
     lines = again(PUBLISHED / "scenes")
     assert list(lines["scene"].unique()) == list(SCENES)
-    frames, slides, carts = (lines[lines["scene"] == name] for name in SCENES)
+    frames, slides, carts, cylinders = (lines[lines["scene"] == name] for name in SCENES)
     assert frames.iloc[0][["source", "outcome"]].to_list() == ["pymunk:naive", "overturned"]
     assert frames["error"].dropna().abs().is_monotonic_decreasing
     assert (slides["compare"] == "no option asks for its launch").any()
     assert (carts["export"].fillna("") == "").all()
+    assert cylinders.iloc[0]["compare"].startswith("rocking compare --scene cylinder --radius ")
     for row in (frames.iloc[0], slides[slides["source"] == "pymunk:naive"].iloc[0]):
         assert run([*row["compare"].split()[1:], "--json"]) == 0
         _, found = map(json.loads, capsys.readouterr().out.splitlines())
@@ -201,7 +208,7 @@ def test_an_engine_that_holds_one_scene_alone_has_its_report(tmp_path, capsys):
 
 
 def test_a_scene_is_drawn_with_all_its_bodies():
-    for told in SCENES.values():
+    for told in (told for name, told in SCENES.items() if name != "cylinder"):
         bodies = len(layout_of(told.system, 1.0, None, (0.0, 0.0)).bodies)
         axes = draw_scene(told.system, told.at).axes[0]
         shapes = [patch for patch in axes.patches if isinstance(patch, Polygon)]
@@ -286,11 +293,15 @@ def test_a_floor_carries_by_its_velocity_and_not_by_its_position():
 def test_a_preset_is_as_far_off_as_its_worst_engine():
     errors = {"box2d:naive": 0.2, "mujoco:naive": 0.5, "mujoco:landing": 1e-5}
     lines = pd.DataFrame({"source": list(errors), "largest_error": list(errors.values())})
-    assert frame_sentence(lines) == (
-        "The peak of a rocking frame is off by up to 50 % as their documentation shows them and "
-        "10⁻⁵ with steps that land on impacts."
+    lines[["cases", *KINDS]] = 3, 1, 0, 0
+    lines.loc[2, "fall_wrong"] = 0
+    assert sentence("frame", lines) == (
+        "The peak of a rocking frame is off by up to 50 %, 2 of 6 wrong, as their documentation "
+        "shows them and 10⁻⁵ with steps that land on impacts."
     )
-    assert frame_sentence(lines.iloc[:0]) == ""
+    assert ends("frame", lines) == "50 % → 10⁻⁵"
+    assert ends("frame", lines.iloc[:1]) == "20 %"
+    assert sentence("frame", lines.iloc[:0]) == ""
 
 
 def test_an_engine_is_held_against_the_floor_that_it_made():
@@ -318,7 +329,7 @@ def test_the_study_leaves_its_tables_and_goes_on(tmp_path, capsys):
     asked = ["scenes", "--quick", "--out", str(tmp_path), "--sources", "exact", "mujoco:fixed"]
     assert run(asked) == 0
     first = capsys.readouterr()
-    assert "The peak of a rocking frame is off" in first.out
+    assert "a rocking frame 0." in first.out
     lines = read_table(tmp_path / "frame-summary.csv")
     assert list(lines["source"]) == ["exact", "mujoco:fixed"]
     assert (tmp_path / "frame-time.png").stat().st_size > 4_000
