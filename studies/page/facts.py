@@ -256,6 +256,21 @@ def scenes_told(published: Path) -> list[dict[str, str]]:
     return sections
 
 
+def extreme_frames(published: Path) -> str:
+    """Return what engines make of the extreme frames, as `scenes` does; empty without any."""
+    lines = found_in(published / "scenes" / "frame-extremes.csv")
+    if lines.empty:
+        return ""
+    frames = list(lines.groupby(["columns", "load"], sort=False))
+    heads = [f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames]
+    rows = [
+        (f"**{ENGINES[name].title}**", *(_scene(mine, name, part) for _, mine in frames))
+        for name in dict.fromkeys(map(engine_of, lines["source"]))
+        if name in ENGINES
+    ]
+    return table(("", *heads), rows)
+
+
 def floors(published: Path) -> dict[str, str]:
     """Return what is found of moving floors, and the table of them; empty without any."""
     lines = found_in(published / "scenes" / "floor-summary.csv")

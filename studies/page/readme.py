@@ -80,6 +80,7 @@ def pages(root: Path) -> dict[Path, str]:
         "presets": facts.presets_short(lines),
         "scenes": facts.scenes(published),
         "scenes_told": facts.scenes_told(published),
+        "extreme_frames": facts.extreme_frames(published),
         "floors": facts.floors(published),
         "captions": SCENES_STUDY.captions,
         "presets_all": facts.presets_text(lines),

@@ -9,20 +9,26 @@ STUDY = Study(
     help="""A frame, a slide, a moving floor, a cart, a rolling cylinder; their exact solutions.
 
 The frame is a beam on two or three free columns, which turn as a block of another size and
-restitution does; the slide is friction alone: two slips under a pulse, a launch, and a hold below
-the onset; the floor is moved in each way that an engine has, and should carry a block along; a
-block that rocks on it is held against the exact answer on the floor as it should move, and as it
-moved; the cart, free or on a spring, is pushed and feels its block; a cylinder rolls on its rim in
-space, five turns and fifty. What an engine is not built for is a row that says so. Resumable.""",
+restitution does, and once on five, or much lighter or heavier than they are; the slide is friction
+alone: two slips under a pulse, a launch, and a hold below the onset; the floor is moved in each way
+that an engine has, and should carry a block along; a block that rocks on it is held against the
+exact answer on the floor as it should move, and as it moved; the cart, free or on a spring, is
+pushed and feels its block; a cylinder rolls on its rim in space, five turns and fifty. What an
+engine is not built for is a row that says so. Resumable.""",
     table="frame-summary.csv",
     tables=(
         *(f"{kind}.csv" for kind in KINDS),
         *(f"{kind}-summary.csv" for kind in KINDS),
+        "frame-extremes.csv",
+        "frame-steps.csv",
         "cart-steps.csv",
     ),
     chapter=Chapter(
         question="Does it hold for frames, friction alone, floors, carts, a rolling cylinder?",
-        tables=(*(f"{kind}-summary.csv" for kind in KINDS), "cart-steps.csv"),
+        tables=(
+            *(f"{kind}-summary.csv" for kind in KINDS),
+            *("frame-extremes.csv", "frame-steps.csv", "cart-steps.csv"),
+        ),
         minutes=(0.5, 12.0),
         weaker="One frame, one slide, one cart, two places of the steps.",
     ),

@@ -14,7 +14,7 @@ from analytic.response import Outcome, Response
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.measures.carts import impact_ratio, place_error
-from studies.scenes.cases import steps
+from studies.scenes.places import steps
 from studies.sources.registry import resolve
 
 CARTS = ((1e-3, 0.0), (0.1, 0.0), (0.5, 0.0), (0.9, 0.0), (0.5, 5.0), (0.3, 20.0))

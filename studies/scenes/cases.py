@@ -8,23 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from analytic import CartBlock, Delayed, RigidBlock, RockingFrame, SlidingBlock, Still, simulate
+from analytic import Delayed, RigidBlock, SlidingBlock, Still
 from analytic.block import GRAVITY
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
-from engines.declaration import Stepping
 from engines.layouts import System
 from engines.parts.factors import DEFAULT
 from studies.kit.jobs import Job
+from studies.scenes.carts import carts
+from studies.scenes.frames import frames
+from studies.scenes.places import PULSES
 from studies.scenes.rolling import cylinders
 from studies.sources.registry import resolve
-
-LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)
-PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
-"""Amplitude [g] and circular frequency [rad/s] of full sines."""
-
-PHASES = 4
-"""Where in a step an impact falls costs per mille: so many runs at steps that differ by a hair."""
 
 FRICTIONS = (0.1, 0.2, 0.3)
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
@@ -38,44 +33,10 @@ HELD_S = 2.0
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
-    """Return the job of every case and source, but of carts: of frames first."""
+    """Return the job of every case and source: of frames first, of carts last."""
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
-    return [*frames(sources, quick), *beyond, *cylinders(sources, quick)]
-
-
-def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
-    """Yield the jobs of frames under pulses."""
-    cases = itertools.product(LOADS[1:2], COLUMNS[:1], PULSES[:1])
-    if not quick:
-        cases = itertools.product(LOADS, COLUMNS, PULSES)
-    for load, columns, (amplitude_g, omega) in cases:
-        frame = RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
-        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2)
-        labels = {"scene": "frame", "columns": columns, "load": load}
-        shaken = {"amplitude_g": amplitude_g, "omega": omega}
-        for source in sources:
-            for phase, options in enumerate(steps(source, frame, pulse, 2 if quick else PHASES)):
-                said = {**labels, **shaken, "phase": phase}
-                yield Job(labels=said, block=frame, motion=pulse, source=source, options=options)
-
-
-def steps(
-    source: str,
-    frame: RockingFrame | CartBlock,
-    motion: Motion,
-    phases: int,
-    duration: float | None = None,
-) -> Iterator[dict[str, Any]]:
-    """Yield the options by which the first impact falls into different parts of equal steps."""
-    asked = resolve(source)
-    if not asked.engine or asked.used.stepping is not Stepping.FIXED:
-        yield {}
-        return
-    used = asked.used
-    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
-    impact = simulate(frame, motion, duration=duration).impacts[0].time * frame.p
-    for phase in range(phases):
-        yield {"step": step * (1.0 + phase / phases * step / impact)}
+    rolling = [*cylinders(sources, quick), *carts(sources, quick)]
+    return [*frames(sources, quick), *beyond, *rolling]
 
 
 def slides(sources: Sequence[str], quick: bool) -> Iterator[Job]:

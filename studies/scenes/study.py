@@ -24,8 +24,9 @@ from studies.measures.presets import engine_of, preset_of
 from studies.measures.rolling import reduced
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
-from studies.scenes.carts import cart_row, cart_steps, cart_summary, carts
+from studies.scenes.carts import cart_row, cart_steps, cart_summary
 from studies.scenes.cases import jobs
+from studies.scenes.frames import SEEN, frame_extremes, frame_steps, frame_summary
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.rolling import cylinder_summary, cylinder_table
 from studies.scenes.told import SCENES, again, by_scene, ends, floor_sentence, found_in, shown
@@ -34,7 +35,6 @@ from studies.sources.registry import core_sources
 __all__ = ["again", "command", "headline", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
-SEEN_OF_A_FRAME = ("parting", "tilt", "drift_m")
 SEEN_OF_A_SLIDE = ("place_m", "lift_m", "turn_rad")
 
 
@@ -56,7 +56,7 @@ def command(
         moved of engines as they are documented.
     """
     plan = Plan(
-        jobs=lambda: [*jobs(sources, quick), *carts(sources, quick)],
+        jobs=lambda: jobs(sources, quick),
         settings={"quick": quick},
         growing={"source": sources},
         reduce=reduce,
@@ -78,7 +78,7 @@ def reduce(job: Job, response: Response) -> Row:
     seen = response.observables
     if job.labels["scene"] == "frame":
         row |= {"exact": exact.peak_ratio, "right": response.outcome is exact.outcome}
-        return {**row, "error": _off(response, exact), **_of(seen, SEEN_OF_A_FRAME)}
+        return {**row, "error": _off(response, exact), **_of(seen, SEEN)}
     if job.labels["scene"] == "floor":
         travel = float(job.motion.displacement(job.motion.duration))
         place = float(seen.get("place_m", math.nan))
@@ -129,10 +129,12 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source."""
     parts = {name: pd.DataFrame([row for row in rows if row["scene"] == name]) for name in KINDS}
     parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
-    on_carts = _available(parts["cart"])
+    in_frames, on_carts = _available(parts["frame"]), _available(parts["cart"])
     return {
         **parts,
-        "frame-summary": frame_summary(parts["frame"]),
+        "frame-summary": frame_summary(in_frames),
+        "frame-extremes": frame_extremes(in_frames),
+        "frame-steps": frame_steps(in_frames),
         "slide-summary": slide_summary(parts["slide"]),
         "floor-summary": floor_summary(parts["floor"]),
         "block-summary": block_summary(parts["block"]),
@@ -141,26 +143,6 @@ def tabulate(rows: Sequence[Row]) -> Tables:
         "cylinder": cylinder_table(parts["cylinder"]),
         "cylinder-summary": cylinder_summary(parts["cylinder"]),
     }
-
-
-def frame_summary(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return for each source how many of its frames are wrong, and how far off the others."""
-    lines = []
-    for source, part in _available(rows):
-        size = part["error"].abs()
-        lines.append(
-            {
-                "source": source,
-                "frames": len(part),
-                "wrong": int((~part["right"].astype(bool)).sum()),
-                "median_error": size.median(),
-                "largest_error": size.max(),
-                "beyond_2_percent": int((size > 0.02).sum()),
-                **{name: part[name].max() for name in SEEN_OF_A_FRAME},
-                "ms_a_frame": 1e3 * part["wall_s"].mean(),
-            }
-        )
-    return pd.DataFrame(lines)
 
 
 def slide_summary(rows: pd.DataFrame) -> pd.DataFrame:

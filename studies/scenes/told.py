@@ -18,10 +18,11 @@ from studies.measures.again import commands, with_commands
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.rolling import TURNS
 from studies.measures.words import listed, out_of, part
-from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of
-from studies.scenes.carts import carts
-from studies.scenes.cases import COLUMNS as COLUMNS_OF_FRAMES
-from studies.scenes.cases import LOADS, PHASES, PULSES, jobs
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of, outcomes_of
+from studies.scenes.cases import jobs
+from studies.scenes.frames import COLUMNS as COLUMNS_OF_FRAMES
+from studies.scenes.frames import LOADS, PHASES
+from studies.scenes.places import PULSES
 from studies.scenes.rolling import CYLINDERS, PARTS
 
 
@@ -161,7 +162,7 @@ def asked(path: Path, name: str) -> pd.DataFrame:
     return rows[kept]
 
 
-OWN = {"refined": 1.0, "turns": TURNS[0], "step_part": PARTS[0]}
+OWN = {"refined": 1.0, "extreme": False, "turns": TURNS[0], "step_part": PARTS[0]}
 """Columns of rows that differ in steps or in how long they last, and which are told."""
 
 
@@ -181,13 +182,7 @@ def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:
         lost = rows["became"] != RollingOutcome.ROLLED.value
         return pd.Series(np.select([failed, lost], [NO_ANSWER, FALL], ""), rows.index)
     if "exact" in rows:
-        peak = rows["exact"].to_numpy(float)
-        right = np.select(
-            [np.isinf(peak), peak == 0.0],
-            [Outcome.OVERTURNED.value, Outcome.AT_REST.value],
-            Outcome.ROCKED.value,
-        )
-        return pd.Series(kinds_of(rows["outcome"], right), rows.index)
+        return pd.Series(kinds_of(rows["outcome"], outcomes_of(rows["exact"])), rows.index)
     found, lost = rows["outcome"], rows[error].isna()
     failed, fell = found == Outcome.FAILED.value, found == Outcome.OVERTURNED.value
     return pd.Series(np.select([failed, fell, lost], [NO_ANSWER, FALL, REST], ""), rows.index)
@@ -220,7 +215,7 @@ def again(folder: Path) -> pd.DataFrame:
             worst[name, place] = {"scene": name, **row}
     quick = bool(provenance.record_of(folder)["settings"]["quick"])
     sources = list(dict.fromkeys(row["source"] for row in worst.values()))
-    every = [*jobs(sources, quick), *carts(sources, quick)]
+    every = jobs(sources, quick)
     known = {_called({**job.labels, "source": job.source}): job for job in every}
     found = []
     for row in worst.values():

@@ -22,6 +22,7 @@ from studies.kit.provenance import write_text
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.scenes import cases as scenes
+from studies.scenes import frames
 from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
@@ -43,7 +44,7 @@ MOMENTS = "score-moments"
 """The tables of one block."""
 
 BEYOND: dict[str, Callable[[Sequence[str], bool], Iterator[Job]]] = {
-    "score-frame": scenes.frames,
+    "score-frame": frames.usual,
     "score-slide": scenes.slides,
 }
 """Tables of further scenes, each with what yields its jobs."""

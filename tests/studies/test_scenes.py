@@ -20,9 +20,11 @@ from studies.kit.jobs import ask
 from studies.kit.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS
-from studies.scenes.cases import RIDE, floors, frames, slides, steps
+from studies.scenes.cases import RIDE, floors, slides
 from studies.scenes.figure import draw_times, pictures
+from studies.scenes.frames import frame_extremes, frame_steps, frame_summary, frames, usual
 from studies.scenes.own_floor import exact_on_its_floor
+from studies.scenes.places import steps
 from studies.scenes.study import block_summary, floor_summary, reduce, slide_summary, tabulate
 from studies.scenes.told import (
     SCENES,
@@ -235,6 +237,39 @@ def test_equal_steps_are_shifted_by_parts_of_a_step():
     shifts = [(places[0] - place) % 1.0 for place in places]
     assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
     assert list(steps("mujoco:landing", FRAME, PULSE, 4)) == list(steps("exact", FRAME, PULSE, 4))
+
+
+def test_extreme_frames_and_one_in_other_steps_are_asked_beside_the_usual_ones():
+    of = [*frames(["mujoco:fixed", "mujoco"], False)]
+    beside = [job for job in of if job.labels["refined"] != 1.0 or job.labels["extreme"]]
+    assert len(of) - len(beside) == len([*usual(["mujoco:fixed", "mujoco"], False)]) == 90
+    loads = {(job.block.columns, job.block.load) for job in beside if job.labels["extreme"]}
+    assert loads == {(2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0)}
+    # what chooses its own steps has no others
+    assert {job.labels["refined"] for job in of if job.source == "mujoco"} == {1.0}
+    steps_of = {
+        refined: [job.options["step"] for job in beside if job.labels["refined"] == refined]
+        for refined in (4.0, 0.5)
+    }
+    assert steps_of[4.0] == pytest.approx([8.0 * step for step in steps_of[0.5]], rel=1e-12)
+
+
+def test_frames_are_told_apart_by_load_and_by_step():
+    usual_one = {"outcome": "rocked", "exact": 0.2, "right": True, "error": 1e-3, "wall_s": 1e-3}
+    usual_one |= {"columns": 2, "load": 2.0, "amplitude_g": 0.4, "refined": 1.0, "extreme": False}
+    usual_one |= {"parting": 0.0, "tilt": 0.0, "drift_m": 0.0, "steps": 10}
+    heavy = {**usual_one, "load": 1e3, "extreme": True, "error": -0.3}
+    lost = {**heavy, "outcome": "failed", "error": math.nan, "right": False}
+    finer = {**usual_one, "refined": 0.5, "error": 5e-4, "steps": 20}
+    parts = [("pymunk:fixed", pd.DataFrame([usual_one, heavy, lost, finer]))]
+    (summed,) = frame_summary(parts).to_dict("records")
+    assert (summed["frames"], summed["wrong"], summed["largest_error"]) == (1, 0, 1e-3)
+    (told,) = frame_extremes(parts).to_dict("records")
+    assert (told["frames"], told["no_answer"], told["fall_wrong"]) == (2, 1, 0)
+    assert (told["load"], told["largest_error"]) == (1e3, 0.3)
+    half, whole = frame_steps(parts).to_dict("records")
+    assert (half["refined"], half["median_error"], half["us_a_step"]) == (0.5, 5e-4, 50.0)
+    assert (whole["refined"], whole["frames"], whole["us_a_step"]) == (1.0, 1, 100.0)
 
 
 def test_rows_are_reduced_and_summarized():

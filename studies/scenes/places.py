@@ -1,0 +1,34 @@
+"""The pulses of several scenes, and the steps by which an impact falls elsewhere in one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from analytic import CartBlock, RockingFrame, simulate
+from analytic.motion import Motion
+from engines.declaration import Stepping
+from studies.sources.registry import resolve
+
+PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
+"""Amplitude [g] and circular frequency [rad/s] of full sines."""
+
+
+def steps(
+    source: str,
+    frame: RockingFrame | CartBlock,
+    motion: Motion,
+    phases: int,
+    duration: float | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Yield the options by which the first impact falls into different parts of equal steps."""
+    asked = resolve(source)
+    if not asked.engine or asked.used.stepping is not Stepping.FIXED:
+        yield {}
+        return
+    used = asked.used
+    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
+    impact = simulate(frame, motion, duration=duration).impacts[0].time * frame.p
+    for phase in range(phases):
+        yield {"step": step * (1.0 + phase / phases * step / impact)}
