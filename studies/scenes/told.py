@@ -256,7 +256,7 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
     for preset in in_order(presets):
         mine = lines[presets == preset]
         wrong = int(mine[list(KINDS)].to_numpy().sum())
-        beside = f", {out_of(wrong, mine['cases'].sum())} {told.lost}," if wrong else ""
+        beside = f" ({out_of(wrong, mine['cases'].sum())} {told.lost})" if wrong else ""
         said.append(f"{told.words(mine['largest_error'].max())}{beside} {in_words(preset)}")
     return f"{told.subject} off by up to {listed(said)}." if said else ""
 

@@ -331,7 +331,7 @@ def test_a_preset_is_as_far_off_as_its_worst_engine():
     lines[["cases", *KINDS]] = 3, 1, 0, 0
     lines.loc[2, "fall_wrong"] = 0
     assert sentence("frame", lines) == (
-        "The peak of a rocking frame is off by up to 50 %, 2 of 6 wrong, as their documentation "
+        "The peak of a rocking frame is off by up to 50 % (2 of 6 wrong) as their documentation "
         "shows them and 10⁻⁵ with steps that land on impacts."
     )
     assert ends("frame", lines) == "50 % → 10⁻⁵"
