@@ -49,6 +49,7 @@ def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
     """Return settings as the library is given them, for steps of dt_s [s]."""
     return SimpleNamespace(
         **{"geometry": s.geometry, "friction": float(s.friction), "dt": dt_s},
+        restitution=s.restitution,
         **{"solver": s.solver, "xpbd": s.of_xpbd(), "gamma": s.baumgarte},
         delta=None if s.depth is None else s.depth * scene.system.width,
         **{"iterations": s.iterations, "tolerance": s.tolerance},
@@ -61,6 +62,8 @@ def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
     if s.solver != "xpbd":
         newton.solvers.SolverKamino.register_custom_attributes(builder)
     builder.default_shape_cfg.mu = s.friction
+    if s.restitution is not None:
+        builder.default_shape_cfg.restitution = s.restitution
     if not n.moving:
         builder.add_ground_plane()
     shape = builder.default_shape_cfg.copy()

@@ -51,6 +51,8 @@ class NewtonSettings:
         Penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
     tolerance : float or None
         Of "padmm"; its own is 1e-6.
+    restitution : float or None
+        Coefficient of block and base; "xpbd" heeds it where it is told to, as here.
     corner_radius : float
         Radius of the corner spheres over the width.
     floor : str
@@ -66,6 +68,7 @@ class NewtonSettings:
     baumgarte: float | None = setting(least=0.0, most=1.0)
     depth: float | None = setting(least=0.0)
     tolerance: float | None = setting(above=0.0)
+    restitution: float | None = setting(least=0.0, most=1.0)
     corner_radius: float = setting(1e-3, above=0.0)
     floor: str = setting("velocity", names=("velocity", "position"))
 
@@ -81,6 +84,7 @@ class NewtonSettings:
                 "iterations": self.iterations,
                 "rigid_contact_relaxation": self.relaxation,
                 "rigid_contact_con_weighting": self.weighting,
+                "enable_restitution": None if self.restitution is None else True,
             }
         )
 

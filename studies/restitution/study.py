@@ -15,7 +15,7 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.measures.words import listed
 from studies.restitution import STUDY, strikes
 from studies.restitution.strikes import BASE, VARIED
-from studies.restitution.ways import SHOWN, WAYS
+from studies.restitution.ways import SHOWN, WAYS, WITHOUT
 
 ASKED = tuple(name for name in installed_engines() if name in WAYS)
 
@@ -48,8 +48,9 @@ def command(*, out: Out, engines: Engines = ASKED) -> int:
     """
     mute = [name for name in engines if name not in WAYS]
     if mute:
+        why = f", which has no coefficient: {WITHOUT[mute[0]]}" if mute[0] in WITHOUT else ""
         able = ", ".join(WAYS)
-        raise BadInputError(f"--engines is {mute[0]!r}; it must be one that was asked: {able}")
+        raise BadInputError(f"--engines is {mute[0]!r}{why}; it must be one that was asked: {able}")
 
     def tabulate(_: object) -> Tables:
         struck = strikes.measured(engines)
@@ -78,7 +79,8 @@ def report(folder: Path) -> str:
         "Largest difference of the angular rate of the block, after over before, from 1 - 3/2 (1 + "
         "e) sin^2(alpha), of the same strikes": rates.filter(regex=said),
     }
-    return tell(STUDY, folder, tables)
+    none = pd.DataFrame(list(WITHOUT.items()), columns=["engine", "instead"])
+    return tell(STUDY, folder, {**tables, "Without a coefficient": none})
 
 
 def first_claim(corners: pd.DataFrame) -> str:
