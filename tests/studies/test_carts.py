@@ -89,7 +89,7 @@ def test_a_cart_is_made_by_code_of_its_own_and_a_block_not_by_it():
         made = makers.of(job)
         assert ("engines/mujoco/cart.py" in made) == ("engines/cart.py" in made) == holds
         names = makers.reached(job).names
-        assert (("engines.cart", "on_a_cart") in names) == holds
+        assert (("engines.mujoco.cart", "MujocoCart") in names) == holds
         assert ("engines.pybullet.cart", "BulletCart") not in names
         assert job.key == Job(labels={}, block=block, motion=PULSE, source="mujoco:fixed").key
 
