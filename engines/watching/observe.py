@@ -89,6 +89,8 @@ def see(
         shifted = pose.x - watch.home - watch.half_height * sine - inward
         watch.slide = max(watch.slide, abs(shifted))
     check(watch, level - reach, pose.z)
+    if abs(theta) <= LYING_PART * LYING:
+        watch.sunk = max(watch.sunk, reach - level)
     if watch.keeps_rows:
         put(rows, watch.rows, row)
         watch.rows += 1
@@ -240,5 +242,6 @@ def decide(watch: Watch, row: Row) -> None:
     still = row.time - watch.turned_at >= watch.rest_time
     lies = size >= LYING or (still and size > LYING_PART * LYING)
     watch.overturned = lies or (over and size > watch.alpha and outward)
-    settled = over and watch.end == math.inf and (watch.turned or (watch.resting and still))
-    watch.done = watch.overturned or settled or row.time >= watch.end
+    settled = watch.turned or (watch.resting and still)
+    seen = over and watch.end == math.inf and row.time >= watch.sampled
+    watch.done = watch.overturned or (seen and settled) or row.time >= watch.end

@@ -91,6 +91,8 @@ class Watch(State):
         rotation [rad] from which a fall is seen as one.
     motion_end, end : float
         End of the motion, and of the observation [s].
+    sampled : float
+        Until when it is observed for its history [s], at least.
     slides : bool
         Whether the block is meant to slide.
     keeps_rows : bool
@@ -104,8 +106,8 @@ class Watch(State):
         turned back after the motion.
     peak : float
         Largest rotation [rad].
-    slide, sink, highest : float
-        Of the pivot [m].
+    slide, sink, sunk, highest : float
+        Of the pivot [m]; sunk is how deep it was before the block lay.
     give, hop : float
         How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
     low_since : float
@@ -144,6 +146,7 @@ class Watch(State):
     least_fall: float
     motion_end: float
     end: float
+    sampled: float
     slides: bool
     keeps_rows: bool
     rows: int
@@ -157,6 +160,7 @@ class Watch(State):
     peak: float
     slide: float
     sink: float
+    sunk: float
     highest: float
     give: float
     hop: float
@@ -219,6 +223,7 @@ def begin_watch(
         least_fall=0.5 * weight * (FALL_STEPS * dt_s) ** 2,
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
+        sampled=scene.times[-1] if scene.times else 0.0,
         slides=scene.friction == 0.0,
         keeps_rows=scene.times is not None,
         resting=not aloft,

@@ -155,5 +155,14 @@ def test_one_cart_is_asked_again_in_other_steps():
     assert len({job.key for job in asked}) == len(asked)
 
 
+@pytest.mark.parametrize("source", ["exact", "mujoco"])
+def test_a_cart_is_sampled_to_the_last_of_the_times(source):
+    times = np.array([0.0, 2.0])
+    for motion, asked in ((Still(), times[:1]), (Still(), times), (PULSE, times)):
+        history = respond(source, CART, motion, times=asked).history
+        assert history.time.tolist() == asked.tolist()
+        assert history.base.shape == (2, len(asked)) and history.base[0, 0] == 0.0
+
+
 def test_nothing_moves_a_cart_at_rest():
     assert respond("mujoco", CART, Still(), duration=0.1).outcome is Outcome.AT_REST
