@@ -58,9 +58,9 @@ class Scene:
         p dt, the ordinary step in units of 1/p; the preset's by default.
     duration : float, optional
         Observe until this time [s], at least the motion's own duration. By default the
-        observation ends as soon as peak and outcome are decided, not before the last of the times.
+        observation ends as soon as peak and outcome are decided.
     times : sequence of float, optional
-        Increasing ground times [s] at which the response is sampled, up to a fall.
+        Increasing ground times [s] at which the response is sampled, as long as it is observed.
     time_limit_s : float, optional
         Wall-clock time after which a run is given up.
     max_steps : int, optional

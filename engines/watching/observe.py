@@ -242,6 +242,5 @@ def decide(watch: Watch, row: Row) -> None:
     still = row.time - watch.turned_at >= watch.rest_time
     lies = size >= LYING or (still and size > LYING_PART * LYING)
     watch.overturned = lies or (over and size > watch.alpha and outward)
-    settled = watch.turned or (watch.resting and still)
-    seen = over and watch.end == math.inf and row.time >= watch.sampled
-    watch.done = watch.overturned or (seen and settled) or row.time >= watch.end
+    settled = over and watch.end == math.inf and (watch.turned or (watch.resting and still))
+    watch.done = watch.overturned or settled or row.time >= watch.end

@@ -42,8 +42,6 @@ class Slide(State):
         Velocity up to which it does not slide [m/s], and time after which it is at rest [s].
     motion_end, end : float
         End of the motion and of the observation [s].
-    sampled : float
-        Until when it is observed for its history [s], at least.
     keeps_rows : bool
         Whether a history is wanted.
     rows, slips : int
@@ -72,7 +70,6 @@ class Slide(State):
     still: float
     motion_end: float
     end: float
-    sampled: float
     keeps_rows: bool
     rows: int
     slips: int
@@ -111,7 +108,6 @@ def begin_slide(slide: Slide, scene: Scene) -> None:
         still=STILL_TIME * math.sqrt(body.width / gravity),
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
-        sampled=scene.times[-1] if scene.times else 0.0,
         keeps_rows=scene.times is not None,
         place=body.at.x - body.home[0],
         origin=body.at.x - body.home[0],
@@ -159,7 +155,7 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
     slide.overturned = abs(pose.theta) > LYING_PART * LYING
     stays = time - slide.stays_since >= TREMORS * slide.still
     rests = stays or (slide.way == 0.0 and time - slide.since >= slide.still)
-    over = time >= max(slide.motion_end, slide.sampled) and slide.end == math.inf and rests
+    over = time >= slide.motion_end and slide.end == math.inf and rests
     slide.done = slide.overturned or over or time >= slide.end
 
 

@@ -91,8 +91,6 @@ class Watch(State):
         rotation [rad] from which a fall is seen as one.
     motion_end, end : float
         End of the motion, and of the observation [s].
-    sampled : float
-        Until when it is observed for its history [s], at least.
     slides : bool
         Whether the block is meant to slide.
     keeps_rows : bool
@@ -146,7 +144,6 @@ class Watch(State):
     least_fall: float
     motion_end: float
     end: float
-    sampled: float
     slides: bool
     keeps_rows: bool
     rows: int
@@ -223,7 +220,6 @@ def begin_watch(
         least_fall=0.5 * weight * (FALL_STEPS * dt_s) ** 2,
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
-        sampled=scene.times[-1] if scene.times else 0.0,
         slides=scene.friction == 0.0,
         keeps_rows=scene.times is not None,
         resting=not aloft,

@@ -166,19 +166,8 @@ def test_a_block_that_only_lies_deep_has_not_sunk(from_rad, said):
     assert ("sank" in seen.message) == said
 
 
-def test_a_history_without_a_duration_reaches_the_last_of_its_times():
-    """Long after all is decided; a step alone has no other to take its bend from."""
-    posed = {"motion": pulse(1.3, 3.0, 2), "step": 0.01}
-    told = scene(**posed, duration=9.0 / BLOCK.p)
-    end = 8.0 / BLOCK.p
-    short, long = (
-        watched(KnownWorld(told, Moment.END, Stepping.FIXED), scene(**posed, times=times),
-                Stepping.FIXED)
-        for times in ((0.0,), (0.0, end))
-    )  # fmt: skip
-    assert long.history.time.tolist() == [0.0, end]
-    assert long.peak_ratio == short.peak_ratio
-    assert len(long.impacts) > len(short.impacts)
+def test_one_step_makes_a_history():
+    """There is no other step to take its bend from."""
     still = scene(motion=Still(), step=0.01, times=(0.0,))
     once = watched(KnownWorld(still, Moment.END, Stepping.FIXED), still, Stepping.FIXED)
     assert (once.steps, once.history.theta.tolist()) == (1, [0.0])
