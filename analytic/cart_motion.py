@@ -203,6 +203,8 @@ def ridden(
     moving, lead = then_still(segments, math.inf), 1 if begin.y == 0.0 else 0
     ride = Ride(law, coupling, moving, times, end, *begin, begin.y, lead)
     began = time.perf_counter()
+    first = np.array([begin.side * begin.y, begin.side * begin.v, 0.0, 0.0])
+    ride.samples.append(np.repeat(first[:, None], np.count_nonzero(times <= 0.0), axis=1))
     while not ride.fallen:
         if ride.tau >= end and ((bounded and w2 > 0.0) or ride.is_decided()):
             break

@@ -72,12 +72,13 @@ def simulate(
         [m] and rate [m/s] relative to the base. A cart starts at rest at its spring's zero.
     duration : float, optional
         Follow the response until this time [s], at least the duration of the motion. Without it
-        the response is followed to the end of the motion only; outcome and peak of the free
-        rocking after that come from its energy in either case. A sliding block is followed until it
-        stands; a cart on a spring, whose energy decides nothing before, until the peak is decided.
+        the response is followed to the end of the motion, or to the last of the times where that is
+        later; outcome and peak of the free rocking after that come from its energy in either case.
+        A sliding block is followed until it stands; a cart on a spring, whose energy decides
+        nothing before, until the peak is decided.
     times : array_like, optional
         Ground times [s], increasing, at which to sample `Response.history`; it ends where the
-        response is no longer followed: with the motion, unless a `duration` is given.
+        response is no longer followed: with the `duration`, if one is given, or a fall.
     tolerance : float, optional
         Truncation error of a step of the exact model, relative to the rotation, from 1e-16 to
         1e-2; the degree of its Taylor series follows from it. The linear models are solved in
@@ -328,14 +329,16 @@ def check_window(
     ValueError
         If the duration is shorter than the motion, or the times are not increasing or not finite.
     """
-    until = motion.duration if duration is None else finite("duration", duration)
+    sampled = np.empty(0) if times is None else np.asarray(times, dtype=np.float64)
+    if sampled.ndim != 1 or np.any(np.diff(sampled) < 0.0) or not np.all(np.isfinite(sampled)):
+        raise ValueError("times must be a list of finite, increasing numbers")
+    if duration is None:
+        return max([motion.duration, *sampled[-1:].tolist()]), sampled
+    until = finite("duration", duration)
     if until < motion.duration:
         raise ValueError(
             f"duration is {duration!r}; it must be at least that of the motion, {motion.duration}"
         )
-    sampled = np.empty(0) if times is None else np.asarray(times, dtype=np.float64)
-    if sampled.ndim != 1 or np.any(np.diff(sampled) < 0.0) or not np.all(np.isfinite(sampled)):
-        raise ValueError("times must be a list of finite, increasing numbers")
     return until, sampled
 
 

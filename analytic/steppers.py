@@ -71,7 +71,7 @@ def integrate(
     ----------
     block, motion, model, start, duration, times
         As for `simulate`. Without a duration the response is followed to its first turning point
-        after the motion, where peak and outcome are decided.
+        after the motion, where peak and outcome are decided and its history ends.
     method : {"rk4", "average-acceleration"}
         Classical Runge-Kutta of order 4, or Newmark's method with beta = 1/4 and gamma = 1/2, its
         equation solved by modified Newton-Raphson.

@@ -1,62 +1,22 @@
 """A block on a cart: a base that slides along x alone, feels the block, and is pushed by a force.
 
-An engine that holds one has a module `cart` in its folder with a function
-``build(scene, settings, dt_s) -> Cart``: it is found by its name, so that nothing else knows. The
-layout stands with the others from the import of this module on.
+An engine that holds one says what builds its `Cart` (`engines.declaration.Engine.builders`), by
+``partial(CartWorld, MyCart)``.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
-from enum import Enum
-from importlib import import_module
-from importlib.util import find_spec
-from time import perf_counter
+from dataclasses import replace
 from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 
-from analytic.cart import CartBlock
 from analytic.motion import FloatArray, Motion
-from analytic.response import Outcome, Reason, Response
-from engines.declaration import Engine, Preset, Stepping
-from engines.layouts import LAYOUTS, Ability, Layout, Start, one_block
-from engines.registry import find
-from engines.run.drive import NotAvailableError, simulate_world
-from engines.run.drive import build as built
+from analytic.response import Outcome, Response
 from engines.scene import Scene
 from engines.watching.history import sample
 from engines.watching.swing import Row
 from engines.watching.watch import LYING, LYING_PART
 from engines.world import Moment, Pose, Step
-
-
-class Further(Enum):
-    """What a cart asks of an engine, as an `Ability` of its own."""
-
-    FREE_BASE = "a base that feels what stands on it"
-
-
-FREE_BASE = cast(Ability, Further.FREE_BASE)
-
-
-class OnCart(Layout):
-    """One block on a cart."""
-
-    __slots__ = ()
-
-    @property
-    def asks(self) -> tuple[Ability, ...]:
-        """What an engine must be able to do for it."""
-        return (FREE_BASE,)
-
-
-def on_a_cart(system: Any, density: float, depth: float | None, start: Start) -> Layout:
-    """Return one block on its base, which is a cart."""
-    return OnCart(*one_block(system, density, depth, start))
-
-
-cast(dict[type, Callable[..., Layout]], LAYOUTS)[CartBlock] = on_a_cart
-
 
 OBSERVED = 8.0
 """How long a cart on a spring, which moves on and on, is observed after the motion, in 1/p."""
@@ -125,7 +85,8 @@ class Cart(Protocol):
 
 def cart_mass(scene: Scene) -> float:
     """Return the mass [kg] of the cart."""
-    return scene.bodies[0].mass * (1.0 / cast(CartBlock, scene.system).mass_ratio - 1.0)
+    system: Any = scene.system
+    return float(scene.bodies[0].mass * (1.0 / system.mass_ratio - 1.0))
 
 
 class CartWorld:
@@ -133,6 +94,13 @@ class CartWorld:
 
     The force (m + M) u'' of the motion pushes it, and that of the spring, constant over a step and
     from where the cart is as the velocities change.
+
+    Parameters
+    ----------
+    make : callable
+        ``(scene, settings, dt_s) -> Cart``.
+    scene, settings, dt_s
+        As of `engines.declaration.Engine.build`.
 
     Attributes
     ----------
@@ -142,11 +110,13 @@ class CartWorld:
         Largest sum of the sizes of both momenta [kg m/s].
     """
 
-    def __init__(self, scene: Scene, cart: Cart) -> None:
-        self._cart, self._scene = cart, scene
+    def __init__(
+        self, make: Callable[[Scene, Any, float], Cart], scene: Scene, settings: Any, dt_s: float
+    ) -> None:
+        self._cart, self._scene = make(scene, settings, dt_s), scene
         self._mass, self._own = scene.bodies[0].mass, cart_mass(scene)
-        self._stiffness = cast(CartBlock, scene.system).stiffness
-        self._seen = cart.seen()
+        self._stiffness = cast(Any, scene.system).stiffness
+        self._seen = self._cart.seen()
         self._given = self._mass * scene.bodies[0].at.velocity_x
         self.momentum_error = self.momentum_size = self._peak = 0.0
         self._rows = [Row(0.0, 0.0, self._seen.place, 0.0)]
@@ -186,10 +156,27 @@ class CartWorld:
         """See `engines.world.World`."""
         self._cart.close()
 
+    def observed(self, scene: Scene) -> Scene:
+        """Return a scene of a cart on a spring with its end, and shaken until then.
+
+        A block on one that leans by more than alpha may still come back, as one that is shaken may.
+        """
+        end = scene.duration or scene.motion.duration + OBSERVED / scene.system.p
+        if self._stiffness == 0.0 or end <= scene.motion.duration:
+            return scene
+        return replace(scene, duration=end, motion=cast(Motion, Prolonged(scene.motion, end)))
+
     def told(self, response: Response) -> Response:
         """Return a response with what was seen of the cart beside the block.
 
         On a spring a block that has not come to lie when the observation ends has not overturned.
+
+        Returns
+        -------
+        Response
+            Its observables are momentum_error, the largest difference of the horizontal momentum
+            from what push and spring gave, over the largest sum of both bodies', and cart_m, the
+            cart's last place [m]; its history has the cart's.
         """
         size = self.momentum_size
         part = self.momentum_error / size if size else 0.0
@@ -203,74 +190,3 @@ class CartWorld:
         base = sample(np.array(self._rows), response.history.time.tolist())
         history = replace(response.history, base=np.array([base.theta, base.velocity]))
         return replace(response, observables=seen, history=history)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CartEngine(Engine):
-    """An engine as it holds a cart: in equal steps alone."""
-
-    def lacks(self, scene: Scene, preset: Preset) -> str:
-        """Say what of a scene a preset cannot do, or return an empty string."""
-        if preset.stepping is not Stepping.FIXED:
-            return f"{self.name}:{preset.name} is not built here for {FREE_BASE.value}"
-        return Engine.lacks(self, scene, preset)
-
-
-def carrying(engine: Engine) -> Engine:
-    """Return an engine as it holds a cart, or as it is where it holds none."""
-    place = f"{engine.build.__module__.rpartition('.')[0]}.cart"
-    if not place.startswith("engines.") or find_spec(place) is None:
-        return engine
-    known = {item.name: getattr(engine, item.name) for item in fields(engine)}
-    abilities = (*engine.abilities, FREE_BASE)
-    return CartEngine(**{**known, "build": import_module(place).build, "abilities": abilities})
-
-
-def observed(scene: Scene) -> Scene:
-    """Return a scene of a cart on a spring with its end, and shaken until then.
-
-    A block on one that leans by more than alpha may still come back, as one that is shaken may.
-    """
-    if cast(CartBlock, scene.system).stiffness == 0.0:
-        return scene
-    end = scene.duration or scene.motion.duration + OBSERVED / scene.system.p
-    if end <= scene.motion.duration:
-        return scene
-    return replace(scene, duration=end, motion=cast(Motion, Prolonged(scene.motion, end)))
-
-
-def ride(name: str, scene: Scene) -> Response:
-    """Simulate a block on a cart with an engine.
-
-    Returns
-    -------
-    Response
-        As of `engines.run.drive.run`. Its observables are momentum_error, the largest difference of
-        the horizontal momentum from what push and spring gave, over the largest sum of both
-        bodies', and cart_m, the cart's last place [m]; its history has the cart's. One on a spring
-        is observed for 8/p after the motion where the scene says no duration.
-
-    Raises
-    ------
-    ValueError
-        If the engine is unknown, or a preset or setting is not one of the engine's.
-    """
-    began, engine = perf_counter(), carrying(find(name))
-    preset = engine.used_for(scene)
-    if scene.frame == "base":
-        words = "not available: a cart moves in the frame 'world', and frame is 'base'"
-        return Response.failure(words, reason=Reason.UNAVAILABLE)
-    scene = observed(replace(scene, frame="world"))
-    try:
-        cart = cast(Cart, built(engine, scene))
-    except NotAvailableError as error:
-        return Response.failure(str(error), reason=Reason.UNAVAILABLE)
-    world, setup_s = CartWorld(scene, cart), perf_counter() - began
-    dt_s, resolution = preset.ordinary_step_s(scene), engine.resolution(scene.system)
-    try:
-        found = simulate_world(world, scene, dt_s, preset.stepping, resolution)
-    finally:
-        world.close()
-    said = [] if scene.preset or preset is engine.best else [f"as {name}:{preset.name}"]
-    message = "; ".join(filter(None, (*said, found.message)))
-    return replace(world.told(found), setup_s=setup_s, driver="python", message=message)

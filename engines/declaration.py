@@ -16,6 +16,12 @@ from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
 from engines.world import CALMEST, ROUNDINGS, Resolution, World, Worlds
 
+Builder = Callable[[Any, Any, float], Any]
+"""``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
+
+IN_EQUAL_STEPS = (Ability.FREE_BASE, Ability.CYLINDER)
+"""What is simulated in equal steps alone."""
+
 
 class Help(enum.Enum):
     """What an adapter does for a preset, besides setting the engine once."""
@@ -111,7 +117,9 @@ class Preset:
         What the library's defaults get wrong; no tuned preset may miss anything.
     stacked : mapping or None
         Settings in place of some of these where bodies rest on others; None where it cannot be used
-        for such a scene but by code of its own (`engines.stacks`).
+        for such a scene.
+    builders : mapping
+        In place of some of the engine's.
     own : mapping
         Of "naive", settings that are not the library's own -> what the library has by itself.
     """
@@ -129,6 +137,7 @@ class Preset:
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
     misses: tuple[Miss, ...] = ()
     stacked: Mapping[str, Any] | None = field(default_factory=dict)
+    builders: Mapping[Ability, Builder] = field(default_factory=dict)
     own: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -141,8 +150,11 @@ class Preset:
             )
 
     def posed(self, scene: Scene) -> Scene:
-        """Return a scene that says where the base moves."""
-        return scene if scene.frame else replace(scene, frame=self.frame)
+        """Return a scene that says where the base moves: one that is free does in the world."""
+        if scene.frame:
+            return scene
+        free = Ability.FREE_BASE in scene.layout.asks
+        return replace(scene, frame="world" if free else self.frame)
 
     def at_rest(self, *misses: Miss) -> "Preset":
         """Return the same on a base at rest, of which no documentation speaks; see `misses`."""
@@ -219,7 +231,7 @@ class Engine:
         What pip is told to install it.
     build : callable
         ``(scene, settings, dt_s) -> World``: builds a scene in the ordinary steps dt_s [s]. Only
-        this may import the library.
+        this, and `builders`, may import the library, and only when called.
     presets : tuple of Preset
         From the library's own to the best there is, for which the engine's plain name stands.
     core : bool
@@ -227,7 +239,11 @@ class Engine:
     frames, geometries : tuple of str
         Those of `FRAMES` and `GEOMETRIES` that it has.
     abilities : tuple of Ability
-        What its adapter can build beyond one body.
+        What `build` can hold beyond one body.
+    builders : mapping
+        What else its adapter can hold -> what builds it, called as `build`: a `World`, of a base
+        that feels what stands on it a `engines.cart.CartWorld`, of a cylinder in space a
+        `engines.space.SpaceWorld`. No row of another scene depends on it.
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
@@ -269,6 +285,7 @@ class Engine:
     frames: tuple[str, ...] = FRAMES
     geometries: tuple[str, ...] = ("box",)
     abilities: tuple[Ability, ...] = ()
+    builders: Mapping[Ability, Builder] = field(default_factory=dict)
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
     scatter: float = 0.0
@@ -330,17 +347,34 @@ class Engine:
         fit = [preset for preset in self.presets if not self.lacks(scene, preset)]
         return fit[-1] if fit else self.best
 
+    @property
+    def holds(self) -> tuple[Ability, ...]:
+        """What its adapter can hold beyond one body."""
+        return (*self.abilities, *self.builders)
+
+    def builder(self, asks: Sequence[Ability], preset: Preset) -> Builder:
+        """Return what builds, with a preset, a scene that asks for some abilities."""
+        others = {**self.builders, **preset.builders}
+        return next((others[it] for it in reversed(asks) if it in others), self.build)
+
     def lacks(self, scene: Scene, preset: Preset) -> str:
         """Say what of a scene a preset of the engine cannot do, or return an empty string."""
         wanted, asks = scene.settings.get("geometry"), scene.layout.asks
         for asked in asks:
-            if asked not in self.abilities:
+            if asked not in self.holds and asked is Ability.CYLINDER and not self.spatial:
+                return f"a cylinder needs space, and {self.title} knows the plane alone"
+            if asked not in self.holds:
                 return f"{self.title} is not built here for {asked.value}"
+        frame = preset.posed(scene).frame
+        if Ability.FREE_BASE in asks and frame == "base":
+            return "a cart moves in the frame 'world', and frame is 'base'"
         if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        if preset.stacked is None and Ability.STACKED in asks:
-            return f"{self.name}:{preset.name} is not built here for {Ability.STACKED.value}"
-        frame = preset.posed(scene).frame
+        unequal = preset.stepping is not Stepping.FIXED
+        for asked in asks:
+            stacked = asked is Ability.STACKED and preset.stacked is None
+            if stacked or (unequal and asked in IN_EQUAL_STEPS):
+                return f"{self.name}:{preset.name} is not built here for {asked.value}"
         if frame not in self.frames:
             return f"{self.title} has no frame {frame!r}"
         if wanted in GEOMETRIES and wanted not in self.geometries:

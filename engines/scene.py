@@ -60,7 +60,7 @@ class Scene:
         Observe until this time [s], at least the motion's own duration. By default the
         observation ends as soon as peak and outcome are decided.
     times : sequence of float, optional
-        Increasing ground times [s] at which the response is sampled.
+        Increasing ground times [s] at which the response is sampled, as long as it is observed.
     time_limit_s : float, optional
         Wall-clock time after which a run is given up.
     max_steps : int, optional

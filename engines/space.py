@@ -1,14 +1,11 @@
 """A cylinder in space, on a plane at rest: what an engine is given of it, and its run.
 
-An engine that holds one has a module `cylinder` in its folder, with a function
-``build(scene, settings, dt_s) -> SpaceWorld``: it is found by its name, so that nothing else knows.
+An engine that holds one says what builds its `SpaceWorld` (`engines.declaration.Engine.builders`).
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
-from importlib.util import find_spec
 from time import perf_counter
 from types import SimpleNamespace
 from typing import Any, ClassVar, NamedTuple, Protocol, cast
@@ -18,16 +15,12 @@ import numpy as np
 from analytic.checks import positive
 from analytic.motion import FloatArray
 from analytic.response import Problem, Reason
-from engines.declaration import Engine, Preset, Stepping
-from engines.layouts import Contact, Layout
+from engines.layouts import BASE, LOWER, Ability, Contact, Layout
 from engines.registry import find
-from engines.run.drive import LOOK_AROUND, NotAvailableError
+from engines.run.drive import LOOK_AROUND, build
 from engines.scene import Scene
 
 Point = tuple[float, float, float]
-
-PLANAR = ("pymunk", "box2d")
-"""Engines that know the plane alone."""
 
 TAKEN = 1e-5
 """To which part the start must read back as it was set, in single precision, too."""
@@ -144,7 +137,8 @@ class SpaceScene:
     @property
     def layout(self) -> Layout:
         """One body that touches the base, and does not rock in a plane."""
-        return Layout(cast(Any, self.bodies), (Contact(0, -1, -1),), 0)
+        touching = (Contact(0, LOWER, BASE),)
+        return Layout(cast(Any, self.bodies), touching, 0, (Ability.CYLINDER,))
 
     def choose(self, settings: Any) -> Any:
         """Return an engine's settings with this scene's own in their place."""
@@ -194,24 +188,6 @@ class Track(NamedTuple):
     preset: str
 
 
-def lacking(engine: Engine, scene: Any, preset: Preset) -> str:
-    """Say what of a cylinder in space a preset of an engine cannot do; or an empty string."""
-    place = place_of(engine)
-    if not place or find_spec(place) is None:
-        if engine.name in PLANAR:
-            return f"a cylinder needs space, and {engine.title} knows the plane alone"
-        return f"{engine.title} is not built here for a cylinder in space"
-    if preset.stepping is Stepping.OWN:
-        return f"{engine.name}:{preset.name} chooses its own steps, and here they are equal"
-    return engine.lacks(scene, preset)
-
-
-def place_of(engine: Engine) -> str:
-    """Return the module in which an engine would build a cylinder; none outside a package."""
-    package = getattr(engine.build, "__module__", "").rpartition(".")[0]
-    return f"{package}.cylinder" if package else ""
-
-
 def roll(name: str, scene: SpaceScene) -> Track:
     """Simulate a cylinder with an engine, in equal steps.
 
@@ -227,18 +203,9 @@ def roll(name: str, scene: SpaceScene) -> Track:
     ValueError
         If the engine is unknown, or a preset or setting is not one of the engine's.
     """
-    began, engine = perf_counter(), find(name)
-    fit = [preset for preset in engine.presets if not lacking(engine, scene, preset)]
-    preset = engine.preset(scene.preset) if scene.preset or not fit else fit[-1]
-    settings = preset.chosen(cast(Any, scene))
-    if words := lacking(engine, scene, preset):
-        raise NotAvailableError(f"not available: {words}")
-    dt_s = preset.ordinary_step_s(cast(Any, scene))
-    try:
-        world = import_module(place_of(engine)).build(scene, settings, dt_s)
-    except ImportError as error:
-        words = f"not available: {error}; pip install '{engine.install}'"
-        raise NotAvailableError(words) from error
+    began, engine, posed = perf_counter(), find(name), cast(Scene, scene)
+    preset = engine.used_for(posed)
+    world, dt_s = cast(Any, build(engine, posed)), preset.ordinary_step_s(posed)
     built = perf_counter()
     try:
         track = _run(world, scene, dt_s, _untaken(world, scene.cylinder))

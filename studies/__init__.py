@@ -49,7 +49,8 @@ def respond(
         Observe until this time [s], not before the motion ends. By default the response is
         followed until its peak is decided, and no longer; a cylinder for five turns.
     times : array, optional
-        Ground times [s] at which `Response.history` is sampled.
+        Ground times [s] at which `Response.history` is sampled. Without a duration, "exact" and the
+        other models go on to the last of them, and who steps as far as is needed to decide.
     **options
         Passed on to the source: `step` of the solvers, any setting of an engine's `Scene`.
 

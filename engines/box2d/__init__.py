@@ -1,6 +1,9 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
 from engines.box2d.build import LIBRARY_STEP_S, Box2DWorld, script
+from engines.box2d.cart import Box2DCart
 from engines.box2d.settings import (
     DOCUMENTED,
     FACTORS,
@@ -10,6 +13,8 @@ from engines.box2d.settings import (
     TUNED,
     Box2DSettings,
 )
+from engines.box2d.stacks import Box2DStacks
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 
@@ -30,7 +35,8 @@ ENGINE = Engine(
     packages=("Box2D",),
     install="rocking[box2d]",
     build=Box2DWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={Ability.FREE_BASE: partial(CartWorld, Box2DCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
@@ -47,7 +53,8 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
-            stacked=None,
+            stacked={"sweeps": 200.0},
+            builders={Ability.STACKED: Box2DStacks},
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},

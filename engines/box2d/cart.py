@@ -49,6 +49,3 @@ class Box2DCart(Box2DWorld):
     def close(self) -> None:
         """Release the engine's memory."""
         self._world = None
-
-
-build = Box2DCart

@@ -6,15 +6,11 @@ Nor does the solver begin with the impulses of the step before: from there it fi
 part, whose friction and load would hold, too.
 """
 
-from typing import Any
-
 from engines.box2d.build import Box2DWorld
 from engines.box2d.settings import Box2DSettings
 from engines.parts.quiet import imported
 from engines.scene import Scene
 from engines.world import Grip, Step
-
-SETTINGS: dict[str, Any] = {"sweeps": 200.0}
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""
@@ -46,6 +42,3 @@ class Box2DStacks(Box2DWorld):
             touches = strikes or step.grip is Grip.REST or step.side in (side, 0.0)
             shape.radius = max(self._skin + (reach if touches else free), 0.0)
         super().step(step._replace(side=0.0) if strikes else step)
-
-
-build = Box2DStacks

@@ -1,6 +1,11 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.dart.build import DartWorld, script
+from engines.dart.cart import DartCart
+from engines.dart.cylinder import DartCylinder
 from engines.dart.settings import (
     DOCUMENTED,
     FACTORS,
@@ -10,6 +15,7 @@ from engines.dart.settings import (
     TUNED,
     DartSettings,
 )
+from engines.dart.stacks import DartStacks
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
 
@@ -29,7 +35,11 @@ ENGINE = Engine(
     packages=("dartpy",),
     install="rocking[dart]",
     build=DartWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, DartCart),
+        Ability.CYLINDER: DartCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -43,7 +53,8 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
-            stacked=None,
+            stacked={"margin": 30.0, "unit": 1e7},
+            builders={Ability.STACKED: DartStacks},
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},

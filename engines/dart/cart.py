@@ -44,6 +44,3 @@ class DartCart(DartWorld):
         speed = self._block.getLinearVelocity(np.zeros(3)).tolist()[0]
         place, own = self._rail.getPosition(0), self._rail.getVelocity(0)
         return Seen(pose, speed / unit, place / unit, own / unit)
-
-
-build = DartCart

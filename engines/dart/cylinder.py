@@ -11,12 +11,7 @@ from engines.dart.settings import DartSettings
 from engines.parts.quiet import imported
 from engines.parts.shapes import floor_half_size
 from engines.parts.units import counted
-from engines.space import SpaceScene, turn_vector
-
-
-def build(scene: SpaceScene, settings: DartSettings, dt_s: float) -> "DartCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return DartCylinder(scene, settings, dt_s)
+from engines.space import turn_vector
 
 
 class DartCylinder:

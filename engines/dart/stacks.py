@@ -6,15 +6,12 @@ the steps of an impact, and are drawn in before it, so that none comes early.
 """
 
 import math
-from typing import Any
 
 from engines.dart.build import DartWorld, numbers, touching
 from engines.dart.settings import DartSettings
 from engines.parts.quiet import imported
 from engines.scene import Scene
 from engines.world import Grip, Step
-
-SETTINGS: dict[str, Any] = {"margin": 30.0, "unit": 1e7}
 
 FREE = {Grip.APPROACH: -1.0, Grip.STRIKE: 1.0}
 """By how many margins free corners are lowered in a step."""
@@ -60,6 +57,3 @@ class DartStacks(DartWorld):
         for node, (x, y, z) in self._corners:
             part = 1.0 if -pivot * x * z >= 0.0 else self._free
             node.setRelativeTranslation((x, y, z + math.copysign(1.0, z) * part * self._margin))
-
-
-build = DartStacks

@@ -1,7 +1,12 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Miss, Preset, Stepping
 from engines.drake.build import DrakeWorld, script
+from engines.drake.cart import DrakeCart
+from engines.drake.cylinder import DrakeCylinder
 from engines.drake.settings import (
     CONTROLLED,
     DOCUMENTED,
@@ -29,7 +34,11 @@ ENGINE = Engine(
     packages=("drake",),
     install="rocking[drake]",
     build=DrakeWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, DrakeCart),
+        Ability.CYLINDER: DrakeCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.PEAK),

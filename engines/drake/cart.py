@@ -49,6 +49,3 @@ class DrakeCart(DrakeWorld):
         speed = self._plant.GetVelocities(self._context, self._blocks)[1 if self._s.planar else 3]
         place = self._rail.get_translation(self._context)
         return Seen(pose, float(speed), place, self._rail.get_translation_rate(self._context))
-
-
-build = DrakeCart

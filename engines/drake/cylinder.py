@@ -5,12 +5,6 @@ from typing import Any
 from engines.drake.build import GIVEN_UP, library, one_line, values
 from engines.drake.settings import CENIC, DrakeSettings
 from engines.parts.quiet import imported
-from engines.space import SpaceScene
-
-
-def build(scene: SpaceScene, settings: DrakeSettings, dt_s: float) -> "DrakeCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return DrakeCylinder(scene, settings, dt_s)
 
 
 class DrakeCylinder:

@@ -1,8 +1,13 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
+from engines.mujoco.cart import MujocoCart
+from engines.mujoco.cylinder import MujocoCylinder
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
     DEFAULT_CONTACT_S,
@@ -34,7 +39,11 @@ ENGINE = Engine(
     packages=("mujoco",),
     install="rocking",
     build=world_of,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, MujocoCart),
+        Ability.CYLINDER: MujocoCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(),

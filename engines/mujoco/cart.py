@@ -70,6 +70,3 @@ class MujocoCart:
     def close(self) -> None:
         """Give warnings back to the library."""
         self._mj.set_mju_user_warning(None)
-
-
-build = MujocoCart

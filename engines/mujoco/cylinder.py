@@ -2,17 +2,13 @@
 
 from dataclasses import replace
 from importlib import import_module
-from typing import Any
+from typing import Any, cast
 from xml.etree import ElementTree
 
 from engines.mujoco.model import stepped_xml
 from engines.mujoco.settings import MujocoSettings, kept
+from engines.scene import Scene
 from engines.space import SpaceScene, rotated
-
-
-def build(scene: Any, settings: MujocoSettings, dt_s: float) -> "MujocoCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return MujocoCylinder(scene, kept(scene, settings), dt_s)
 
 
 class MujocoCylinder:
@@ -20,8 +16,9 @@ class MujocoCylinder:
 
     def __init__(self, scene: SpaceScene, settings: MujocoSettings, dt_s: float) -> None:
         self._mj, it = import_module("mujoco"), scene.cylinder
-        boxed: Any = scene, replace(settings, geometry="box", planar=False), dt_s
-        root = ElementTree.fromstring(stepped_xml(*boxed))
+        posed = cast(Scene, scene)
+        s = replace(kept(posed, settings), geometry="box", planar=False)
+        root = ElementTree.fromstring(stepped_xml(posed, s, dt_s))
         for geom in root.iter("geom"):
             if geom.get("name") == "box":
                 geom.set("type", "cylinder")

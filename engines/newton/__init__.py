@@ -1,8 +1,11 @@
 """Newton: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Precision, Preset
+from engines.layouts import Ability
 from engines.newton.build import NewtonWorld, script
+from engines.newton.cylinder import NewtonCylinder
 from engines.newton.settings import DOCUMENTED, FACTORS, RECOMMENDED, RULES, TUNED, NewtonSettings
+from engines.newton.stacks import NewtonStacks
 
 NAIVE = Preset(
     name="naive",
@@ -19,6 +22,11 @@ ENGINE = Engine(
     packages=("newton", "warp-lang"),
     install="rocking[newton]",
     build=NewtonWorld,
+    builders={
+        Ability.SEVERAL: NewtonStacks,
+        Ability.STACKED: NewtonStacks,
+        Ability.CYLINDER: NewtonCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -26,6 +34,7 @@ ENGINE = Engine(
         Preset(name="fixed", settings=TUNED, step=1e-3),
     ),
     geometries=("box", "corners"),
+    spatial=True,
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     script=script,

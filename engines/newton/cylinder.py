@@ -7,15 +7,9 @@ from engines.newton.models import build as build_recorded
 from engines.newton.models import numbers, values
 from engines.newton.settings import NewtonSettings
 from engines.parts.quiet import imported, silence
-from engines.space import SpaceScene
 
 MOST_CONTACTS = 16
 """Room for so many contacts: those of a face that lies down."""
-
-
-def build(scene: SpaceScene, settings: NewtonSettings, dt_s: float) -> "NewtonCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return NewtonCylinder(scene, settings, dt_s)
 
 
 class NewtonCylinder:

@@ -130,6 +130,7 @@ def _with(solver: str, **settings: Any) -> Engine:
         name=f"newton-{solver}",
         title=f"Newton, {CLASSES[solver]}",
         build=OtherWorld,
+        builders={},
         presets=(Preset(name="fixed", settings=chosen, step=1e-3),),
         script=None,
         factors=(),

@@ -15,8 +15,6 @@ from engines.parts.shapes import half_size, touching_spheres
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step
 
-SETTINGS: dict[str, Any] = {}
-
 MOST_CONTACTS = 16
 """Room for so many contacts where two faces meet; by its own estimate the library takes more."""
 
@@ -161,6 +159,3 @@ class NewtonStacks:
             pairs[f"mass {number}"] = (body.mass, float(mass[number]))
             pairs[f"moment {number}"] = (body.inertia[1], float(inertia[number, 1, 1]))
         return disagreement(pairs, Precision.SINGLE.value)
-
-
-build = NewtonStacks

@@ -1,8 +1,13 @@
 """PhysX: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 from engines.physx.build import PhysxWorld, script
+from engines.physx.cart import PhysxCart
+from engines.physx.cylinder import PhysxCylinder
 from engines.physx.settings import (
     DOCUMENTED,
     FACTORS,
@@ -30,7 +35,11 @@ ENGINE = Engine(
     packages=("sapien",),
     install="rocking[physx]",
     build=PhysxWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, PhysxCart),
+        Ability.CYLINDER: PhysxCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR),

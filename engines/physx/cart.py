@@ -59,6 +59,3 @@ class PhysxCart(PhysxWorld):
         entity.add_component(link)
         entity.pose = self._sapien.Pose(place)
         self._stage.add_entity(entity)
-
-
-build = PhysxCart

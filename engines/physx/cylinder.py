@@ -12,15 +12,9 @@ from engines.parts.units import counted
 from engines.physx.build import BASE_DEPTH, values
 from engines.physx.build import build as build_base
 from engines.physx.settings import PhysxSettings
-from engines.space import SpaceScene
 
 AXIS_UP = (math.sqrt(0.5), 0.0, -math.sqrt(0.5), 0.0)
 """The turn from the shape's axis to the cylinder's."""
-
-
-def build(scene: SpaceScene, settings: PhysxSettings, dt_s: float) -> "PhysxCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return PhysxCylinder(scene, settings, dt_s)
 
 
 class PhysxCylinder:

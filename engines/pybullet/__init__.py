@@ -1,8 +1,13 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Preset, Stepping
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
+from engines.pybullet.cart import BulletCart
+from engines.pybullet.cylinder import BulletCylinder
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
     DOCUMENTED,
@@ -34,7 +39,11 @@ ENGINE = Engine(
     packages=("pybullet",),
     install="rocking[pybullet]",
     build=BulletWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, BulletCart),
+        Ability.CYLINDER: BulletCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -44,7 +53,9 @@ ENGINE = Engine(
             name="landing",
             settings=LANDING,
             stepping=Stepping.LANDING,
-            stacked=None,
+            # with fewer, the impulses of an impact have not settled among all contacts when a step
+            # ends: some bodies meet a step late, and the peak is up to 22 % too large
+            stacked={**STACKED, "iterations": 3000},
             helped_by={
                 Help.STEPS: None,
                 Help.PHASES: {"by_phase": False},

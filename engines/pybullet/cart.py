@@ -63,6 +63,3 @@ class BulletCart(BulletWorld):
         speed = p.getBaseVelocity(self._bodies[0], **here)[0][0]
         cart, cart_speed, *_ = p.getJointState(self._cart, RAIL, **here)
         return Seen(pose, speed, cart, cart_speed)
-
-
-build = BulletCart

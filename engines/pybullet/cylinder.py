@@ -6,12 +6,6 @@ from engines.parts.quiet import imported
 from engines.pybullet.calls import Call, Constant, base_call, body_call, engine_call
 from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.settings import BulletSettings
-from engines.space import SpaceScene
-
-
-def build(scene: SpaceScene, settings: BulletSettings, dt_s: float) -> "BulletCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return BulletCylinder(scene, settings, dt_s)
 
 
 class BulletCylinder:

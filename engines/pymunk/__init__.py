@@ -1,8 +1,12 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Miss, Preset, Stepping
 from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
+from engines.pymunk.cart import PymunkCart
 from engines.pymunk.settings import (
     DOCUMENTED,
     FACTORS,
@@ -30,7 +34,8 @@ ENGINE = Engine(
     packages=("pymunk",),
     install="rocking[pymunk]",
     build=PymunkWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={Ability.FREE_BASE: partial(CartWorld, PymunkCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD),

@@ -40,6 +40,3 @@ class PymunkCart(PymunkWorld):
         speed, own = self._bodies[0].velocity[0], cart.velocity[0]
         pose[1] -= cart.position[1] / unit
         return Seen(pose, speed / unit, cart.position[0] / unit, own / unit)
-
-
-build = PymunkCart

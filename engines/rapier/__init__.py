@@ -1,8 +1,13 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
+from functools import partial
+
+from engines.cart import CartWorld
 from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
+from engines.rapier.cart import RapierCart
+from engines.rapier.cylinder import RapierCylinder
 from engines.rapier.settings import (
     DOCUMENTED,
     FACTORS,
@@ -30,7 +35,11 @@ ENGINE = Engine(
     packages=("rapier3d",),
     install="rocking[rapier]",
     build=RapierWorld,
-    abilities=tuple(Ability),
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    builders={
+        Ability.FREE_BASE: partial(CartWorld, RapierCart),
+        Ability.CYLINDER: RapierCylinder,
+    },
     presets=(
         NAIVE,
         NAIVE.at_rest(Miss.MIRROR, Miss.RECORD, Miss.SLEEP),

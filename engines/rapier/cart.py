@@ -39,6 +39,3 @@ class RapierCart(RapierWorld):
         (pose,), cart, unit = self.state().tolist(), self._base, self._unit
         place, own = cart.translation.x, cart.linvel.x
         return Seen(pose, self._body.linvel.x / unit, place / unit, own / unit)
-
-
-build = RapierCart

@@ -11,13 +11,7 @@ from engines.parts.units import counted
 from engines.rapier.build import ALOFT, values
 from engines.rapier.build import build as build_base
 from engines.rapier.settings import RapierSettings
-from engines.space import SpaceScene, turn_vector
-
-
-def build(scene: SpaceScene, settings: RapierSettings, dt_s: float) -> "RapierCylinder":
-    """Build a cylinder; see `engines.space`."""
-    return RapierCylinder(scene, settings, dt_s)
-
+from engines.space import turn_vector
 
 FAR = 20.0
 """How many heights below the plane the box is that blocks stand on."""

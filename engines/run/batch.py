@@ -37,6 +37,8 @@ def alike(engine: Engine, scene: Scene) -> Hashable:
     watched = scene.time_limit_s is not None or not scene.compiled
     if preset.stepping is not Stepping.FIXED or says or watched or engine.lacks(scene, preset):
         return None
+    if engine.builder(scene.layout.asks, preset) is not engine.build:
+        return None
     return preset.name, repr(preset.chosen(scene)), scene.frame, scene.layout.contacts
 
 

@@ -73,7 +73,7 @@ def run(engine: str | Engine, scene: Scene) -> Response:
         driver = driver_of(world, scene)
     finally:
         world.close()
-    said = [] if scene.preset or preset is asked.best else [f"as {engine}:{preset.name}"]
+    said = [] if scene.preset or preset is asked.best else [f"as {asked.name}:{preset.name}"]
     message = "; ".join(filter(None, (*said, response.message)))
     return replace(response, setup_s=built - began, driver=driver, message=message)
 
@@ -99,10 +99,12 @@ def build(engine: Engine, scene: Scene) -> World:
         raise NotAvailableError(f"not available: {lacking}")
     settings, scene = preset.chosen(scene), preset.posed(scene)
     try:
-        return engine.build(scene, settings, preset.ordinary_step_s(scene))
+        build_it = engine.builder(scene.layout.asks, preset)
+        world: World = build_it(scene, settings, preset.ordinary_step_s(scene))
     except ImportError as error:
         words = f"not available: {error}; pip install '{engine.install}'"
         raise NotAvailableError(words) from error
+    return world
 
 
 def simulate_world(
@@ -127,6 +129,8 @@ def simulate_world(
     Response
         A failed one with its reason where the world fails or the limits of the scene are reached.
     """
+    watched: Callable[[Scene], Scene] | None = getattr(world, "observed", None)
+    scene = watched(scene) if watched else scene
     look = Look(scene, dt_s, stepping, world.moment, resolution)
     go = driven(look, world) if scene.compiled else None
     go = go or Walk(look, world, stepping).go
@@ -145,8 +149,11 @@ def simulate_world(
     problem = _fault(world) or look.problem or problem
     if problem:
         reason, message = problem
-        return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
-    return _with_lag(look.response(steps=steps, wall_s=wall_s), world)
+        found = Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
+    else:
+        found = _with_lag(look.response(steps=steps, wall_s=wall_s), world)
+    told: Callable[[Response], Response] | None = getattr(world, "told", None)
+    return told(found) if told else found
 
 
 def _with_lag(response: Response, world: World) -> Response:

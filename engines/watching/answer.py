@@ -72,10 +72,10 @@ def response_of(watch: Watch, events: FloatArray, history: History | None) -> Re
 
 
 def _remark(watch: Watch) -> str:
-    """Say what a reader should know of a usable response: how deep the block was in its base."""
-    if watch.sink <= 2.0 * watch.half_width * SINK_WIDTHS:
+    """Say what a reader should know of a usable response: how deep the block stood in its base."""
+    if watch.sunk <= 2.0 * watch.half_width * SINK_WIDTHS:
         return ""
-    return f"the block sank {watch.sink:.3g} m into the base"
+    return f"the block sank {watch.sunk:.3g} m into the base"
 
 
 def together(responses: Sequence[Response], observables: Mapping[str, float]) -> Response:

@@ -36,6 +36,8 @@ def sample(rows: NDArray[np.float64], times: Sequence[float]) -> History:
 
 def _bends(rate_s: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.float64]:
     """Angular acceleration [rad/s2] of each step, from its calmer neighbour."""
+    if len(rate) == 1:
+        return np.zeros(1)
     between = np.diff(rate) / np.diff(rate_s)
     before = np.concatenate((between[:1], between))
     after = np.concatenate((between, between[-1:]))

@@ -89,6 +89,8 @@ def see(
         shifted = pose.x - watch.home - watch.half_height * sine - inward
         watch.slide = max(watch.slide, abs(shifted))
     check(watch, level - reach, pose.z)
+    if abs(theta) <= LYING_PART * LYING:
+        watch.sunk = max(watch.sunk, reach - level)
     if watch.keeps_rows:
         put(rows, watch.rows, row)
         watch.rows += 1

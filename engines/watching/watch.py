@@ -104,8 +104,8 @@ class Watch(State):
         turned back after the motion.
     peak : float
         Largest rotation [rad].
-    slide, sink, highest : float
-        Of the pivot [m].
+    slide, sink, sunk, highest : float
+        Of the pivot [m]; sunk is how deep it was before the block lay.
     give, hop : float
         How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
     low_since : float
@@ -157,6 +157,7 @@ class Watch(State):
     peak: float
     slide: float
     sink: float
+    sunk: float
     highest: float
     give: float
     hop: float

@@ -62,6 +62,15 @@ class Module:
     links: dict[str, Name] = field(default_factory=dict)
 
 
+def names_of(something: Callable[..., Any]) -> set[Name]:
+    """Return the definition that a function stands in, and those of functions that it was given."""
+    given: set[Name] = set()
+    while isinstance(something, partial):
+        given = given.union(*(names_of(value) for value in something.args if callable(value)))
+        something = something.func
+    return {name_of(something), *given}
+
+
 def name_of(something: Callable[..., Any]) -> Name:
     """Return the definition that a function, a class or a part of either stands in."""
     while isinstance(something, partial):

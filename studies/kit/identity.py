@@ -11,19 +11,18 @@ import hashlib
 import json
 import platform
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from analytic.cylinder import RollingCylinder
 from engines.declaration import BatchEngine
-from engines.space import place_of
-from studies.kit.fingerprint import ROOT, Name, Reached, name_of, reached
+from engines.layouts import Ability
+from studies.kit.fingerprint import ROOT, Name, Reached, name_of, names_of, reached
 from studies.kit.jobs import Job, plain
 from studies.kit.journal import JOURNAL, FolderError, Kept, Maker, Row, named
 from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
-from studies.sources.registry import Source
+from studies.sources.registry import Source, asks_of
 
 FOUND_BY_NAME: frozenset[Name] = frozenset(
     {
@@ -39,10 +38,11 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
 
 ASIDE = frozenset(
     {"core", "factors", "install", "most_worlds", "own_step", "rules", "script", "title"}
+    | {"abilities", "build", "builders"}
 )
-"""What an engine declares for readers, and for what is no row of a journal."""
+"""What an engine declares for readers, for what is no row of a journal, and by what is asked."""
 
-OF_A_PRESET = ("settings", "stepping", "step", "step_s", "frame", "stacked")
+OF_A_PRESET = ("settings", "stepping", "step", "step_s", "frame")
 """What of a preset makes a row."""
 
 SHOWN = 3
@@ -65,17 +65,17 @@ class Makers:
     ) -> None:
         self._shared = {name_of(ask), name_of(reduce)}
         self._root = root
-        self._known: dict[tuple[str, frozenset[Name]], Maker] = {}
+        self._known: dict[Any, Maker] = {}
 
     def of(self, job: Job) -> Maker:
         """Return what makes the row of a job."""
-        asked = job.source, self._kinds(job)
+        asked = job.source, self._kinds(job), asks_of(job.block)
         if asked not in self._known:
             source = job.asked
             packages = (*NUMERICAL_PACKAGES, *(source.declared.packages if source.engine else ()))
             self._known[asked] = {
                 **self.reached(job).digests(),
-                **_declared(source),
+                **_declared(source, asks_of(job.block)),
                 "Python": ".".join(platform.python_version_tuple()[:2]),
                 **{name: version_of(name) for name in packages},
             }
@@ -87,12 +87,11 @@ class Makers:
         names = {*self._shared, *self._kinds(job), name_of(source.call)}
         if source.engine:
             engine, preset = source.declared, source.used
-            parts = (type(engine), type(preset), type(preset.settings), engine.build, engine.spring)
-            names |= {name_of(part) for part in parts if part}
+            builder = engine.builder(asks_of(job.block), preset)
+            parts = (type(engine), type(preset), type(preset.settings), builder, engine.spring)
+            names = names.union(*(names_of(part) for part in parts if part))
             if isinstance(engine, BatchEngine):
-                names |= {name_of(engine.batch), ("engines.run.batch", "run_together")}
-            if isinstance(job.block, RollingCylinder):  # whose builder is found by its name
-                names.add((place_of(engine), "build"))
+                names.add(("engines.run.batch", "run_together"))
         return reached(names, self._root, cut=FOUND_BY_NAME)
 
     def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:
@@ -117,14 +116,17 @@ def _data(value: Any) -> bool:
     return is_dataclass(value) and not isinstance(value, type)
 
 
-def _declared(source: Source) -> dict[str, str]:
-    """Return what of an engine's declaration its rows depend on, with one preset."""
+def _declared(source: Source, asks: Sequence[Ability]) -> dict[str, str]:
+    """Return what of an engine's declaration rows depend on that ask for some abilities."""
     if not source.engine:
         return {}
     engine, used = source.declared, source.used
     values = {
         **{item.name: getattr(engine, item.name) for item in fields(engine)},
         "presets": {name: getattr(used, name) for name in OF_A_PRESET},
+        "builder": engine.builder(asks, used),
+        "held": [ability.name for ability in asks if ability in engine.holds],
+        "stacked": used.stacked if Ability.STACKED in asks else None,
     }
     kept = {name: value for name, value in values.items() if name not in ASIDE}
     text = json.dumps(kept, default=_plain, sort_keys=True)
@@ -134,7 +136,7 @@ def _declared(source: Source) -> dict[str, str]:
 def _plain(value: Any) -> Any:
     if isinstance(value, enum.Enum):
         return str(value)
-    return name_of(value) if callable(value) else plain(value)
+    return sorted(names_of(value)) if callable(value) else plain(value)
 
 
 def changed(then: Maker, now: Maker) -> list[str]:

@@ -19,7 +19,7 @@ from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.paper import free_rocking_window
 from studies.kit.provenance import record_of
-from studies.sources.registry import Effort, resolve
+from studies.sources.registry import Effort, asks_of, resolve
 
 FLAGS = ("start", "friction", "step", "accuracy")
 """Options of a source that the command line has, too."""
@@ -70,9 +70,8 @@ def commands(
     watched = "" if usual else f" --duration {duration}"
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
-    # what an engine holds by code of its own has no script
-    answered = outcome in ("rocked", "overturned", "slid") and not resolve(source).about(block).held
-    if not (usual and answered and written_out(source)):
+    answered = outcome in ("rocked", "overturned", "slid")
+    if not (usual and answered and written_out(source) and _built_by_its_script(source, block)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"
 
@@ -81,6 +80,12 @@ def written_out(source: str) -> bool:
     """Say whether `rocking export` writes a source out: an engine with equal steps and a script."""
     asked = resolve(source)
     return bool(asked.engine and asked.declared.script) and not asked.accurate
+
+
+def _built_by_its_script(source: str, block: System) -> bool:
+    """Say whether what builds a block in an engine is what its script quotes."""
+    asked = resolve(source)
+    return asked.declared.builder(asks_of(block), asked.used) is asked.declared.build
 
 
 def asked_again(

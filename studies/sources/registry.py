@@ -4,23 +4,20 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple, cast
 
 from analytic import MODELS, integrate, simulate
 from analytic.cart import CartBlock
 from analytic.cylinder import RollingCylinder
-from analytic.frame import RockingFrame
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
-from engines.cart import carrying, ride
 from engines.declaration import Engine, Preset, Stepping
-from engines.layouts import System
+from engines.layouts import Ability, System, layout_of
 from engines.parts.compiled import interpreted_first
 from engines.registry import VARIANTS
 from engines.scene import Scene, one_of
-from engines.stacks import stacking
 from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
@@ -31,6 +28,28 @@ none of them crashes; an engine may."""
 
 NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset", "times"})
 """What is asked and who, beside which an option is a question of how."""
+
+
+class Apart(NamedTuple):
+    """A kind of system that is asked about by code of its own.
+
+    `call` puts it to an engine, or to the exact solution, and `pose` makes the scene, which asks an
+    engine for `asks`.
+    """
+
+    call: Callable[..., Response]
+    pose: Callable[..., Any]
+    asks: tuple[Ability, ...]
+
+
+APART: dict[type, Apart] = {RollingCylinder: Apart(rolled, space_scene, (Ability.CYLINDER,))}
+
+NOT_SOLVED = {
+    RollingCylinder: "solves what rocks, and this cylinder rolls",
+    SlidingBlock: "solves what rocks, and this block slides",
+    CartBlock: "solves a base that moves as it is told, and no cart",
+}
+"""Kind of a system -> why only the exact solution, and engines, answer about it."""
 
 
 class UnknownSourceError(ValueError):
@@ -44,8 +63,7 @@ class Source:
     It can be sent to another process or machine. `engine` and `preset` are names, the preset by
     default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
     ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
-    that by which it was asked for. `held` is how its engine is taken where what it is
-    asked about is code of its own.
+    that by which it was asked for.
     """
 
     kind: Kind
@@ -55,25 +73,14 @@ class Source:
     stepping: bool = False
     model: str = "exact"
     name: str = ""
-    held: Callable[[Engine], Engine] | None = None
 
-    def about(self, block: System | CartBlock | RollingCylinder) -> "Source":
-        """Return the source as it answers about a system: some are code of their own.
-
-        Of a cart, and of a stack where it needs that, an engine's is, of a cylinder everyone's.
-        """
-        if isinstance(block, RollingCylinder):
-            preset = self.preset if ":" in self.name else None
-            return replace(self, call=partial(rolled, engine=self.engine, preset=preset))
-        if not self.engine or self.held:
+    def about(self, block: System | RollingCylinder) -> "Source":
+        """Return the source as it answers about a system: about some by code of its own."""
+        apart = APART.get(type(block))
+        if apart is None:
             return self
-        given: Any = self.call
-        if isinstance(block, CartBlock):
-            return replace(self, call=partial(run_on_cart, **given.keywords), held=carrying)
-        held, named = partial(stacking, preset=self.preset), {"preset": self.preset}
-        if not isinstance(block, RockingFrame) or held(self.declared) is self.declared:
-            return self
-        return replace(self, call=partial(run_stacked, **given.keywords | named), held=held)
+        preset = self.preset if ":" in self.name else None
+        return replace(self, call=partial(apart.call, engine=self.engine, preset=preset))
 
     def check(
         self,
@@ -91,21 +98,17 @@ class Source:
         TypeError, ValueError
             If an option is not one of its own, or a value is not allowed.
         """
-        if isinstance(block, RollingCylinder):
-            if not self.engine and self.name != "exact":
-                raise ValueError(f"{self.name} solves what rocks, and this cylinder rolls")
-            scene = space_scene(block, motion, duration=duration, **options)
+        if type(block) in NOT_SOLVED and not self.engine and self.name != "exact":
+            raise ValueError(f"{self.name} {NOT_SOLVED[type(block)]}")
+        if apart := APART.get(type(block)):
+            scene = apart.pose(block, motion, duration=duration, **options)
             if self.engine:
-                scene.choose(self.used.settings)
+                self.used.chosen(scene)
             return
-        if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
-            raise ValueError(f"{self.name} solves what rocks, and this block slides")
-        if isinstance(block, CartBlock) and not self.engine and self.name != "exact":
-            raise ValueError(f"{self.name} solves a base that moves as it is told, and no cart")
         taken = inspect.signature(self.call).parameters
-        if getattr(self.call, "func", None) in (run_engine, run_on_cart, run_stacked):
+        if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
-            self.used.chosen(scene_of(block, motion, self.preset, **asked))
+            self.used.chosen(scene_of(cast(System, block), motion, self.preset, **asked))
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
             for name in options:
                 one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
@@ -113,8 +116,7 @@ class Source:
     @property
     def declared(self) -> Engine:
         """What the engine says of itself; KeyError for other sources."""
-        engine = ENGINES[self.engine]
-        return self.held(engine) if self.held else engine
+        return ENGINES[self.engine]
 
     @property
     def used(self) -> Preset:
@@ -132,6 +134,12 @@ class Source:
         return bool(self.engine) and self.used.stepping is not Stepping.FIXED
 
 
+def asks_of(block: System | RollingCylinder) -> tuple[Ability, ...]:
+    """Return what an engine must be able to do for a system, beyond one body."""
+    apart = APART.get(type(block))
+    return apart.asks if apart else layout_of(block, 1.0, None, (0.0, 0.0)).asks
+
+
 def run_engine(
     block: System,
     motion: Motion,
@@ -147,25 +155,6 @@ def run_engine(
 
     scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
     return interpreted_first(partial(run, engine, scene))
-
-
-def run_on_cart(
-    block: CartBlock, motion: Motion, *, engine: str, preset: str | None, **options: Any
-) -> Response:
-    """Let an engine run a block on a cart; as `run_engine`."""
-    scene = scene_of(block, motion, preset, **options)
-    return interpreted_first(partial(ride, engine, scene))
-
-
-def run_stacked(
-    block: RockingFrame, motion: Motion, *, engine: str, preset: str, **options: Any
-) -> Response:
-    """Let an engine run what rests on others by code of its own; as `run_engine`."""
-    from engines.run.drive import run
-
-    declared = stacking(ENGINES[engine], preset)
-    scene = scene_of(block, motion, preset, **options)
-    return interpreted_first(partial(run, declared, scene))
 
 
 def scene_of(

@@ -183,11 +183,26 @@ def test_no_motion_and_no_start_is_rest():
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_motion_without_length_is_sampled_at_its_start(model):
-    response = simulate(BLOCK, Still(), model, start=(-0.1, 0.2), times=[0.0, 0.0, 1.0])
-    assert response.history.time.tolist() == [0.0, 0.0]
-    assert response.history.theta.tolist() == [-0.1, -0.1]
-    assert response.history.velocity.tolist() == [0.2, 0.2]
+def test_a_motion_without_length_is_sampled_from_its_start_to_the_last_of_the_times(model):
+    asked = {"start": (-0.1, 0.2), "times": [0.0, 0.0, 1.0]}
+    response = simulate(BLOCK, Still(), model, **asked)
+    followed = simulate(BLOCK, Still(), model, **asked, duration=1.0)
+    assert response.history.time.tolist() == [0.0, 0.0, 1.0]
+    assert response.history.theta.tolist() == followed.history.theta.tolist()
+    assert response.history.theta.tolist()[:2] == [-0.1, -0.1]
+    assert response.history.velocity.tolist()[:2] == [0.2, 0.2]
+    assert response.impacts == followed.impacts != ()
+    only = simulate(BLOCK, Still(), model, **asked | {"times": [0.0]})
+    assert only.history.theta.tolist() == [-0.1]
+    assert only.peak_ratio == pytest.approx(response.peak_ratio, rel=1e-12)
+
+
+def test_samples_that_end_before_the_motion_follow_it_no_less():
+    shaken = pulse(1.2, 1.5, 2)
+    early, none = (simulate(BLOCK, shaken, times=times) for times in ([0.0, 0.1], None))
+    assert (early.peak_ratio, early.impacts) == (none.peak_ratio, none.impacts)
+    with pytest.raises(ValueError, match="must be a list of finite"):
+        simulate(BLOCK, shaken, times=[0.0, math.inf])
 
 
 def test_a_jump_beyond_the_onset_lifts_at_once():

@@ -219,3 +219,16 @@ def test_a_block_at_rest_asks_nothing_of_a_pivot():
     cart = CartBlock(width=0.5, height=1.5, mass_ratio=0.3)
     needs = cart_demands(cart, SinePulse(amplitude=1.0, omega=6.0), duration=2.0)
     assert np.isnan(needs.friction) and np.isnan(needs.normal)
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0), (0.05, -0.1)])
+@pytest.mark.parametrize("stiffness", [0.0, 20.0])
+def test_a_cart_that_nothing_shakes_is_sampled_from_its_start(start, stiffness):
+    cart = CartBlock(width=0.5, height=1.5, mass_ratio=0.3, stiffness=stiffness)
+    first = simulate(cart, Still(), start=start, times=[0.0]).history
+    more = simulate(cart, Still(), start=start, times=[0.0, 0.0, 0.3], duration=0.3).history
+    assert first.time.tolist() == [0.0] and more.time.tolist() == [0.0, 0.0, 0.3]
+    assert first.theta.tolist() == [start[0]] == [more.theta[0]] == [more.theta[1]]
+    assert first.velocity.tolist() == [start[1]] == [more.velocity[0]]
+    assert first.base.tolist() == [[0.0], [0.0]]
+    assert (more.theta[2] != start[0]) == (start != (0.0, 0.0))

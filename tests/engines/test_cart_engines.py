@@ -1,5 +1,8 @@
 """A base that feels the block: every engine that holds a cart, and why each other does not."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 import pytest
 from uses import HERE
@@ -7,21 +10,27 @@ from uses import HERE
 from analytic import CartBlock, RigidBlock, SinePulse, Still, simulate
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene
-from engines.cart import FREE_BASE, carrying, ride
+from engines.cart import CartWorld, Seen, cart_mass
 from engines.declaration import Precision, Stepping
+from engines.layouts import Ability
 from engines.registry import OWN
 from engines.run.drive import run
+from engines.undeclared import undeclared
+from engines.world import Moment
+from studies.kit.identity import Makers
+from studies.kit.jobs import Job, ask, summary
+from studies.sources.registry import Source
 
 SIZE = {"width": 0.5, "height": 1.5}
 PULSE = SinePulse.in_g(0.6, omega=20.0, half_cycles=2)
-CARRIERS = [name for name in HERE if FREE_BASE in carrying(HERE[name]).abilities]
+CARRIERS = [name for name in HERE if Ability.FREE_BASE in HERE[name].holds]
 every_carrier = pytest.mark.parametrize("engine", CARRIERS)
 LACKS = "is not built here for a base that feels what stands on it"
 
 
 def on_cart(engine, mass_ratio, motion=PULSE, preset="fixed", stiffness=0.0, **options):
     cart = CartBlock(**SIZE, mass_ratio=mass_ratio, stiffness=stiffness)
-    return ride(engine, Scene(system=cart, motion=motion, preset=preset, **options))
+    return run(engine, Scene(system=cart, motion=motion, preset=preset, **options))
 
 
 def is_double(engine):
@@ -30,7 +39,7 @@ def is_double(engine):
 
 def test_who_carries():
     """All of the project's own but those whose steps are recorded with a base that is moved."""
-    without = {name for name in OWN if FREE_BASE not in carrying(ENGINES[name]).abilities}
+    without = {name for name in OWN if Ability.FREE_BASE not in ENGINES[name].holds}
     assert without == {"newton", "warp", "mjx"}
 
 
@@ -41,9 +50,55 @@ def test_what_cannot_be_is_said(engine):
             found = on_cart(engine, 0.5, preset=preset.name)
             assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
             assert found.message.startswith("not available: ") and found.message.endswith(LACKS)
-    # nor does it pass for a block on a base that moves as it is told
-    block = run(engine, Scene(system=CartBlock(**SIZE, mass_ratio=0.5), motion=PULSE))
-    assert block.reason is Reason.UNAVAILABLE and block.message.endswith(LACKS)
+
+
+class Glider:
+    """A block that stands still on a cart of its scene's mass."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene, settings, dt_s):
+        self.whole, self.place, self.speed = scene.bodies[0].mass + cart_mass(scene), 0.0, 0.0
+
+    def push(self, step, force):
+        self.speed += force / self.whole * step.dt_s
+        self.place += self.speed * step.dt_s
+
+    def seen(self):
+        return Seen((self.place, 0.75, 0.0, 0.0), self.speed, self.place, self.speed)
+
+    def fault(self):
+        return ""
+
+    def close(self):
+        pass
+
+
+def test_an_engine_of_another_package_declares_a_cart_in_one_line():
+    plain = undeclared("glider", Glider, "numpy")
+    declared = replace(plain, builders={Ability.FREE_BASE: partial(CartWorld, Glider)})
+    cart = CartBlock(**SIZE, mass_ratio=0.5)
+    asked = Scene(system=cart, motion=SinePulse.in_g(0.2, omega=6.0), duration=1.1, times=[1.0])
+    assert run(plain, asked).message.endswith(LACKS)
+    found = run(replace(declared, frames=("world",)), asked)
+    exact = simulate(cart, asked.motion, duration=1.1, times=asked.times)
+    assert found.message == "as glider:fixed"
+    assert found.history.base[0] == pytest.approx(exact.history.base[0], rel=1e-3)
+    assert found.observables["momentum_error"] < 1e-12
+
+
+def test_only_rows_of_carts_depend_on_what_builds_one():
+    cart, block = CartBlock(**SIZE, mass_ratio=0.5), RigidBlock(**SIZE)
+    jobs = [Job(labels={}, block=it, motion=PULSE, source="pymunk:fixed") for it in (cart, block)]
+    ours, whole = [Makers(ask, summary).of(job) for job in jobs], Source.declared.fget
+    with pytest.MonkeyPatch.context() as patch:
+        other = {Ability.FREE_BASE: partial(CartWorld, Glider)}
+        patch.setattr(Source, "declared", property(lambda it: replace(whole(it), builders=other)))
+        now = [Makers(ask, summary).of(job) for job in jobs]
+        assert [old != new for old, new in zip(ours, now, strict=True)] == [True, False]
+        patch.setattr(Source, "declared", property(lambda it: replace(whole(it), builders={})))
+        now = [Makers(ask, summary).of(job) for job in jobs]
+        assert [old != new for old, new in zip(ours, now, strict=True)] == [True, False]
 
 
 @every_carrier

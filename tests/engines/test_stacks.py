@@ -1,13 +1,14 @@
 """Frames in steps that land: what an engine needs for them concerns nothing that stands alone."""
 
-from importlib import import_module
+from dataclasses import replace
 
 import pytest
 
 from analytic import RigidBlock, RockingFrame, SinePulse, simulate
 from engines import ENGINES
+from engines.declaration import Engine
+from engines.layouts import Ability
 from engines.registry import OWN
-from engines.stacks import stacking
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 
@@ -18,10 +19,13 @@ UNSPLIT = 2e-4
 
 
 def test_those_that_hold_stacks_by_code_of_their_own():
-    engines = dict(ENGINES)
-    best = {n for n, engine in engines.items() if stacking(engine, engine.best.name) is not engine}
-    fixed = {n for n in OWN if stacking(engines[n], "fixed") is not engines[n]}
-    assert (best, fixed) == ({*STACKERS, "newton"}, {"newton"})
+    def apart(name, preset):
+        engine = ENGINES[name]
+        return engine.builder((Ability.SEVERAL, Ability.STACKED), preset) is not engine.build
+
+    best = {name for name in OWN if apart(name, ENGINES[name].best)}
+    fixed = {name for name in OWN if apart(name, ENGINES[name].preset("fixed"))}
+    assert (best, fixed) == ({"box2d", "dart", "newton"}, {"newton"})
 
 
 @pytest.mark.parametrize("name", STACKERS)
@@ -57,6 +61,14 @@ def test_a_single_block_knows_nothing_of_it(name, monkeypatch):
     posed = ((frame, "landing"), (frame, "fixed"), (block, "landing"))
     jobs = [Job(labels={}, block=it, motion=PULSE, source=f"{name}:{p}") for it, p in posed]
     made = [Makers(ask, summary).of(job) for job in jobs]
-    monkeypatch.setitem(import_module(f"engines.{name}.stacks").SETTINGS, "friction", 5.0)
+    own = f"engines/{name}/stacks.py"
+    assert [own in maker for maker in made] == [name != "pybullet", False, False]
+    whole = Engine.preset
+
+    def preset(engine, called):
+        found = whole(engine, called)
+        return replace(found, stacked={"friction": 5.0}) if called == "landing" else found
+
+    monkeypatch.setattr(Engine, "preset", preset)
     changed = [Makers(ask, summary).of(job) != maker for job, maker in zip(jobs, made, strict=True)]
     assert changed == [True, False, False]

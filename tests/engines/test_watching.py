@@ -10,7 +10,7 @@ import pytest
 from known import ElsewhereWorld, KnownWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import simulate
+from analytic import Still, simulate
 from analytic.response import Outcome, Reason
 from engines.declaration import Stepping
 from engines.world import Moment
@@ -147,6 +147,30 @@ def test_a_block_that_sinks_is_a_note_and_no_missing_answer():
     falling = ElsewhereWorld(told, dt_s, lambda time: -BLOCK.height * time)
     through = watched(falling, asked, Stepping.FIXED)
     assert through.reason is Reason.SANK
+
+
+@pytest.mark.parametrize(("from_rad", "said"), [(0.95 * math.pi / 2, False), (0.5, True)])
+def test_a_block_that_only_lies_deep_has_not_sunk(from_rad, said):
+    deep, motion = 0.1 * BLOCK.width, pulse(6.0, 0.1, 2)
+
+    class Soft(KnownWorld):
+        def state(self):
+            (at,) = super().state()
+            return [at._replace(z=at.z - deep * (abs(at.theta) > from_rad))]
+
+    told = scene(motion, step=0.01, duration=motion.duration)
+    world = Soft(told, Moment.END, Stepping.FIXED)
+    seen = watched(world, scene(motion, step=0.01, max_steps=20_000), Stepping.FIXED)
+    assert seen.outcome is Outcome.OVERTURNED
+    assert seen.sink_m == pytest.approx(deep, rel=1e-6)
+    assert ("sank" in seen.message) == said
+
+
+def test_one_step_makes_a_history():
+    """There is no other step to take its bend from."""
+    still = scene(motion=Still(), step=0.01, times=(0.0,))
+    once = watched(KnownWorld(still, Moment.END, Stepping.FIXED), still, Stepping.FIXED)
+    assert (once.steps, once.history.theta.tolist()) == (1, [0.0])
 
 
 @pytest.mark.parametrize("leans", [0.3, 1.0])

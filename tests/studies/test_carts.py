@@ -89,7 +89,7 @@ def test_a_cart_is_made_by_code_of_its_own_and_a_block_not_by_it():
         made = makers.of(job)
         assert ("engines/mujoco/cart.py" in made) == ("engines/cart.py" in made) == holds
         names = makers.reached(job).names
-        assert (("engines.cart", "on_a_cart") in names) == holds
+        assert (("engines.mujoco.cart", "MujocoCart") in names) == holds
         assert ("engines.pybullet.cart", "BulletCart") not in names
         assert job.key == Job(labels={}, block=block, motion=PULSE, source="mujoco:fixed").key
 
@@ -153,6 +153,15 @@ def test_one_cart_is_asked_again_in_other_steps():
     assert first.to_dict() == pytest.approx({part: part * own for part in (0.5, 1.0, 2.0, 4.0)})
     assert len([job for job in asked if job.source == "exact"]) == len(CARTS) * len(PULSES)
     assert len({job.key for job in asked}) == len(asked)
+
+
+def test_a_cart_is_sampled_from_its_start_to_the_last_of_the_times():
+    times = np.array([0.0, 2.0])
+    asked = [("exact", m, t) for m, t in ((Still(), times[:1]), (Still(), times), (PULSE, times))]
+    for source, motion, wanted in (*asked, ("mujoco", Still(), times[:1])):
+        history = respond(source, CART, motion, times=wanted).history
+        assert history.time.tolist() == wanted.tolist()
+        assert history.base.shape == (2, len(wanted)) and history.base[0, 0] == 0.0
 
 
 def test_nothing_moves_a_cart_at_rest():
