@@ -6,7 +6,6 @@ import os
 import signal
 import sys
 import time
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -19,7 +18,6 @@ from analytic import RigidBlock, SinePulse
 from engines import ENGINES
 from engines.declaration import Stepping
 from engines.parts.quiet import imported
-from engines.physx.build import PhysxWorld
 from engines.registry import FURTHER
 from engines.run.drive import build, simulate_world
 from engines.run.look import compile_look
@@ -127,38 +125,61 @@ def test_what_an_engine_started_is_ended_with_its_process(rows):
     assert [process for process in rows[1] if not ended(process)] == []
 
 
-class CrashingPhysx(PhysxWorld):
-    """PhysX, asked in its hundredth step to wake a body that is part of no scene."""
+def wake_a_body_of_no_scene():
+    imported("sapien").physx.PhysxRigidDynamicComponent().wake_up()
 
-    def __init__(self, *asked):
-        super().__init__(*asked)
-        self._left = 100
+
+def copy_from_nowhere():
+    warp = imported("warp")
+    nowhere = warp.array(ptr=8, shape=(1,), dtype=float, device="cpu")
+    warp.copy(warp.zeros(1, dtype=float, device="cpu"), nowhere)
+
+
+CRASHES = {
+    "physx": wake_a_body_of_no_scene,
+    "newton": copy_from_nowhere,
+    "warp": copy_from_nowhere,
+}
+"""What each library does not survive; Newton steps by Warp's kernels."""
+
+
+class Crashing:
+    """A world whose library is asked for that in the hundredth step."""
+
+    def __init__(self, world, crash):
+        self._world, self._crash, self._left = world, crash, 100
+
+    def __getattr__(self, name):
+        return getattr(self._world, name)
 
     def step(self, step):
         self._left -= 1
         if not self._left:
-            imported("sapien").physx.PhysxRigidDynamicComponent().wake_up()
-        super().step(step)
+            self._crash()
+        self._world.step(step)
 
 
-def of_physx(block, motion, *, duration, times, world):
+def stepped(block, motion, *, duration, times, engine, crash=None):
     scene = Scene(system=block, motion=motion, preset="fixed")
-    there = build(replace(ENGINES["physx"], build=world), scene)
+    world, dt_s = build(engine, scene), engine.preset("fixed").ordinary_step_s(scene)
     try:
-        return simulate_world(there, scene, 1e-3, Stepping.FIXED)
+        return simulate_world(
+            Crashing(world, crash) if crash else world, scene, dt_s, Stepping.FIXED
+        )
     finally:
-        there.close()
+        world.close()
 
 
-@pytest.mark.skipif(not ENGINES["physx"].installed, reason="PhysX is not installed")
-def test_a_crash_inside_a_library_is_a_row_and_the_others_go_on(monkeypatch):
-    worlds = {"before": PhysxWorld, "crash": CrashingPhysx, "after": PhysxWorld}
-    for name, world in worlds.items():
-        monkeypatch.setitem(SOURCES, name, Source("engine", partial(of_physx, world=world)))
-    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source=name) for name in worlds]
+@pytest.mark.parametrize("name", [name for name in CRASHES if ENGINES[name].installed])
+def test_a_crash_inside_a_library_is_a_row_and_the_others_go_on(name, monkeypatch):
+    ask = partial(stepped, engine=ENGINES[name])
+    asked = {"before": ask, "crash": partial(ask, crash=CRASHES[name]), "after": ask}
+    for source, call in asked.items():
+        monkeypatch.setitem(SOURCES, source, Source("engine", call))
+    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source=source) for source in asked]
     before, crash, after = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
     assert (crash["outcome"], crash["message"]) == ("failed", REASONS["Crashes"])
-    sound = of_physx(BLOCK, PULSE, duration=None, times=None, world=PhysxWorld)
+    sound = ask(BLOCK, PULSE, duration=None, times=None)
     for row in (before, after):
         assert (row["outcome"], row["steps"]) == (sound.outcome.value, sound.steps)
 
