@@ -73,6 +73,6 @@ ENGINE = BatchEngine(
 
 BRISK = replace(
     ENGINE,
-    presets=tuple(replace(each, step=each.step and 8 * each.step) for each in ENGINE.presets),
+    presets=tuple(replace(each, step=each.step and 40 * each.step) for each in ENGINE.presets),
 )
 """The same in fewer steps, where how often it is asked matters and not how well it answers."""
