@@ -13,15 +13,18 @@ from analytic.response import Outcome, Reason
 from studies.cases.drawn import draw
 from studies.cases.extreme import extremes
 
-CASES = list(islice(draw(1), 832))
-
 pytestmark = pytest.mark.skipif("rapier" not in HERE, reason="rapier3d is not installed")
 
 
-def test_other_blocks_than_the_papers():
+@pytest.fixture(scope="module")
+def drawn():
+    return list(islice(draw(1), 832))
+
+
+def test_other_blocks_than_the_papers(drawn):
     """Slender, small and large ones, of the random cases: rounding follows the height."""
     for number in (7, 14, 72, 77):
-        case = CASES[number]
+        case = drawn[number]
         exact = simulate(case.block, case.motion)
         found = rocked("rapier", case.motion, system=case.block)
         assert found.outcome is exact.outcome
@@ -29,11 +32,11 @@ def test_other_blocks_than_the_papers():
 
 
 @pytest.mark.parametrize("width", [0.02, 0.5, 9.9, 30.0])
-def test_the_size_of_a_block_hardly_matters(width):
+def test_the_size_of_a_block_hardly_matters(width, drawn):
     """In metres the largest errs by a tenth, since its corners are rounded by its size."""
 
     def missed(number, **settings):
-        case = CASES[number]
+        case = drawn[number]
         block = RigidBlock(width=width, height=width * case.aspect)
         motion = replace(case.motion, omega=case.omega_over_p * block.p)
         return error("rapier", motion, system=block, settings=settings)
@@ -43,9 +46,9 @@ def test_the_size_of_a_block_hardly_matters(width):
         assert missed(831, units=None, centred=False) > 0.1
 
 
-def test_a_ball_whose_centre_rounds_onto_a_deep_base_loses_its_contact():
+def test_a_ball_whose_centre_rounds_onto_a_deep_base_loses_its_contact(drawn):
     """It has no normal there: the block falls freely for a step, now and then."""
-    asked = {"motion": CASES[77].motion, "system": CASES[77].block}
+    asked = {"motion": drawn[77].motion, "system": drawn[77].block}
     small = {"corner_radius": 1e-7}
     assert error("rapier", **asked, settings=small) < equal_to("rapier")
     deep = {**small, "base_depth": 1.0}

@@ -22,16 +22,16 @@ from studies.kit.journal import rows_in
 from studies.linearizations.study import errors_on, summarize
 from studies.measures.published import PUBLISHED
 
+AWAY = set(ENGINES) - set(installed_engines())
 
-def is_here(source):
-    """Return whether a source can be asked: all but engines that are not installed."""
-    engine = source.partition(":")[0]
-    return engine not in ENGINES or engine in installed_engines()
+
+def asked_here(table):
+    """Return the rows of sources that can be asked: all but engines that are not installed."""
+    return table[~table["source"].str.partition(":")[0].isin(AWAY)]
 
 
 def sample(name, count):
-    table = pd.read_csv(PUBLISHED / name / "sweep.csv")
-    table = table[table["source"].map(is_here)]
+    table = asked_here(pd.read_csv(PUBLISHED / name / "sweep.csv"))
     parts = [rows.sample(count, random_state=7) for _, rows in table.groupby("source")]
     return [row for part in parts for row in part.to_dict("records")]
 
@@ -76,8 +76,7 @@ def published(name, **options):
 def test_random_cases_are_what_comes_out_today():
     table = published("validate/errors.csv")
     well = table[(table["exact_outcome"] == "rocked") & (table["kappa"].abs() < 10)]
-    well = well[well["source"].map(is_here)]
-    for row in well.groupby("source").sample(3, random_state=7).itertuples():
+    for row in asked_here(well).groupby("source").sample(3, random_state=7).itertuples():
         block = RigidBlock(width=row.width_m, height=row.aspect * row.width_m)
         pulse = SinePulse(
             amplitude=row.amplitude_g * block.gravity,

@@ -123,7 +123,7 @@ def test_a_burst_of_other_work_slows_no_scene(monkeypatch):
 
 
 def test_a_batch_is_held_against_its_scenes_one_by_one(monkeypatch):
-    with announced("looped", "rocking_batch:ENGINE"):
+    with announced("looped", "rocking_batch:BRISK"):
         table = batches.batch_table(["looped", "mujoco"], True, 0.0)
         assert table["taken"].tolist() == [batches.AT_ONCE, batches.ONE_BY_ONE] * 2
         assert table["driver"].tolist() == [Looped.driver, "python"] * 2

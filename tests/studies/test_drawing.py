@@ -2,6 +2,7 @@
 
 import itertools
 import shutil
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -28,7 +29,7 @@ from studies.linearizations.figure import ONSETS
 from studies.measures.presets import PRESETS, in_order, told
 from studies.measures.published import PUBLISHED
 from studies.overturning.figure import DIFFERENCE_COLOURS
-from studies.precision.figure import draw_precision, engine_in
+from studies.precision.figure import engine_in
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
 VISIONS = {
@@ -202,6 +203,11 @@ def test_published_results_without_their_largest_table_are_drawn_again(study, tm
     assert (folder / f"{study}.png").stat().st_size > 4_000
 
 
+@cache
+def pictures_of(study):
+    return next(each for each in STUDIES if each.name == study).pictures(PUBLISHED / study)
+
+
 def words_of(drawing):
     """Return the words written in a figure as it is laid out, with their boxes."""
     lay_out(drawing)
@@ -224,8 +230,7 @@ def words_of(drawing):
 
 @pytest.mark.parametrize("study", ["precision", "contact", "symptoms", "validate", "restitution"])
 def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
-    drawn = next(each for each in STUDIES if each.name == study).pictures(PUBLISHED / study)
-    for drawing in drawn.values():
+    for drawing in pictures_of(study).values():
         found = words_of(drawing)
         titles = [title_of(name) for name in ENGINES]
         asked = [title for title in titles if any(title in words for words, _ in found)]
@@ -243,7 +248,7 @@ def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
 
 def test_precision_has_a_panel_for_each_engine_in_which_its_presets_are_named():
     table = pd.read_csv(PUBLISHED / "precision" / "work-precision.csv")
-    drawing = draw_precision(table)
+    drawing = pictures_of("precision")["precision"]
     panels = {axes.get_title(): axes for axes in drawing.axes}
     for name in table["method"].map(lambda method: engine_in(method)[0]).unique():
         if not name:

@@ -75,9 +75,13 @@ def copied(tmp_path_factory):
         ignored = shutil.ignore_patterns("__pycache__", "published")
         shutil.copytree(ROOT / name, folder / name, ignore=ignored)
 
+    @cache
+    def unedited(name, path):
+        return read(name, ROOT / path.relative_to(folder) if folder in path.parents else path)
+
     def read_once(name, path):
         if path not in EDITED:
-            return read(name, ROOT / path.relative_to(folder) if folder in path.parents else path)
+            return unedited(name, path)
         key = path, EDITED[path]
         if key not in kept:
             kept[key] = read.__wrapped__(name, path)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,8 @@ from studies.sweep import study as sweep
 pytestmark = pytest.mark.processes
 
 HERE = Path(__file__).parent
+slow = partial(pytest.param, marks=pytest.mark.slow)
+"""What is one more of a kind whose first is asked quickly."""
 SMALL = sweep.plan([6], ["exact"])
 ALONE = Running(jobs=1, time_limit=1.0)
 ANSWERED = []
@@ -196,7 +199,7 @@ def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
     assert len(pd.read_csv(folder / "sweep.csv")) == 240
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, *map(slow, (signal.SIGTERM, signal.SIGHUP))])
 def test_an_interrupted_run_says_how_to_go_on(number, tmp_path):
     folder = tmp_path / "out"
     with start(folder) as process:
@@ -241,7 +244,7 @@ def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
     assert len(pd.read_csv(folder / "sweep.csv")) == 240
 
 
-@pytest.mark.parametrize("what", ["the folder", "its files"])
+@pytest.mark.parametrize("what", ["the folder", slow("its files")])
 def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
     folder = tmp_path / "out"
     with start(folder) as process:

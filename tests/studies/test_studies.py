@@ -108,14 +108,16 @@ def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
     text = capsys.readouterr().out
     assert text.count("holds: ") == 3
     assert "does not hold" not in text
+    drawn = {path: path.read_bytes() for path in sorted(tmp_path.glob("*.png"))}
+    assert [path.name for path in drawn] == [f"figure-{figure}.png" for figure in HISTORIES]
     for figure, panels in HISTORIES.items():
         samples = pd.read_csv(tmp_path / f"figure-{figure}.csv")
         assert set(samples["panel"]) == {case.panel for case in panels}
-        before = (tmp_path / f"figure-{figure}.png").read_bytes()
+    for path, before in drawn.items():
         assert len(before) > 30_000
-        (tmp_path / f"figure-{figure}.png").unlink()
-        assert redraw.command(tmp_path) == 0
-        assert (tmp_path / f"figure-{figure}.png").read_bytes() == before
+        path.unlink()
+    assert redraw.command(tmp_path) == 0
+    assert {path: path.read_bytes() for path in drawn} == drawn
 
 
 def test_histories_of_named_sources_can_be_run_again(tmp_path, capsys, monkeypatch):

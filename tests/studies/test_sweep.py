@@ -29,14 +29,18 @@ from studies.sweep.ports import port_table, same_physics
 
 HERE = Path(__file__).parent
 MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
-WHOLE = sweep.plan([6, 7, 8, 9], MODELS_AND_SOLVERS)
 ALONE = Running(jobs=1, time_limit=1.0)
 
 
 @pytest.fixture(scope="module")
-def swept(tmp_path_factory):
+def whole():
+    return sweep.plan([6, 7, 8, 9], MODELS_AND_SOLVERS)
+
+
+@pytest.fixture(scope="module")
+def swept(whole, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweep")
-    rows = fill(STUDY, WHOLE, folder, ALONE)
+    rows = fill(STUDY, whole, folder, ALONE)
     return folder, rows, sweep.report(folder)
 
 
@@ -163,11 +167,11 @@ def test_what_steps_another_engine_s_models_is_told_beside_it(tmp_path):
     assert port_table(rows[rows["source"] != "mujoco:naive"]).empty
 
 
-def test_a_rerun_computes_nothing(swept):
+def test_a_rerun_computes_nothing(swept, whole):
     folder = swept[0]
     journal = folder / "journal.jsonl"
     before = journal.read_bytes()
-    fill(STUDY, replace(WHOLE, ask=partial(WHOLE.ask, None)), folder, ALONE)
+    fill(STUDY, replace(whole, ask=partial(whole.ask, None)), folder, ALONE)
     assert journal.read_bytes() == before
 
 

@@ -126,6 +126,7 @@ SETTINGS = sorted(
     if preset == DEFAULT
 )
 """Each setting that the published page names."""
+FIRST = {engine: (engine, *setting) for engine, *setting in reversed(SETTINGS)}.values()
 
 CASES = [case for kind, case in cases(False) if kind == "typical" and case.block == BLOCK]
 
@@ -168,7 +169,10 @@ def written(folder, texts):
     return folder / "block.py"
 
 
-@pytest.mark.parametrize(("engine", "factor", "level"), SETTINGS)
+@pytest.mark.parametrize(
+    ("engine", "factor", "level"),
+    [pytest.param(*each, marks=[pytest.mark.slow] * (each not in FIRST)) for each in SETTINGS],
+)
 def test_a_setting_that_is_pasted_does_what_the_table_says(engine, factor, level, tmp_path):
     """In the exported defaults of the same cases, at the library's own step and that of all."""
     settings = next(
