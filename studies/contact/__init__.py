@@ -14,7 +14,6 @@ code is 1 only where a preset as it is fails at that p dt.""",
     chapter=Chapter(
         question="What does each setting of a contact cost and buy?",
         tables=("variants.csv", "own-steps.csv"),
-        full=(*("--engines", "pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier"),),
         minutes=(0.3, 1.5),
         weaker="Fewer cases, and longer steps.",
     ),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import InitVar, dataclass, field, replace
 from importlib import import_module
+from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -122,6 +123,11 @@ class Study:
     def load(self) -> Any:
         """Import its module."""
         return import_module(self.module)
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The parameters of its command, by name."""
+        return signature(self.load().command).parameters
 
     def read(self, folder: Path, name: str) -> pd.DataFrame:
         """Read a table of a folder, packed or not; return none as empty."""

@@ -23,7 +23,7 @@ from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.words import (
     capital,
@@ -37,6 +37,7 @@ from studies.measures.words import (
 from studies.measures.wrongness import KINDS, WORDS
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
 from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
+from studies.sources.registry import grouped
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
 
@@ -73,7 +74,7 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
         folder=chapter.folder,
         question=chapter.question,
         claim=study.headline(folder),
-        command=" ".join(["rocking", *study.command_line(chapter, Path("DIR"), full=True)]),
+        command=" ".join(["rocking", *command_of(study, chapter, folder)]),
         pictures=tuple(
             (path.name, study.captions.get(path.stem, path.stem))
             for path in sorted(folder.glob("*.png"))
@@ -81,6 +82,23 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
         texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
         statements=told_of(folder),
     )
+
+
+def command_of(study: Study, chapter: Chapter, folder: Path) -> list[str]:
+    """Return the words after `rocking` that make a published folder: with all who answer in it."""
+    words, parameters = study.command_line(chapter, Path("DIR"), full=True), study.parameters
+    option = next((name for name in ("sources", "engines") if name in parameters), "")
+    answered = list(provenance.record_of(folder).get("made", {}).get("rows", {}))
+    usual = parameters[option].default if option else None
+    if not answered or usual is None or f"--{option}" in words:
+        return words
+    if all(map(is_engine, usual)):
+        answered = list(filter(is_engine, answered))
+    if option == "engines":
+        answered = list(dict.fromkeys(map(engine_of, answered)))
+    if set(answered) == set(usual):
+        return words
+    return [*words, f"--{option}", *(grouped(answered) if option == "sources" else answered)]
 
 
 def told_of(folder: Path) -> tuple[Finding, ...]:

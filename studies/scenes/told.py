@@ -216,22 +216,22 @@ def again(folder: Path) -> pd.DataFrame:
     quick = bool(provenance.record_of(folder)["settings"]["quick"])
     sources = list(dict.fromkeys(row["source"] for row in worst.values()))
     every = jobs(sources, quick)
-    known = {_called({**job.labels, "source": job.source}): job for job in every}
+    known = {frozenset({**job.labels, "source": job.source}.items()): job for job in every}
     found = []
     for row in worst.values():
-        job = next(job for names, job in known.items() if names <= _called(row))
-        found.append(commands(job.block, job.motion, job.source, job.options,
-                              outcome=row["outcome"]))  # fmt: skip
+        called = frozenset(row.items())
+        job = next((job for names, job in known.items() if names <= called), None)
+        found.append(
+            commands(job.block, job.motion, job.source, job.options, outcome=row["outcome"])
+            if job
+            else ("no case of today's", "")
+        )
     table = pd.DataFrame(worst.values(), columns=["scene", "source", "outcome", *ERRORS])
     return with_commands(table, found)
 
 
 ERRORS = tuple(dict.fromkeys(told.error for told in SCENES.values()))
 """Columns of errors."""
-
-
-def _called(row: dict[str, object]) -> frozenset[tuple[str, object]]:
-    return frozenset(row.items())
 
 
 LATE_M = 1e-4

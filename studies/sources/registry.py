@@ -16,7 +16,7 @@ from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import Ability, System, layout_of
 from engines.parts.compiled import interpreted_first
-from engines.registry import VARIANTS
+from engines.registry import OWN, VARIANTS
 from engines.scene import Scene, one_of
 from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
@@ -305,6 +305,22 @@ def core_sources(*presets: str) -> tuple[str, ...]:
         for name in core_engines()
         for preset in presets or ("",)
     )
+
+
+def grouped(names: Iterable[str]) -> Iterator[str]:
+    """Yield the names of sources with "engines:fixed" in place of all engines that have the preset.
+
+    Whether an engine is installed does not count, and those that step another one's models do not.
+    """
+    known = [name for name in OWN if not original_of(name)]
+    groups = {"engines": known}
+    for name in known:
+        for preset in ENGINES[name].presets:
+            groups.setdefault(f"engines:{preset.name}", []).append(f"{name}:{preset.name}")
+    left = list(names)
+    whole = [word for word, of in groups.items() if len(of) > 1 and set(of) <= set(left)]
+    told = {name: word for word in whole for name in groups[word]}
+    yield from dict.fromkeys(told.get(name, name) for name in left)
 
 
 def expanded(names: Iterable[str]) -> Iterator[str]:

@@ -10,6 +10,9 @@ import pandas as pd
 import pytest
 from commanding import ROOT, refused
 
+from analytic import MODELS
+from engines import ENGINES
+from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
@@ -17,6 +20,7 @@ from studies.kit.tables import read_table
 from studies.page import facts, hero, readme
 from studies.page.engine_facts import objections
 from studies.page.facts import table
+from studies.sources.registry import expanded, grouped, original_of, resolve
 
 PUBLISHED = ROOT / readme.PUBLISHED
 
@@ -267,6 +271,49 @@ def taken(arguments):
     """Let the command line take arguments, all of them, without running anything."""
     command, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
     assert command.__module__.startswith("studies.") and bound.arguments and not ignored
+
+
+PLACES = [place for place in CHAPTERS if facts.is_published(PUBLISHED, place[1])]
+
+
+@pytest.mark.parametrize("place", PLACES, ids=lambda place: place[1].folder)
+def test_the_command_of_a_chapter_asks_who_answers_in_its_tables(place):
+    study, chapter = place
+    words = facts.command_of(study, chapter, PUBLISHED / chapter.folder)
+    taken(words)
+    if chapter.folder == "literature":
+        return  # peers' tests are asked of presets of their own, too
+    record = json.loads((PUBLISHED / chapter.folder / "provenance.json").read_text())
+    answered = {used(name) for name in record.get("made", {}).get("rows", {})}
+    if "--sources" in words and answered:
+        asked = map(used, expanded(words[words.index("--sources") + 1 :]))
+        assert here(asked) == here(answered)
+    if "--engines" in words and answered:
+        asked = set(words[words.index("--engines") + 1 :])
+        assert asked == {name for name, _ in answered if name in ENGINES}
+
+
+def here(pairs):
+    """Return those of models and of the published engines that are installed."""
+    known = {name for name in OF_ALL if ENGINES[name].installed} | MODELS.keys()
+    return {pair for pair in pairs if pair[0] in known}
+
+
+def used(name):
+    """Return a source, and of an engine the preset for which it stands."""
+    engine = name.partition(":")[0]
+    return engine, resolve(name).preset or (ENGINES[engine].best.name if engine in ENGINES else "")
+
+
+OF_ALL = tuple(name for name in OWN if not original_of(name))
+
+
+def test_names_of_all_engines_with_a_preset_are_one_word():
+    fixed = [f"{name}:fixed" for name in OF_ALL]
+    assert [*grouped(["exact", *fixed, "mujoco"])] == ["exact", "engines:fixed", "mujoco"]
+    assert [*grouped([*OF_ALL, "rk4"])] == ["engines", "rk4"]
+    assert [*grouped(fixed[1:])] == fixed[1:]
+    assert [*grouped(["warp:fixed", *fixed])] == ["warp:fixed", "engines:fixed"]
 
 
 QUICK = ("symptoms", "advise", "export", "blocks", "compare")
