@@ -87,19 +87,22 @@ def with_reference_of_frames(rows: pd.DataFrame) -> pd.DataFrame:
     """
     frames = zip(rows["aspect"], rows["load"], strict=True)
     kept = [RockingFrame(width=1.0, height=h, load=load).restitution for h, load in frames]
-    posed, restitution = posed_cases(rows), np.array(kept)
-    peak, outcome = peak_ratios(*posed, restitution=restitution)
+    columns, back = _different(*posed_cases(rows), np.array(kept))
+    alpha, amplitude, omega, cycles, restitution = columns
+    posed = alpha, amplitude, omega, cycles
     found = condition_numbers(*posed, restitution=restitution)
-    right = pd.Series([_word(item) for item in outcome], rows.index)
+    sensitive = sensitivities(*posed, restitution=restitution)
+    peaks, outcomes = peak_ratios(*posed, restitution=restitution)
+    peak, right = peaks[back], pd.Series([_word(item) for item in outcomes[back]], rows.index)
     both_rocked = (rows["outcome"] == "rocked") & (right == "rocked")
     return rows.assign(
         exact_outcome=right,
         exact_peak=peak,
         agrees=kinds_of(rows["outcome"], right) == "",
         error=(rows["peak_ratio"] / peak - 1.0).where(both_rocked),
-        kappa=found.amplitude,
-        kappa_eta=found.restitution,
-        sensitivity=sensitivities(*posed, restitution=restitution),
+        kappa=found.amplitude[back],
+        kappa_eta=found.restitution[back],
+        sensitivity=sensitive[back],
     )
 
 
@@ -122,8 +125,16 @@ def posed_cases(
 
 
 def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
-    """Return the exact peaks and outcomes of the cases."""
-    return peak_ratios(*posed_cases(cases))
+    """Return the exact peaks and outcomes of the cases, each of which is solved once."""
+    (alpha, amplitude, omega, cycles), back = _different(*posed_cases(cases))
+    peak, outcome = peak_ratios(alpha, amplitude, omega, cycles)
+    return peak[back], outcome[back]
+
+
+def _different(*posed: FloatArray) -> tuple[list[FloatArray], NDArray[np.intp]]:
+    """Return what is posed without repeats, column by column, and where each row is among them."""
+    rows, back = np.unique(np.stack(posed, axis=1), axis=0, return_inverse=True)
+    return [np.ascontiguousarray(column) for column in rows.T], back
 
 
 def conditioning_of_one(
@@ -144,10 +155,13 @@ def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
     errors of 1e-6 and 1e-4 (`analytic.sensitivities`): near the onset and near overturning it is
     much larger.
     """
-    posed = posed_cases(cases)
-    found = condition_numbers(*posed)
+    (alpha, amplitude, omega, cycles), back = _different(*posed_cases(cases))
+    found = condition_numbers(alpha, amplitude, omega, cycles)
+    sensitive = sensitivities(alpha, amplitude, omega, cycles)
     return cases.assign(
-        kappa=found.amplitude, kappa_eta=found.restitution, sensitivity=sensitivities(*posed)
+        kappa=found.amplitude[back],
+        kappa_eta=found.restitution[back],
+        sensitivity=sensitive[back],
     )
 
 
