@@ -122,7 +122,7 @@ def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
     return shown.astype(int).reset_index()
 
 
-def first_claim(table: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame) -> str:
     """Say of how many settings that keep an error on the published cases it is kept on these."""
     known = counts(table, max(TARGETS))
     fewest, most = known["random_cases"].min(), known["random_cases"].max()

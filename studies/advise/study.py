@@ -14,7 +14,7 @@ from analytic.block import RigidBlock
 from studies.advise import STUDY
 from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
-from studies.advise.words import ASK, first_claim, kept_errors, reverse_text, settings_text, tables
+from studies.advise.words import ASK, finding, kept_errors, reverse_text, settings_text, tables
 from studies.drawing.kept import WIDTH, as_text, keep
 from studies.kit import provenance
 from studies.kit.arguments import (
@@ -100,7 +100,7 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: flo
     written = settings_text(lines, block, friction) or "No setting to write out."
     made = f"From {listed(read_from(published))}, made with {_versions(published)}."
     parts = [
-        as_text(first_claim(lines), tables(lines, block)),
+        as_text(finding(lines), tables(lines, block)),
         _beyond(block, published),
         written if len(engines) == 1 else f"{ASK} {engines[0]}",
         too_slippery(friction),

@@ -104,7 +104,7 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None
     return "\n\n".join(parts)
 
 
-def first_claim(lines: pd.DataFrame) -> str:
+def finding(lines: pd.DataFrame) -> str:
     """Say what each error costs at the least, with whom, and where nothing keeps it."""
     said = []
     for target, group in lines.groupby("target", sort=False):

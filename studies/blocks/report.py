@@ -41,13 +41,13 @@ def report(folder: Path) -> str:
     factors = lines[["name", "width_m", "height_m", "record", "lifts", "margin"]]
     table = factors.reset_index(drop=True).join(pd.DataFrame(beside))
     counts, doubt = counted(rows), doubts(rows)
-    finding = f"{headline(folder)} {capital('; '.join(counts))}. {capital(listed(doubt))}."
+    said = f"{finding(folder)} {capital('; '.join(counts))}. {capital(listed(doubt))}."
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
-    text = tell(STUDY, folder, {title: table}, finding)
+    text = tell(STUDY, folder, {title: table}, said)
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
     environment.filters["shown"] = shown
     page = environment.get_template("page.html.jinja").render(
-        headline=headline(folder),
+        finding=finding(folder),
         said=[f"{capital(words)}." for words in (*counts, *doubt)],
         picture=f"data:image/png;base64,{b64encode((folder / 'blocks.png').read_bytes()).decode()}",
         scales=sorted(set(rows["scale"])),
@@ -64,7 +64,7 @@ def report(folder: Path) -> str:
     return text
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say how many blocks overturn under a record as it is, and which does so first."""
     return f"{first_words(ranked(read(folder)))}."
 

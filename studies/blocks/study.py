@@ -16,7 +16,7 @@ from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.blocks import STUDY
 from studies.blocks.cabinets import Cabinet, read_cabinets
-from studies.blocks.report import headline, report
+from studies.blocks.report import finding, report
 from studies.blocks.strength import strength
 from studies.cases.accelerograms import Baseline, Units, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
@@ -38,7 +38,7 @@ from studies.kit.posing import refuse_endless
 from studies.measures.differences import conditioning_of_one
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "report"]
+__all__ = ["command", "finding", "report"]
 
 ANSWERS, MARGINS = "answers", "margins"
 """What a row of the journal is: a source's answer, or how strong a record overturns a block."""

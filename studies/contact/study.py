@@ -42,7 +42,7 @@ from studies.measures.energy import SAMPLES, energy_drift, growth
 from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 
-__all__ = ["command", "first_claim", "report"]
+__all__ = ["command", "finding", "report"]
 
 STEP, QUICK_STEP = 1e-3, 2e-3
 """p dt of every variant but those that are about the step."""
@@ -280,7 +280,7 @@ def error_words(line: pd.Series[Any], columns: Sequence[str] = ("max_error",)) -
     return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
 
 
-def first_claim(lines: pd.DataFrame) -> str:
+def finding(lines: pd.DataFrame) -> str:
     """Say which setting, left at its default, leaves the largest error in each engine."""
     left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
     worst = left.sort_values("max_error", ascending=False).drop_duplicates("engine").sort_index()

@@ -251,7 +251,7 @@ def rest_claim(table: pd.DataFrame) -> str:
     return f"After 1 s of rest {listed(said)}." if said else ""
 
 
-def first_claim(table: pd.DataFrame, rested: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame, rested: pd.DataFrame) -> str:
     """Say between which parts of all pulses the engines get right, and who loses by a rest.
 
     Parameters

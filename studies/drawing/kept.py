@@ -38,7 +38,7 @@ def tell(
     tables : mapping
         Title -> table; those without rows are left out.
     finding : str, optional
-        A sentence or a paragraph, by default the study's headline.
+        A sentence or a paragraph, by default the study's finding.
     name : str, optional
         Of the text's file, by default the first that the study writes besides.
 
@@ -47,7 +47,7 @@ def tell(
     str
         The text.
     """
-    return keep(study, folder, as_text(finding or study.headline(folder), tables), name)
+    return keep(study, folder, as_text(finding or study.finding(folder), tables), name)
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:

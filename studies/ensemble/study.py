@@ -242,10 +242,10 @@ def report(folder: Path) -> str:
         f"{motions} motions of {rows['family'].iloc[0]!r} at {len(levels)} intensities "
         f"(PGA over g tan α: {', '.join(f'{level:g}' for level in levels)})."
     )
-    return tell(STUDY, folder, shown, f"{first_claim(agreed)} {head}")
+    return tell(STUDY, folder, shown, f"{finding(agreed)} {head}")
 
 
-def first_claim(agreed: pd.DataFrame) -> str:
+def finding(agreed: pd.DataFrame) -> str:
     """Say whose statistics tests tell from the exact ones, and whose they do not."""
     tests = told(agreed[agreed["source"] != "exact"]).set_index("source")
     any_does = tests[["capacity_off", "mcnemar_rejected", "ks_rejected"]].any(axis=1)

@@ -131,7 +131,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, {title: table})
 
 
-def first_claim(table: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame) -> str:
     """Say whose estimates bound the error, how many on other cases, and whose give no bound."""
     bound = table["factor_95_high"] <= MOST_TRUSTED
     good, blind = table[bound], table[~bound]

@@ -103,7 +103,7 @@ def errors(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     return sizes.groupby(by, sort=False)[["period_error", "decay_error", "drift_p"]].max()
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say to what each source follows the closed forms of its model, at worst."""
     worst = errors(STUDY.read(folder, "free"), ["source"])[["period_error", "decay_error"]].max(
         axis=1

@@ -36,7 +36,7 @@ from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_time
 from studies.measures.words import out_of
 from studies.sources.registry import resolve
 
-__all__ = ["command", "headline", "report"]
+__all__ = ["command", "finding", "report"]
 
 Over = Literal["frequency", "amplitude"]
 RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}
@@ -301,7 +301,7 @@ def engine_errors(engines: pd.DataFrame) -> pd.DataFrame:
     return by.agg(orbits="size", kept="count", median_error="median", max_error="max").reset_index()
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say at how many abscissae several steady states live, and where the start decides a fall."""
     found = counts(table_in(folder, "harmonic"))
     several, both = (out_of(found[name], found["all"]) for name in ("several", "both"))

@@ -169,7 +169,7 @@ def pictures(folder: Path) -> Pictures:
     return {f"figure-{n}": drawn(folder, n) for n in figures}
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say how many of the paper's statements about its histories hold."""
     return tally(read_findings(folder), "the paper's statements about its time histories")
 

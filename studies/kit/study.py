@@ -64,8 +64,8 @@ class Study:
     texts : tuple of str
         Columns of its tables that are words though they may look like numbers.
     claims : tuple of str
-        Tables of which its module's `first_claim` makes what they show first, as one sentence. A
-        module without it has a `headline` of the folder.
+        Tables of which its module's `finding` makes one sentence, what they show first; without
+        any it takes the folder.
     drawings : mapping
         Name of a picture -> the function of its module `figure` that draws it, and the tables that
         this takes. Where captions name others, one of the two modules has `pictures` of the folder,
@@ -135,11 +135,11 @@ class Study:
 
         return table_in(folder, name, *self.texts)
 
-    def headline(self, folder: Path) -> str:
+    def finding(self, folder: Path) -> str:
         """Return what a folder's tables show first, as a claim of one sentence."""
         if not self.claims:
-            return str(self.load().headline(folder))
-        return str(self.load().first_claim(*(self.read(folder, name) for name in self.claims)))
+            return str(self.load().finding(folder))
+        return str(self.load().finding(*(self.read(folder, name) for name in self.claims)))
 
     def pictures(self, folder: Path) -> dict[str, Figure]:
         """Draw a folder's figures from its tables alone, by name."""

@@ -186,7 +186,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say which of the paper's conclusions hold."""
     return tally(read_findings(folder), "the paper's conclusions about the linearizations")
 

@@ -108,7 +108,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, shown)
 
 
-def first_claim(table: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame) -> str:
     """Say how many printed numbers come out to their digits, by the models that they are about."""
     mine = table[(table["source"] == table["model"]) & (table["of"] == "theory")]
     right = int((mine["agrees"] == "True").sum())

@@ -76,7 +76,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def first_claim(lines: pd.DataFrame) -> str:
+def finding(lines: pd.DataFrame) -> str:
     """Say how much of the map the linearizations get wrong, and how many cells engines do."""
     if lines.empty:
         return "The exact map stands alone: no other source was asked."

@@ -37,10 +37,10 @@ from studies.overturning.engine_edges import (
     grid_jobs,
     reduce,
 )
-from studies.overturning.report import first_claim, report
+from studies.overturning.report import finding, report
 from studies.sources.registry import core_sources
 
-__all__ = ["command", "first_claim", "report"]
+__all__ = ["command", "finding", "report"]
 
 MAPPED = sources_option("exact must be among them: ")
 DEFAULT_SOURCES = (

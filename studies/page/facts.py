@@ -73,7 +73,7 @@ def told(published: Path, study: Study, chapter: Chapter) -> Told:
     return Told(
         folder=chapter.folder,
         question=chapter.question,
-        claim=study.headline(folder),
+        claim=study.finding(folder),
         command=" ".join(["rocking", *command_of(study, chapter, folder)]),
         pictures=tuple(
             (path.name, study.captions.get(path.stem, path.stem))

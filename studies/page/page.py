@@ -102,7 +102,7 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
     return {
         "folder": chapter.folder,
         "question": chapter.question,
-        "claim": study.headline(folder),
+        "claim": study.finding(folder),
         "statements": told_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,

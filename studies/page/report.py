@@ -45,7 +45,7 @@ def command(*, out: Place, full: bool = False) -> int:
             bar.update(chapter.minutes[full])
     write_page(out / PAGE, out, full)
     for study, chapter in CHAPTERS:
-        print(f"{chapter.folder}: {study.headline(out / chapter.folder)}")
+        print(f"{chapter.folder}: {study.finding(out / chapter.folder)}")
     print(out / PAGE)
     return max(codes)
 

@@ -250,7 +250,7 @@ def report(folder: Path) -> str:
     return tell(COST, folder, tables)
 
 
-def first_claim(shares: pd.DataFrame) -> str:
+def finding(shares: pd.DataFrame) -> str:
     """Say how long a step takes with each loop, and how much of that is the engine's own."""
     shares = shares.dropna(subset=["step_s"])
     words = [

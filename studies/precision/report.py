@@ -56,7 +56,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def first_claim(table: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame) -> str:
     """Say what the smallest of the targets costs with an engine, and with the paper's solver."""
     found = choices(table)
     reached = [target for target, cases in found if cases == TYPICAL]

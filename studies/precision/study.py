@@ -25,10 +25,10 @@ from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
-from studies.precision.report import first_claim, report
+from studies.precision.report import finding, report
 from studies.sources.registry import Source
 
-__all__ = ["command", "first_claim", "report"]
+__all__ = ["command", "finding", "report"]
 
 BUDGET_S, QUICK_BUDGET_S = 0.5, 0.02
 """Time [s] spent at most on timing one case with one setting."""

@@ -83,7 +83,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, {**tables, "Without a coefficient": none})
 
 
-def first_claim(corners: pd.DataFrame) -> str:
+def finding(corners: pd.DataFrame) -> str:
     """Say how well the engines keep a coefficient at best, and who does not as first asked."""
     best = corners.loc[corners.groupby("engine", sort=False)["off_over_all"].idxmin()]
     first = corners.drop_duplicates("engine")

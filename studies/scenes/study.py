@@ -32,7 +32,7 @@ from studies.scenes.rolling import cylinder_summary, cylinder_table
 from studies.scenes.told import SCENES, again, by_scene, ends, floor_sentence, found_in, shown
 from studies.sources.registry import core_sources
 
-__all__ = ["again", "command", "headline", "report", "shown"]
+__all__ = ["again", "command", "finding", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_SLIDE = ("place_m", "lift_m", "turn_rad")
@@ -220,7 +220,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say how far off each scene is as documented and at best, and what floors carry."""
     said = [f"{SCENES[name].title} {ends(name, lines)}" for name, lines in by_scene(folder).items()]
     floors = floor_sentence(found_in(folder / "floor-summary.csv"))

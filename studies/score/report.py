@@ -49,11 +49,11 @@ def report(folder: Path) -> str:
         moments
     )
     tables |= beyond(folder)
-    finding = " ".join(filter(None, (accusation(moments), introduction(engine), headline(folder))))
-    return tell(STUDY, folder, tables, finding)
+    said = " ".join(filter(None, (accusation(moments), introduction(engine), finding(folder))))
+    return tell(STUDY, folder, tables, said)
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say how many outcomes the engine's best preset gets right, and how far peaks are off."""
     best = swept(folder).iloc[-1]
     return (

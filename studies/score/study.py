@@ -27,14 +27,14 @@ from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
 from studies.score.loading import guarded, problem_elsewhere
 from studies.score.moments import BLOCK, UNFELT, accusation, ask_for_moment, reduced
-from studies.score.report import headline, published, report, table_of
+from studies.score.report import finding, published, report, table_of
 from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
 from studies.stability.remedies import answer
 from studies.sweep.study import sweep_jobs
 
-__all__ = ["command", "headline", "report"]
+__all__ = ["command", "finding", "report"]
 
 FIGURES, QUICK_FIGURES = (6, 7, 8, 9), (6, 8)
 QUICK_EVERY = 11

@@ -36,7 +36,7 @@ from studies.stability.sensitivity import (
     with_growth,
 )
 
-__all__ = ["again", "command", "first_claim", "report"]
+__all__ = ["again", "command", "finding", "report"]
 
 METHODS = (
     "exact",
@@ -257,7 +257,7 @@ def growth(moved: pd.DataFrame) -> pd.DataFrame:
     return table.reset_index()
 
 
-def first_claim(matrix: pd.DataFrame) -> str:
+def finding(matrix: pd.DataFrame) -> str:
     """Say how many of the extreme cases each preset gets right, of how many engines and cases.
 
     Cases beyond what the reference is valid for are in no count.

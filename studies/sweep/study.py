@@ -118,13 +118,13 @@ def shown(folder: Path) -> dict[str, pd.DataFrame]:
     return {PORTED: ported} if len(ported := table_in(folder, "ports")) else {}
 
 
-def headline(folder: Path) -> str:
+def finding(folder: Path) -> str:
     """Say what each preset of the engines gets wrong, and how far peaks are off.
 
     Of those that step another engine's models say how they answer beside it.
     """
     found = [same_physics(lines) for lines in shown(folder).values()]
-    return f"{capital(posed(read(folder)).words)}. {(found or [first_claim(whole(folder))])[0]}"
+    return f"{capital(posed(read(folder)).words)}. {(found or [finding_of(whole(folder))])[0]}"
 
 
 def read(folder: Path) -> pd.DataFrame:
@@ -151,7 +151,7 @@ def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
 
 
-def first_claim(lines: pd.DataFrame) -> str:
+def finding_of(lines: pd.DataFrame) -> str:
     """Say what the first and the best of the presets, and each linearization, are off by."""
     groups = engines_by_preset(lines)
     parts = [

@@ -103,7 +103,7 @@ def page(lines: pd.DataFrame) -> str:
     engines = lines["engine"].unique()
     alone = len(engines) == 1
     changes = [fill(CHANGES, WIDTH), *_changes(lines)] if alone else [f"{ASK} {engines[0]}"]
-    return "\n\n".join([as_text(first_claim(lines), tables), fill(HELPS, WIDTH), *changes])
+    return "\n\n".join([as_text(finding(lines), tables), fill(HELPS, WIDTH), *changes])
 
 
 def _title(symptom: object, line: pd.Series[Any]) -> str:
@@ -120,7 +120,7 @@ def _changes(lines: pd.DataFrame) -> Iterator[str]:
         yield "\n".join(parts)
 
 
-def first_claim(lines: pd.DataFrame) -> str:
+def finding(lines: pd.DataFrame) -> str:
     """Say of every engine which single setting helps most against a wrong peak."""
     first = lines[lines["symptom"] == lines.iloc[0]["symptom"]]
     rows = first.to_dict("records")

@@ -73,7 +73,7 @@ def census(seed: int, kept: int, scene: Drawn = "block") -> pd.DataFrame:
     return table.rename_axis("set").reset_index().assign(why=[left.get(n, "") for n in counts])
 
 
-def first_claim(compared: pd.DataFrame) -> str:
+def finding(compared: pd.DataFrame) -> str:
     """Say what each source gets right, and its largest error, everywhere and in calm cases."""
     right = [
         (str(source), right_of(rows)) for source, rows in compared.groupby("source", sort=False)

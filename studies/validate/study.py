@@ -36,7 +36,7 @@ from studies.validate.claims import (
     bands,
     bounded,
     census,
-    first_claim,
+    finding,
     half_jobs,
     hint_jobs,
     leanings,
@@ -153,7 +153,7 @@ def report(folder: Path) -> str:
     tables["Cases that were drawn"] = left
     for name, table in kept.items():
         write_table(folder / f"{name}.csv", table)
-    return tell(STUDY, folder, tables, f"{first_claim(compared)} {S_IS}")
+    return tell(STUDY, folder, tables, f"{finding(compared)} {S_IS}")
 
 
 def again(folder: Path) -> pd.DataFrame:

@@ -175,7 +175,7 @@ def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def first_claim(table: pd.DataFrame) -> str:
+def finding(table: pd.DataFrame) -> str:
     """Say from which amplitude on the reference does not hold, by slenderness."""
     words = [
         f"{f'from {ends:.2g} onsets' if math.isfinite(ends) else 'never'} at H/B {aspect:g}"

@@ -202,7 +202,7 @@ def report(folder: Path) -> str:
     return tell(STUDY, folder, tables)
 
 
-def first_claim(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
+def finding(lines: pd.DataFrame, changes: pd.DataFrame) -> str:
     """Say between which releases of which engines an answer moved, and between which none did."""
     moved, still = [], []
     for engine, mine in answered(lines).groupby("engine", sort=False):

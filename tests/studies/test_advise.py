@@ -250,7 +250,7 @@ def test_advice_is_kept_drawn_and_told(tmp_path, capsys):
     assert run(["advise", "--engines", *CORE, "--out", str(out)]) == 0
     assert capsys.readouterr().out == (out / "findings.txt").read_text()
     assert (out / "advice.png").stat().st_size > 7_000
-    assert study.STUDY.headline(out).startswith("An error of 10 % ")
+    assert study.STUDY.finding(out).startswith("An error of 10 % ")
     assert Path(out / "provenance.json").is_file()
 
 

@@ -48,7 +48,7 @@ def test_it_goes_through_a_study(name, tmp_path):
     study = next(study for study in STUDIES if study.name == name)
     # failed rows are answers, too
     assert run([name, *ARGUMENTS[name], "--out", str(tmp_path)]) in (0, 1)
-    assert study.headline(tmp_path)
+    assert study.finding(tmp_path)
     figures = study.pictures(tmp_path)
     assert all(isinstance(figure, Figure) for figure in figures.values())
     told = [path.name for path in tmp_path.glob("*.csv") if "moreau" in path.read_text()]

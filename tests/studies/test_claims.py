@@ -73,7 +73,7 @@ def test_a_target_on_typical_cases_is_not_one_on_all():
     # both sets of the cheapest setting for all, over the exact solution on both
     assert everywhere["over_exact"] == pytest.approx(750.0)
     assert typical["near_error"] == 1e-3
-    text = precision.first_claim(precision_table())
+    text = precision.finding(precision_table())
     assert "200 times that on typical cases" in text
     assert "and 750 times that with those near overturning" in text
     assert "RK4 0.5 of it" in text
@@ -93,7 +93,7 @@ def test_each_cost_says_who_takes_the_steps():
     table = pd.concat([precision_table(), marked], ignore_index=True)
     found = choices(table, "python")
     assert found[1e-4, TYPICAL]["setting"] == "pymunk landing at p dt = 0.02"
-    assert "stepped by a compiled loop" in precision.first_claim(table)
+    assert "stepped by a compiled loop" in precision.finding(table)
 
 
 def agreed(source, predicted, low, high, ks=0, mcnemar=0.5):
@@ -123,7 +123,7 @@ def test_what_any_test_rejects_is_told_from_the_exact():
     assert tests.to_numpy().tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 2], [0, 0, 0]]
     assert found["predicted"].to_list() == pytest.approx([0.6, 0.6, 0.6, 0.99])
     claim = "the statistics by far, uneven and skewed from the exact ones, and those by close they"
-    assert claim in ensemble.first_claim(pd.DataFrame(lines))
+    assert claim in ensemble.finding(pd.DataFrame(lines))
 
 
 def variant(preset, factor, level, moved, largest, *, wrong=0, turned=0.0, trap=""):
@@ -164,7 +164,7 @@ def test_what_moves_a_peak_is_not_what_errs():
     # at its default the solver tolerance moves no peak of the tuned preset
     assert list(table["moved"]) == [1e-9]
     assert list(table["max_error"]) == [1.3e-2] and list(table["max_error_alone"]) == [2.8e-2]
-    assert "inertia in mujoco (71 %)" in contact.first_claim(lines)
+    assert "inertia in mujoco (71 %)" in contact.finding(lines)
 
 
 def extreme(source, verdict, outcome="rocked", peak=0.5):
@@ -181,11 +181,11 @@ def extreme(source, verdict, outcome="rocked", peak=0.5):
 
 def test_unseen_and_invalid_cases_are_not_right_ones():
     rows = [extreme("mujoco", word) for word in ("good", "good", "unseen", "off", "invalid")]
-    assert "Of extreme cases mujoco gets right: " in stability.first_claim(pd.DataFrame(rows))
-    assert "2 of 4" in stability.first_claim(pd.DataFrame(rows))
+    assert "Of extreme cases mujoco gets right: " in stability.finding(pd.DataFrame(rows))
+    assert "2 of 4" in stability.finding(pd.DataFrame(rows))
     more = [{**row, "source": source} for row in rows for source in ("mujoco", "dart", "rapier")]
     assert "3 engines get right: with steps that land on impacts 6 of 12." in (
-        stability.first_claim(pd.DataFrame(more))
+        stability.finding(pd.DataFrame(more))
     )
 
 
@@ -201,7 +201,7 @@ def test_each_preset_is_counted_over_the_engines_that_were_asked():
         },
     }
     rows = pd.DataFrame([extreme(source, word) for source, word in words.items()])
-    text = stability.first_claim(rows)
+    text = stability.finding(rows)
     assert "as their documentation shows them 1 of 3, with" in text
     assert "with a tuned contact and a fixed step 0 and 1 of 1" in text
 
@@ -268,7 +268,7 @@ def test_random_cases_say_how_wide_they_are_and_what_is_right():
     )
     wide = "H/B 2 to 10, B 0.02 to 9.8 m, 1 to 4 half cycles, ω/p 0.3 to 11.9, 1.2 to 3.99 onsets"
     assert validate.width(rows) == wide
-    assert ": mujoco:fixed 2 of 3 (at rest for rocked in 1); largest" in validate.first_claim(rows)
+    assert ": mujoco:fixed 2 of 3 (at rest for rocked in 1); largest" in validate.finding(rows)
 
 
 def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
@@ -279,7 +279,7 @@ def test_a_map_is_not_all_right_with_one_wrong_cell(tmp_path):
         {**line, "source": "rapier", "rest_wrong": 3, "no_answer": 2},
     ]
     pd.DataFrame(lines).to_csv(tmp_path / "differences.csv")
-    assert overturning.STUDY.headline(tmp_path).endswith(
+    assert overturning.STUDY.finding(tmp_path).endswith(
         "the fall wrong in up to 1 (mujoco), at rest for rocked in up to 3 (rapier) and no answer "
         "in up to 2 (rapier)."
     )
@@ -305,7 +305,7 @@ def test_the_reference_never_ends_only_where_no_pivot_lifts():
             "friction_needed": 1.0,
         }
     )
-    text = validity.first_claim(table)
+    text = validity.finding(table)
     assert "from 1.5 onsets at H/B 1" in text and "never at H/B 3" in text
 
 

@@ -144,8 +144,8 @@ def test_the_study_asks_the_exact_solution_too(tmp_path, capsys, monkeypatch):
     assert code == 0
     rows = pd.read_csv(out / "defaults.csv")
     assert list(rows["source"].unique()) == ["exact", "pybullet:naive"]
-    assert study.STUDY.headline(out) in " ".join(capsys.readouterr().out.split())
-    assert study.STUDY.headline(out).startswith("As documented, outcome and peak (within 10 %)")
+    assert study.STUDY.finding(out) in " ".join(capsys.readouterr().out.split())
+    assert study.STUDY.finding(out).startswith("As documented, outcome and peak (within 10 %)")
     assert set(study.STUDY.pictures(out)) == {"small", "large"}
 
 

@@ -30,7 +30,7 @@ from studies.ensemble.study import (
     curves,
     drawn,
     ensemble_jobs,
-    first_claim,
+    finding,
     recorded,
     stripes,
 )
@@ -374,6 +374,6 @@ def test_whose_statistics_are_told_from_the_exact_ones_where_all_or_none_are():
         }
     )
     none = "tests tell no statistics from the exact ones: not by housner and modified."
-    assert first_claim(agreed).endswith(none)
+    assert finding(agreed).endswith(none)
     off = agreed.assign(ratio_low=1.1, ratio_high=1.3)
-    assert first_claim(off).endswith("by housner and modified from the exact ones.")
+    assert finding(off).endswith("by housner and modified from the exact ones.")

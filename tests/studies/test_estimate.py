@@ -161,12 +161,10 @@ def test_above_thirty_estimates_there_is_no_bound():
             "bounded": [96, 99, 100],
         }
     )
-    claim = study.first_claim(table)
+    claim = study.finding(table)
     assert "times 1.6, bounds 95 % of the errors with 1 of 3 presets (96 of 100 on" in claim
     assert claim.endswith(f"; it gives {NO_BOUND} with box2d and dart.")
-    assert study.first_claim(table[1:]).startswith(
-        "The difference from half the step gives no bound"
-    )
+    assert study.finding(table[1:]).startswith("The difference from half the step gives no bound")
     assert MOST_TRUSTED == 30.0
     assert Trust(29.0, 300).holds and not Trust(31.0, 300).holds
 
@@ -201,11 +199,11 @@ def test_published_factors_follow_from_the_published_rows():
 def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
     few = ["estimate", "--seed", "3", "--sources", "mujoco:naive", "--jobs", "1", "--tests", "2"]
     assert run([*few, "--cases", "4", "--out", str(tmp_path)]) == 0
-    assert study.STUDY.headline(tmp_path)[:80] in capsys.readouterr().out
+    assert study.STUDY.finding(tmp_path)[:80] in capsys.readouterr().out
     rows = pd.read_csv(tmp_path / "estimate.csv")
     assert list(rows["half"]) == [0, 1] * 6
     assert list(rows["set"]) == [TEST] * 4 + [CALIBRATE] * 8
-    assert study.STUDY.headline(tmp_path).startswith("The difference from half the step")
+    assert study.STUDY.finding(tmp_path).startswith("The difference from half the step")
     assert (tmp_path / "estimate.png").stat().st_size > 7_000
 
 

@@ -33,7 +33,7 @@ SMALL = {
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_a_study_has_a_command_and_one_with_a_table_can_be_drawn_and_told(study):
     module = study.load()
-    needed = ["command", *(["first_claim" if study.claims else "headline"] * bool(study.table))]
+    needed = ["command", *["finding"] * bool(study.table)]
     assert all(callable(getattr(module, name)) for name in needed)
     assert not study.chapters or study.table
 

@@ -102,7 +102,7 @@ def test_a_strike_refuses_what_is_not_allowed(wrong):
 def test_the_study_says_what_is_off_and_what_broke(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(strikes, "PHASES", (0.5,))
     assert run(["restitution", "--engines", "mujoco", "--out", str(tmp_path)]) == 0
-    said = study.STUDY.headline(tmp_path)
+    said = study.STUDY.finding(tmp_path)
     assert " ".join(capsys.readouterr().out.split()).startswith(said)
     assert "asked in the first way that comes to mind, mujoco miss it" in said
     assert len(said) < 500
@@ -124,7 +124,7 @@ def test_what_is_said_over_all_that_is_varied_is_the_largest_of_all_strikes():
         assert line["off_over_all"] >= line["off"]
     best = lines.groupby("engine")["off_over_all"].min()
     ends = [f"{best[name]:.3f} in {name}" for name in (best.idxmin(), best.idxmax())]
-    assert f"all but {ends[0]} to {ends[1]} over " in study.STUDY.headline(folder)
+    assert f"all but {ends[0]} to {ends[1]} over " in study.STUDY.finding(folder)
 
 
 @pytest.mark.parametrize("way", WAYS["mujoco"], ids=lambda way: way.name)

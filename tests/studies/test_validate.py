@@ -30,7 +30,7 @@ from studies.validate.claims import (
     KNOWN,
     bands,
     bounded,
-    first_claim,
+    finding,
     leanings,
     quantiles,
     worst,
@@ -172,7 +172,7 @@ def test_the_headline_says_the_largest_errors_as_they_are():
             "amplitude_g": 0.6,
         }
     )
-    claim = first_claim(rows)
+    claim = finding(rows)
     assert "largest errors of the peak 47 % and 95 %, and 10⁻⁶ and 2 % where" in claim
 
 

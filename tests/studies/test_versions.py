@@ -20,7 +20,7 @@ from studies.measures.published import PUBLISHED
 from studies.page.facts import MOVING
 from studies.versions import releases
 from studies.versions.releases import Asked, Release, check_releases, chosen, listed
-from studies.versions.study import EVERY, FIGURE, RANDOM, STUDY, first_claim, posed
+from studies.versions.study import EVERY, FIGURE, RANDOM, STUDY, finding, posed
 from studies.versions.tables import CHANGED, NOTES, changes_table, notes_between, releases_table
 
 ENGINE = """
@@ -233,12 +233,12 @@ def test_a_change_is_what_moves_by_more_than_a_millionth_or_turns():
 
 def test_what_moved_and_what_did_not_is_said():
     found = {"3.0.0": answers([0.3, 0.4]), "3.1.0": answers([0.3, 0.4])}
-    assert first_claim(*tables_of(found)) == (
+    assert finding(*tables_of(found)) == (
         "From one release to the next no answer moves by more than 1e-06 in mujoco "
         "(3.0.0 to 3.1.0)."
     )
     lines, changes = tables_of({**found, "3.2.0": answers([0.3, 0.5])})
-    assert first_claim(lines, changes) == (
+    assert finding(lines, changes) == (
         "From one release to the next answers move by more than 1e-06 in mujoco (3.0.0 to 3.2.0, "
         "at 1 of 2 steps)."
     )

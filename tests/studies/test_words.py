@@ -73,7 +73,7 @@ def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
             summary("pybullet", 10, 2e-6, 3e-5),
         ]
     )
-    text = sweep.first_claim(lines)
+    text = sweep.finding_of(lines)
     assert "2 engines have the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
     assert "with steps that land on impacts, one engine has none wrong of 10 cases" in text
     assert "by linearization: housner the fall wrong in 2." in text
@@ -94,7 +94,7 @@ def test_of_many_engines_a_sweep_tells_the_range_and_who_is_at_its_ends():
         "As their documentation shows them, 3 engines have the fall wrong in up to 3 (pymunk) of "
         "10 cases each, and peaks off by up to 90 %."
     )
-    assert sweep.first_claim(lines) == said
+    assert sweep.finding_of(lines) == said
     asked = Posed(cases=10, problems=5, sizes=2, least=1.1, largest=1.5)
     assert sweep.verdict(sweep.preset_table(lines), asked) == (
         f"10 cases are 5 problems, each in 2 sizes, at 1.1 to 1.5 times the onset. {said}"

@@ -99,7 +99,7 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
     rows = drake_like()
     lines = summarize(with_reference(rows))
     words = "the fall wrong in 2, at rest for rocked in 2 and no answer in 1"
-    assert f"one engine has {words} of 6 cases, and peaks" in sweep.first_claim(lines)
+    assert f"one engine has {words} of 6 cases, and peaks" in sweep.finding_of(lines)
     many = pd.concat([lines, lines.assign(source="dart:naive", rest_wrong=0, no_answer=0)])
     many = pd.concat([many, lines.assign(source="pymunk:naive")], ignore_index=True)
     table = sweep.preset_table(many)
@@ -112,8 +112,8 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
         "6 cases are 4 problems, in up to 2 sizes, at 1.1 times the onset. "
         f"As their documentation shows them, {said}"
     )
-    assert said in sweep.first_claim(many)
-    assert f"housner {words}." in sweep.first_claim(lines.assign(source="housner"))
+    assert said in sweep.finding_of(many)
+    assert f"housner {words}." in sweep.finding_of(lines.assign(source="housner"))
 
 
 def test_cases_that_are_alike_by_similarity_are_one_problem():
