@@ -15,6 +15,7 @@ from engines import ENGINES
 from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
+from studies.drawing.styles import engine_title
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
@@ -274,11 +275,11 @@ def scenes_told(published: Path) -> list[dict[str, str]]:
     return sections
 
 
-def extreme_frames(published: Path) -> str:
+def extreme_frames(published: Path) -> dict[str, str]:
     """Return what engines make of the extreme frames, as `scenes` does; empty without any."""
     lines = found_in(published / "scenes" / "frame-extremes.csv")
     if lines.empty:
-        return ""
+        return {}
     frames = list(lines.groupby(["columns", "load"], sort=False))
     heads = [f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames]
     rows = [
@@ -286,7 +287,20 @@ def extreme_frames(published: Path) -> str:
         for name in dict.fromkeys(map(engine_of, lines["source"]))
         if name in ENGINES
     ]
-    return table(("", *heads), rows)
+    heaviest = lines[(lines["load"] == lines["load"].max()) & lines["source"].map(is_engine)]
+    order = in_order(heaviest["source"].map(preset_of))
+    place = heaviest["source"].map(lambda source: order.index(preset_of(source)))
+    best = heaviest.loc[place.groupby(heaviest["source"].map(engine_of)).idxmax()]
+    ranked = best.dropna(subset="median_error").sort_values("median_error")
+    found = [
+        f"{part(ranked['median_error'].iloc[end])} ({engine_title(ranked['source'].iloc[end])})"
+        for end in (0, -1)
+    ]
+    claim = (
+        f"With a beam {lines['load'].max():g} times as heavy as its columns the peak is off, in "
+        f"the median and with each engine's best preset, by {found[0]} to {found[1]}."
+    )
+    return {"claim": claim, "table": table(("", *heads), rows)}
 
 
 def floors(published: Path) -> dict[str, str]:
@@ -318,7 +332,9 @@ def _scene(lines: pd.DataFrame, engine: str, say: Callable[[float], str]) -> str
     said = []
     for row in ends:
         wrong = int(sum(row[kind] for kind in KINDS))
-        said.append(say(row["median_error"]) + (f" ({wrong} wrong)" if wrong else ""))
+        known = math.isfinite(row["median_error"])
+        lost = (f" ({wrong} wrong)" if known else f"{wrong} wrong") if wrong else ""
+        said.append((say(row["median_error"]) if known else "") + lost)
     return " → ".join(said)
 
 
