@@ -35,6 +35,7 @@ from studies.kit.posing import (
 )
 from studies.kit.provenance import project_version, version_of
 from studies.kit.runner import exit_code, run_jobs
+from studies.measures.again import built_by_script
 from studies.measures.words import listed
 
 
@@ -83,7 +84,7 @@ def command(
     stepped = {} if step is None else {"step": step}
     options = {**begin, **stepped, **yours.options([source], block)[source]}
     scene = Scene(system=block, motion=motion, preset=used.name, duration=window, **options)
-    if lacking := asked.lacks(scene, used):
+    if lacking := unwritten(asked, used, scene):
         print(f"failed: {source}: not available: {lacking}, as a script", file=sys.stderr)
         return 1
     rows = run_jobs(
@@ -114,6 +115,14 @@ def command(
         shown = (" ".join(f"{slip:.12g}" for slip in slips) for slips in (found, exact))
         print("slips to expect: {} m; exact {} m".format(*shown))
     return 0
+
+
+def unwritten(engine: Engine, preset: Preset, scene: Scene) -> str:
+    """Say what of a scene is not written out with a preset, or return an empty string."""
+    asks = scene.layout.asks
+    if (lacking := engine.lacks(scene, preset)) or built_by_script(engine, preset, asks):
+        return lacking
+    return f"{engine.title} is not built here for {asks[0].value}"
 
 
 def _reduce(job: Job, response: Response) -> Row:

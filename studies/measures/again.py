@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,8 @@ from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.declaration import Engine, Preset
+from engines.layouts import Ability, System
 from studies.cases.paper import free_rocking_window
 from studies.kit.provenance import record_of
 from studies.sources.registry import Effort, asks_of, resolve
@@ -71,7 +72,10 @@ def commands(
     beside = "" if source == "exact" else f" {source}"
     compare = f"{ROCKING}compare {case}{watched} --sources exact{beside}"
     answered = outcome in ("rocked", "overturned", "slid")
-    if not (usual and answered and written_out(source) and _built_by_its_script(source, block)):
+    asked = resolve(source)
+    if not (usual and answered and written_out(source)):
+        return compare, ""
+    if not built_by_script(asked.declared, asked.used, asks_of(block)):
         return compare, ""
     return compare, f"{ROCKING}export {case} --engine {source} --out DIR"
 
@@ -82,10 +86,9 @@ def written_out(source: str) -> bool:
     return bool(asked.engine and asked.declared.script) and not asked.accurate
 
 
-def _built_by_its_script(source: str, block: System) -> bool:
-    """Say whether what builds a block in an engine is what its script quotes."""
-    asked = resolve(source)
-    return asked.declared.builder(asks_of(block), asked.used) is asked.declared.build
+def built_by_script(engine: Engine, preset: Preset, asks: Sequence[Ability]) -> bool:
+    """Say whether what builds a scene that asks for some abilities is what a script quotes."""
+    return engine.builder(asks, preset) is engine.build
 
 
 def asked_again(

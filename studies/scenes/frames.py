@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import pandas as pd
 
@@ -74,7 +74,7 @@ def _jobs(
                 )
 
 
-Parts = Sequence[tuple[str, pd.DataFrame]]
+Parts: TypeAlias = "Sequence[tuple[str, pd.DataFrame]]"
 """The rows of each source, of what it can hold."""
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from given import FULL_SINE, G
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from analytic import Outcome, Record, SinePulse, SlidingBlock, Still, simulate
@@ -125,6 +125,7 @@ def test_any_motion_against_stepping(seed, friction, v, smooth):
 
 
 @settings(max_examples=25, deadline=None)
+@example(146, 0.05078125)
 @given(st.integers(0, 10**6), st.floats(0.05, 0.5))
 def test_mirror_and_history(seed, friction):
     """Equal to rounding of some dozen legs; standing wherever no slip is told of."""
@@ -132,7 +133,8 @@ def test_mirror_and_history(seed, friction):
     record = Record(dt=0.1, samples=draw.normal(0.0, 4.0, 30))
     block, times = box(friction), np.linspace(0.0, 12.0, 12001)
     response = simulate(block, record, times=times, duration=12.0)
-    mirrored = simulate(block, record.scaled(-1.0))
+    # with little friction a block slides on for longer than that
+    mirrored = simulate(block, record.scaled(-1.0), duration=12.0)
     assert mirrored.slips == pytest.approx([-slip for slip in response.slips], abs=1e-12)
     x, v = response.history.theta, response.history.velocity
     # the rate is smooth but for kinks, where the trapezoid errs by u'' dt^2
