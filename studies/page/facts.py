@@ -15,19 +15,16 @@ from engines import ENGINES
 from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
-from studies.drawing.styles import engine_title
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
-from studies.measures.again import worst_again
 from studies.measures.claims import TABLE, Finding, read_findings
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
-from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine
 from studies.measures.presets import told as as_told
 from studies.measures.words import (
-    capital,
     duration,
     in_kinds,
     listed,
@@ -37,7 +34,6 @@ from studies.measures.words import (
 )
 from studies.measures.wrongness import KINDS, WORDS
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
-from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
 from studies.sources.registry import grouped
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
@@ -229,113 +225,6 @@ def presets_text(lines: pd.DataFrame) -> str:
         for _, row in lines.iterrows()
     ]
     return table(heads, rows)
-
-
-def scenes(published: Path) -> str:
-    """Return the scenes as a table of Markdown: a row for each engine, a cell for each scene.
-
-    A cell has the median error and how many outcomes are wrong, as documented and then of the last
-    of the engine's presets that were asked.
-    """
-    block = presets(published).rename(columns={"median": "median_error"})
-    held: list[tuple[str, pd.DataFrame, Callable[[float], str]]] = [("a block", block, part)]
-    held += [
-        (SCENES[name].title, lines, SCENES[name].words)
-        for name, lines in by_scene(published / "scenes").items()
-    ]
-    heads = [f"{title}, {lines['cases'].max()} cases" for title, lines, _ in held]
-    engines = dict.fromkeys(engine_of(source) for _, lines, _ in held for source in lines["source"])
-    rows = [
-        (f"**{ENGINES[name].title}**", *(_scene(lines, name, say) for _, lines, say in held))
-        for name in engines
-    ]
-    return table(("", *heads), rows)
-
-
-def scenes_told(published: Path) -> list[dict[str, str]]:
-    """Return each scene in words: what was found, a table of engines and presets, the worst."""
-    folder, sections = published / "scenes", []
-    known = by_scene(folder)
-    worst = again(folder) if known else pd.DataFrame()
-    for name, lines in known.items():
-        told, source = SCENES[name], lines["source"]
-        posed = lines.assign(engine=source.map(engine_of), preset=source.map(preset_of))
-        commands = worst_again(worst[worst["scene"] == name])["command"]
-        sections.append(
-            {
-                "name": name,
-                "title": capital(told.title),
-                "claim": sentence(name, lines),
-                "asked": told.asked,
-                "cases": f"{lines['cases'].max()}",
-                "table": by_preset(posed, told.words),
-                "worst": "\n".join(commands),
-            }
-        )
-    return sections
-
-
-def extreme_frames(published: Path) -> dict[str, str]:
-    """Return what engines make of the extreme frames, as `scenes` does; empty without any."""
-    lines = found_in(published / "scenes" / "frame-extremes.csv")
-    if lines.empty:
-        return {}
-    frames = list(lines.groupby(["columns", "load"], sort=False))
-    heads = [f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames]
-    rows = [
-        (f"**{ENGINES[name].title}**", *(_scene(mine, name, part) for _, mine in frames))
-        for name in dict.fromkeys(map(engine_of, lines["source"]))
-        if name in ENGINES
-    ]
-    heaviest = lines[(lines["load"] == lines["load"].max()) & lines["source"].map(is_engine)]
-    order = in_order(heaviest["source"].map(preset_of))
-    place = heaviest["source"].map(lambda source: order.index(preset_of(source)))
-    best = heaviest.loc[place.groupby(heaviest["source"].map(engine_of)).idxmax()]
-    ranked = best.dropna(subset="median_error").sort_values("median_error")
-    found = [
-        f"{part(ranked['median_error'].iloc[end])} ({engine_title(ranked['source'].iloc[end])})"
-        for end in (0, -1)
-    ]
-    claim = (
-        f"With a beam {lines['load'].max():g} times as heavy as its columns the peak is off, in "
-        f"the median and with each engine's best preset, by {found[0]} to {found[1]}."
-    )
-    return {"claim": claim, "table": table(("", *heads), rows)}
-
-
-def floors(published: Path) -> dict[str, str]:
-    """Return what is found of moving floors, and the table of them; empty without any."""
-    lines = found_in(published / "scenes" / "floor-summary.csv")
-    if lines.empty:
-        return {}
-    heads, ways = (
-        ("", "moved by", "carries", "after 1 s of rest"),
-        ("carried", "carried_after_rest"),
-    )
-    rows = [
-        (
-            *(ENGINES[line["engine"]].title, line["floor"]),
-            *(f"{round(100.0 * line[name], 1) + 0.0:g} %" for name in ways),
-        )
-        for _, line in lines.iterrows()
-    ]
-    return {"claim": floor_sentence(lines), "table": table(heads, rows)}
-
-
-def _scene(lines: pd.DataFrame, engine: str, say: Callable[[float], str]) -> str:
-    """Return what the presets of an engine make of a scene; a dash of one that cannot hold it."""
-    mine = lines[lines["source"].map(engine_of) == engine]
-    if mine.empty:
-        return "–"
-    by_preset = {preset_of(row["source"]): row for _, row in mine.iterrows()}
-    ends = [by_preset[name] for name in in_order(by_preset)][:: max(len(by_preset) - 1, 1)]
-    said = []
-    for row in ends:
-        wrong = int(sum(row[kind] for kind in KINDS))
-        known = math.isfinite(row["median_error"])
-        lost = (f" ({wrong} wrong)" if known else f"{wrong} wrong") if wrong else ""
-        said.append((say(row["median_error"]) if known else "") + lost)
-    return " → ".join(said)
 
 
 def models(published: Path) -> dict[str, str]:

@@ -15,7 +15,7 @@ from studies.kit.journal import PROVENANCE
 from studies.kit.provenance import check, seal
 from studies.measures.published import dictionary
 from studies.measures.words import capital, meant
-from studies.page import engine_facts, facts, hero
+from studies.page import engine_facts, facts, hero, scene_facts
 from studies.page.engine_facts import objections, slippery
 from studies.scenes import STUDY as SCENES_STUDY
 from studies.sweep.study import verdict
@@ -78,10 +78,10 @@ def pages(root: Path) -> dict[Path, str]:
         "asked": capital(facts.asked(published).words),
         "missing": facts.missing(published),
         "presets": facts.presets_short(lines),
-        "scenes": facts.scenes(published),
-        "scenes_told": facts.scenes_told(published),
-        "extreme_frames": facts.extreme_frames(published),
-        "floors": facts.floors(published),
+        "scenes": scene_facts.scenes(published),
+        "scenes_told": scene_facts.scenes_told(published),
+        "extreme_frames": scene_facts.extreme_frames(published),
+        "floors": scene_facts.floors(published),
         "captions": SCENES_STUDY.captions,
         "presets_all": facts.presets_text(lines),
         "models": facts.models(published),

@@ -17,7 +17,7 @@ from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
 from studies.kit.tables import read_table
-from studies.page import facts, hero, readme
+from studies.page import facts, hero, readme, scene_facts
 from studies.page.engine_facts import objections
 from studies.page.facts import table
 from studies.sources.registry import expanded, grouped, original_of, resolve
@@ -70,10 +70,10 @@ def test_the_readme_follows_its_tables(pages, tmp_path):
 def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
-    (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
+    (drake,) = (line for line in scene_facts.scenes(copy).splitlines() if "Drake" in line)
     assert "3.8 % → 9.4·10⁻⁵" in drake
     assert drake.count("|") == 7
-    (newton,) = (line for line in facts.scenes(copy).splitlines() if "Newton" in line)
+    (newton,) = (line for line in scene_facts.scenes(copy).splitlines() if "Newton" in line)
     assert " | – | " in newton
     path = copy / "scenes" / "frame.csv"
     rows = read_table(path)
@@ -82,10 +82,10 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     rows.loc[rows[mine].index[:3], "outcome"] = "overturned"
     rows.loc[rows[mine].index[:3], "error"] = float("nan")
     rows.to_csv(path, index=False, na_rep="nan")
-    (drake,) = (line for line in facts.scenes(copy).splitlines() if "Drake" in line)
+    (drake,) = (line for line in scene_facts.scenes(copy).splitlines() if "Drake" in line)
     assert "25 % (3 wrong) → 9.4·10⁻⁵" in drake
     shutil.rmtree(copy / "scenes")
-    assert "frame" not in facts.scenes(copy)
+    assert "frame" not in scene_facts.scenes(copy)
 
 
 def said(pages, root):
