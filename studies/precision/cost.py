@@ -149,6 +149,10 @@ def put_back(engine: str, omission: Omission, block: RigidBlock, motion: SinePul
     if preset not in (None, *(use.name for use in ENGINES[engine].presets)):
         words = f"not available: {engine} has no preset {preset!r}"
         return Response.failure(words, reason=Reason.UNAVAILABLE)
+    settings = omission.put_back.get("settings", {})
+    if not ENGINES[engine].preset(preset).takes(**settings):
+        words = f"not available: {engine} has no setting of {', '.join(settings)} to put back"
+        return Response.failure(words, reason=Reason.UNAVAILABLE)
     return run(engine, Scene(system=block, motion=motion, **omission.put_back))
 
 
