@@ -33,7 +33,7 @@ command is given again.""",
                 *("--sources", "exact", "engines:naive", "engines:naive-base-at-rest"),
                 *("engines:recommended", "engines:fixed", "engines"),
             ),
-            minutes=(0.1, 20.0),
+            minutes=(0.1, 35.0),
             weaker=(
                 "Figure 8 stands for all four, and no preset with a tuned contact and a fixed "
                 "step is asked."
