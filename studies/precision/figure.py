@@ -37,7 +37,7 @@ LEAST = 1e-10
 """End of the scale of errors of engines."""
 PALE = "#dcdcdc"
 """Of the other methods behind those that a panel is about."""
-ACROSS = 4
+ACROSS = 3
 """Panels of engines in a row."""
 TARGET = 1e-3
 """The error that the title tells the price of."""
@@ -183,5 +183,5 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     errors.set(xscale="log", xlabel="relative error of the peak  [–]")
     for axes in (costs, errors):
         axes.grid(alpha=0.25)
-    drawing.legend(loc="outside lower center", ncols=len(engines), frameon=False)
+    drawing.legend(loc="outside lower center", ncols=min(len(engines), 5), frameon=False)
     return drawing
