@@ -106,14 +106,17 @@ class LeavesAChild(Calm):
 
     def __init__(self, scene, settings, dt_s):
         super().__init__(scene, settings, dt_s)
+        there, done = os.pipe()
         if not os.fork():
             os.setsid()
             if not os.fork():
                 signal.signal(signal.SIGTERM, signal.SIG_IGN)
                 note(os.getpid())
+                os.write(done, b".")
                 time.sleep(1000.0)
             os._exit(0)
         os.wait()
+        os.read(there, 1)  # it is noted, and will not be ended before
         os._exit(5)
 
 
