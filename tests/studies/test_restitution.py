@@ -86,7 +86,7 @@ def test_pybullet_needs_five_settings(wanted):
 @pytest.mark.parametrize("way", WAYS["newton"], ids=lambda way: way.name)
 @pytest.mark.parametrize("wanted", [0.0, 0.8])
 def test_newton_gives_back_what_is_asked_and_by_xpbd_slides(way, wanted):
-    asked, impact = striking("newton", way.name, wanted)
+    _, impact = striking("newton", way.name, wanted)
     assert impact.corner_ratio == pytest.approx(wanted, abs=0.05)
     slides = way.settings(wanted, 1e-3).get("solver") == "xpbd" and wanted > 0.0
     assert (abs(impact.slide_ratio) > 0.5) == slides
