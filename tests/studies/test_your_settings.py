@@ -55,18 +55,23 @@ def test_a_published_step_is_its_own_and_none_is_as_coarse_as_a_long_one():
     assert long[["coarser", *SETS]].isna().all(axis=None)
 
 
+def written_at(dt, engine, capsys):
+    """Return the lines of each preset's settings at a step."""
+    assert run(["advise", "--dt", str(dt), "--engine", engine, "--friction", "0.7"]) == 0
+    parts = re.split(rf"\n\n(?=[^\n]*DT = {dt:g} s)", capsys.readouterr().out)[1:]
+    return [part.split("\n\n")[0].splitlines() for part in parts]
+
+
 @pytest.mark.parametrize("engine", PUBLISHED_ENGINES)
 def test_settings_are_formulas_of_the_step_and_their_values(engine, capsys):
     dt = 0.0037
-    assert run(["advise", "--dt", str(dt), "--engine", engine, "--friction", "0.7"]) == 0
-    text = capsys.readouterr().out
-    parts = re.split(r"\n\n(?=[^\n]*DT = 0\.0037 s)", text)[1:]
+    parts, elsewhere = (written_at(step, engine, capsys) for step in (dt, 0.5 * dt))
     assert len(parts) == 3
-    for part in parts:
-        assert "0.7" in part
-        head, *lines = part.split("\n\n")[0].splitlines()
+    for (head, *lines), (_, *others) in zip(parts, elsewhere, strict=True):
+        assert "0.7" in "".join(lines)
         if "that is" not in lines:
-            assert "at another step other numbers" in head
+            # what follows the step otherwise than as a power of it, or not at all
+            assert ("at another step other numbers" in head) == (lines != others)
             continue
         middle = lines.index("that is")
         formulas, values = lines[:middle], lines[middle + 1 :]
