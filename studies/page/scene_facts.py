@@ -12,7 +12,7 @@ from engines import ENGINES
 from studies.drawing.styles import engine_title
 from studies.measures.again import worst_again
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
-from studies.measures.words import capital, part
+from studies.measures.words import capital, listed, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import by_preset, presets, table
 from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
@@ -83,9 +83,11 @@ def extreme_frames(published: Path) -> dict[str, str]:
         f"{part(ranked['median_error'].iloc[end])} ({engine_title(ranked['source'].iloc[end])})"
         for end in (0, -1)
     ]
+    mute = best.loc[best["median_error"].isna(), "source"].map(engine_title)
+    beside = f"; no peak at all from {listed(list(mute))}" if len(mute) else ""
     claim = (
         f"With a beam {lines['load'].max():g} times as heavy as its columns the peak is off, in "
-        f"the median and with each engine's best preset, by {found[0]} to {found[1]}."
+        f"the median and with each engine's best preset, by {found[0]} to {found[1]}{beside}."
     )
     return {"claim": claim, "table": table(("", *heads), rows)}
 
@@ -95,10 +97,8 @@ def floors(published: Path) -> dict[str, str]:
     lines = found_in(published / "scenes" / "floor-summary.csv")
     if lines.empty:
         return {}
-    heads, ways = (
-        ("", "moved by", "carries", "after 1 s of rest"),
-        ("carried", "carried_after_rest"),
-    )
+    heads = ("", "moved by", "carries", "after 1 s of rest")
+    ways = ("carried", "carried_after_rest")
     rows = [
         (
             *(ENGINES[line["engine"]].title, line["floor"]),
