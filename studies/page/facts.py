@@ -11,6 +11,7 @@ from typing import Any
 
 import pandas as pd
 
+from analytic.models import MODELS
 from engines import ENGINES
 from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
@@ -91,6 +92,8 @@ def command_of(study: Study, chapter: Chapter, folder: Path) -> list[str]:
         return words
     if all(map(is_engine, usual)):
         answered = list(filter(is_engine, answered))
+    elif not set(answered).intersection(MODELS):  # they have no rows of their own
+        answered = [*filter(MODELS.__contains__, usual), *answered]
     if option == "engines":
         answered = list(dict.fromkeys(map(engine_of, answered)))
     if set(answered) == set(usual):

@@ -293,17 +293,20 @@ PLACES = [place for place in CHAPTERS if facts.is_published(PUBLISHED, place[1])
 
 
 @pytest.mark.parametrize("place", PLACES, ids=lambda place: place[1].folder)
-def test_the_command_of_a_chapter_asks_who_answers_in_its_tables(place):
+def test_the_command_of_a_chapter_asks_who_answers_in_its_tables(place, tmp_path, capsys):
     study, chapter = place
     words = facts.command_of(study, chapter, PUBLISHED / chapter.folder)
-    taken(words)
+    file = tmp_path / "DIR"
+    file.touch()
+    refused(capsys, [file if word == "DIR" else word for word in words], str(file), "not a file")
     if chapter.folder == "literature":
         return  # peers' tests are asked of presets of their own, too
     record = json.loads((PUBLISHED / chapter.folder / "provenance.json").read_text())
     answered = {used(name) for name in record.get("made", {}).get("rows", {})}
     if "--sources" in words and answered:
         asked = map(used, expanded(words[words.index("--sources") + 1 :]))
-        assert here(asked) == here(answered)
+        more = here(asked) ^ here(answered)
+        assert not more or {"exact"} < dict(more).keys() <= MODELS.keys()  # maps have no rows
     if "--engines" in words and answered:
         asked = set(words[words.index("--engines") + 1 :])
         assert asked == {name for name, _ in answered if name in ENGINES}
