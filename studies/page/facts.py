@@ -13,7 +13,6 @@ import pandas as pd
 
 from analytic.models import MODELS
 from engines import ENGINES
-from engines.declaration import RECOMMENDED
 from studies.advise.words import best_by_driver, setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
@@ -161,18 +160,6 @@ def shared(lines: pd.DataFrame) -> list[str]:
     """Return the presets that several engines have, in order; all, where there is none such."""
     counts = lines["preset"].value_counts()
     return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
-
-
-def presets_short(lines: pd.DataFrame) -> str:
-    """Return the presets as a table of Markdown: a row for each engine, a cell for each preset.
-
-    A preset of one engine alone has no column: it is named in its cell in the last. What is
-    documented but on a base at rest, and equal steps where there are better ones, stand on the
-    engines' page.
-    """
-    best = lines["engine"].map(lambda name: ENGINES[str(name)].best.name)
-    lines = lines[lines["preset"].isin(("naive", RECOMMENDED)) | (lines["preset"] == best)]
-    return by_preset(lines.rename(columns={"median": "median_error", "max": "largest_error"}))
 
 
 def by_preset(lines: pd.DataFrame, say: Callable[[float], str] = part) -> str:

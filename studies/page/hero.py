@@ -13,7 +13,6 @@ from analytic.response import Response
 from studies.cases.paper import free_rocking_window
 from studies.kit import provenance
 from studies.kit.jobs import Job, ask
-from studies.measures.words import signed
 from studies.sources.registry import core_sources, resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
@@ -55,14 +54,3 @@ def summary(samples: pd.DataFrame) -> pd.DataFrame:
     exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
     survived = lines["outcome"] == "rocked"
     return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))
-
-
-def errors(published: Path) -> dict[str, str]:
-    """Return the outcome of each source of the first picture, or how far its peak is off."""
-    lines = summary(pd.read_csv(published / "hero" / "hero.csv"))
-    return {
-        str(row["source"]): signed(float(row["error"]))
-        if row["outcome"] == "rocked"
-        else str(row["outcome"])
-        for _, row in lines.iterrows()
-    }

@@ -25,7 +25,7 @@ from studies.kit.study import Chapter, Study
 from studies.kit.tables import SMALL, read_table
 from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
-from studies.measures.words import in_kinds, meant, part
+from studies.measures.words import capital, in_kinds, meant, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import MANY, asked, presets, shared, told_of
 from studies.sweep.study import verdict
@@ -62,12 +62,12 @@ def first_sight(folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        verdict, and what each kind of wrong counts, in words; presets: how they are used, in
-        words; tiles: engine -> a tile for each of these, or None.
+        verdict, what was asked, and what each kind of wrong counts, in words; presets: how they are
+        used, in words; tiles: engine -> a tile for each of these, or None.
     """
     lines = presets(folder)
     if lines.empty:
-        return {"verdict": "", "wrong": "", "presets": [], "tiles": {}}
+        return {"verdict": ""}
     names = shared(lines)
     tiles = {}
     for engine, group in lines.groupby("engine", sort=False):
@@ -76,7 +76,8 @@ def first_sight(folder: Path) -> dict[str, Any]:
         alone = [{**tile, "preset": name} for name, tile in mine.items() if name not in names]
         tiles[ENGINES[str(engine)].title] = [*row[:-1], row[-1] or next(iter(alone), None)]
     return {
-        "verdict": verdict(lines, asked(folder)),
+        "verdict": verdict(lines),
+        "asked": capital(asked(folder).words),
         "wrong": meant(),
         "presets": list(map(in_words, names)),
         "tiles": tiles,

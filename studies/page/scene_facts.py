@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -12,7 +14,7 @@ from engines import ENGINES
 from studies.drawing.styles import engine_title
 from studies.measures.again import worst_again
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
-from studies.measures.words import capital, listed, part
+from studies.measures.words import capital, duration, listed, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import by_preset, presets, table
 from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
@@ -22,21 +24,27 @@ def scenes(published: Path) -> str:
     """Return the scenes as a table of Markdown: a row for each engine, a cell for each scene.
 
     A cell has the median error and how many outcomes are wrong, as documented and then of the last
-    of the engine's presets that were asked.
+    of the engine's presets that were asked; the block has the time of a case, too.
     """
     block = presets(published).rename(columns={"median": "median_error"})
-    held: list[tuple[str, pd.DataFrame, Callable[[float], str]]] = [("a block", block, part)]
+    held: list[tuple[str, pd.DataFrame, Callable[[pd.Series[Any]], str]]] = [
+        (_posed("a block", block), block, partial(_outcome, say=part)),
+        ("its time of a case", block, lambda row: duration(1e-3 * row["ms"])),
+    ]
     held += [
-        (SCENES[name].title, lines, SCENES[name].words)
+        (_posed(SCENES[name].title, lines), lines, partial(_outcome, say=SCENES[name].words))
         for name, lines in by_scene(published / "scenes").items()
     ]
-    heads = [f"{title}, {lines['cases'].max()} cases" for title, lines, _ in held]
     engines = dict.fromkeys(engine_of(source) for _, lines, _ in held for source in lines["source"])
     rows = [
-        (f"**{ENGINES[name].title}**", *(_scene(lines, name, say) for _, lines, say in held))
+        (f"**{ENGINES[name].title}**", *(_ends(lines, name, say) for _, lines, say in held))
         for name in engines
     ]
-    return table(("", *heads), rows)
+    return table(("", *(head for head, _, _ in held)), rows)
+
+
+def _posed(title: str, lines: pd.DataFrame) -> str:
+    return f"{title}, {lines['cases'].max()} cases"
 
 
 def scenes_told(published: Path) -> list[dict[str, str]]:
@@ -68,9 +76,10 @@ def extreme_frames(published: Path) -> dict[str, str]:
     if lines.empty:
         return {}
     frames = list(lines.groupby(["columns", "load"], sort=False))
+    say = partial(_outcome, say=part)
     heads = [f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames]
     rows = [
-        (f"**{ENGINES[name].title}**", *(_scene(mine, name, part) for _, mine in frames))
+        (f"**{ENGINES[name].title}**", *(_ends(mine, name, say) for _, mine in frames))
         for name in dict.fromkeys(map(engine_of, lines["source"]))
         if name in ENGINES
     ]
@@ -109,17 +118,19 @@ def floors(published: Path) -> dict[str, str]:
     return {"claim": floor_sentence(lines), "table": table(heads, rows)}
 
 
-def _scene(lines: pd.DataFrame, engine: str, say: Callable[[float], str]) -> str:
-    """Return what the presets of an engine make of a scene; a dash of one that cannot hold it."""
+def _ends(lines: pd.DataFrame, engine: str, say: Callable[[pd.Series[Any]], str]) -> str:
+    """Return what is said of an engine's first and last preset; a dash of one without any."""
     mine = lines[lines["source"].map(engine_of) == engine]
     if mine.empty:
         return "–"
     by_preset = {preset_of(row["source"]): row for _, row in mine.iterrows()}
-    ends = [by_preset[name] for name in in_order(by_preset)][:: max(len(by_preset) - 1, 1)]
-    said = []
-    for row in ends:
-        wrong = int(sum(row[kind] for kind in KINDS))
-        known = math.isfinite(row["median_error"])
-        lost = (f" ({wrong} wrong)" if known else f"{wrong} wrong") if wrong else ""
-        said.append((say(row["median_error"]) if known else "") + lost)
-    return " → ".join(said)
+    names = in_order(by_preset)
+    said = [say(by_preset[name]) for name in dict.fromkeys((names[0], names[-1]))]
+    return "<br>→ ".join(said).replace(" ", "\N{NO-BREAK SPACE}")
+
+
+def _outcome(row: pd.Series[Any], say: Callable[[float], str]) -> str:
+    wrong = int(sum(row[kind] for kind in KINDS))
+    if not math.isfinite(row["median_error"]):
+        return f"{wrong} wrong" if wrong else ""
+    return say(row["median_error"]) + (f" ({wrong} wrong)" if wrong else "")

@@ -22,7 +22,7 @@ from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.claims import write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
-from studies.measures.posed import Posed, posed
+from studies.measures.posed import posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import (
     alike,
@@ -202,17 +202,15 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def verdict(table: pd.DataFrame, asked: Posed) -> str:
-    """Say what was asked, and what the first and the best of the presets are off by, at worst.
+def verdict(table: pd.DataFrame) -> str:
+    """Say what the first and the best of the presets have wrong and are off by, at worst.
 
     Parameters
     ----------
     table : DataFrame
         From `preset_table`, of one folder or several.
-    asked : Posed
-        What was asked.
     """
     names = in_order(table["preset"])
     ends = {name: table[table["preset"] == name] for name in (names[0], names[-1])}
     parts = [_wrong_by_up_to(name, lines["max"], lines) for name, lines in ends.items()]
-    return f"{capital(asked.words)}. {' '.join(f'{capital(words)}.' for words in parts)}"
+    return " ".join(f"{capital(words)}." for words in parts)
