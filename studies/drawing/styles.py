@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
+from analytic.models import MODELS
 from engines import ENGINES
-from studies.measures.presets import Fill, told
+from studies.measures.presets import Fill, engine_of, preset_of, told
 
 LOWEST = 1e-16
 """Errors below are drawn here, on the floor of double precision."""
@@ -98,6 +99,17 @@ def name_of(source: str) -> str:
     """Return how a source is called in a picture: an engine by its title, with its preset."""
     engine, colon, preset = source.partition(":")
     return title_of(engine) + (f", {told(preset).short}" if colon else "")
+
+
+def full_name(source: str) -> str:
+    """Return the same for an engine's plain name, too, which stands for its best preset.
+
+    A model is called by its title.
+    """
+    if source in MODELS:
+        return MODELS[source].title
+    preset = preset_of(source)
+    return name_of(f"{engine_of(source)}:{preset}") if preset else name_of(source)
 
 
 def style_of(source: str) -> Style:

@@ -19,9 +19,11 @@ from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.facets import key, panels
 from studies.drawing.kept import Pictures
-from studies.drawing.styles import name_of, style_of
+from studies.drawing.styles import engine_title, full_name, style_of
 from studies.kit.tables import table_in
 from studies.measures.differences import conditioning_of
+from studies.measures.presets import in_words, preset_of
+from studies.measures.words import gathered
 from studies.measures.wrongness import NO_ANSWER, REST, WORDS
 from studies.overturning.report import modes_at, no_impact_line, window_of, with_verdicts
 
@@ -106,20 +108,21 @@ def draw_differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window)
     drawn += list(parts)[:1] if not any(off.values()) else []
     drawing, grid = panels(len(drawn), ACROSS, (3.0, 2.8), 0.9)
     across = min(len(drawn), ACROSS)
-    right = picture(areas[areas["model"] == "exact"], window)
+    exact = picture(areas[areas["model"] == "exact"], window)
     for place, (axes, source) in enumerate(zip(grid, drawn, strict=True)):
         if source in models:
             found = picture(areas[areas["model"] == source], window)
-            codes = np.where(found >= 0, np.where(right >= 0, 1, 2), np.where(right >= 0, 3, 0))
+            codes = np.where(found >= 0, np.where(exact >= 0, 1, 2), np.where(exact >= 0, 3, 0))
             wrong = f"{np.isin(codes, (2, 3)).mean():.1%}".replace("%", " %")
         else:
             codes = _cell_codes(parts[source])
             wrong = f"{off[source]} of {len(parts[source])} cells"
         _paint(axes, codes, DIFFERENCE_COLOURS, window)
-        axes.set_title(f"{name_of(source)}:\n{wrong} wrong", fontsize=10)
+        axes.set_title(f"{full_name(source)}:\n{wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + across >= len(drawn), left=False)
-    alike = [name_of(str(name)) for name in parts if not off[name]]
-    words = f"; none of their cells wrong: {', '.join(alike)}" if alike else ""
+    right = [str(name) for name in parts if not off[name]]
+    alike = gathered((engine_title(name), in_words(preset_of(name))) for name in right)
+    words = f"; no cell wrong: {alike}" if alike else ""
     drawing.supylabel(AMPLITUDE, fontsize=10)
     title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * across)
     drawing.suptitle(title, fontsize=11)
