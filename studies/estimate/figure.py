@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -10,7 +12,7 @@ from matplotlib.figure import Figure
 from studies.drawing.styles import engine_title, style_of
 from studies.estimate.study import CALIBRATE
 from studies.measures.presets import in_order, in_words, preset_of
-from studies.measures.words import part
+from studies.measures.words import alike, part
 
 LEAST, MOST = 0.1, 1e4
 """Ends of the scale of factors."""
@@ -32,19 +34,22 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
     names = in_order(presets)
     drawing = Figure(figsize=(3.2 * len(names) + 0.6, 4.2), layout="constrained")
     panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
+    bounded: list[float] = []
     for axes, preset in zip(panels, names, strict=True):
-        _panel(axes, lines[presets == preset])
+        bounded += _panel(axes, lines[presets == preset])
         axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
         axes.set_title(in_words(preset), fontsize=9)
         axes.set_xlabel("times the difference to half the step")
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("part of the errors that are smaller")
-    drawing.suptitle(f"Named: the part within {MARKED:g} times the difference", fontsize=11)
+    found = alike([part(end(bounded, default=math.nan)) for end in (min, max)], "to")
+    title = f"{MARKED:g} times the difference to half the step bounds {found} of an engine's errors"
+    drawing.suptitle(title, fontsize=11)
     return drawing
 
 
-def _panel(axes: Axes, lines: pd.DataFrame) -> None:
-    """Draw a line for each source, and name them in the order of what ten estimates bound."""
+def _panel(axes: Axes, lines: pd.DataFrame) -> list[float]:
+    """Draw a line for each source, named in the order of the parts that MARKED bounds: these."""
     names = []
     for factor in (1.0, MARKED):
         axes.axvline(factor, color="#999999", linewidth=0.8, linestyle=":")
@@ -60,3 +65,4 @@ def _panel(axes: Axes, lines: pd.DataFrame) -> None:
     for place, (_, name, colour) in enumerate(sorted(names)):
         axes.text(0.96, 0.04 + LINE * place, name, transform=axes.transAxes, ha="right",
                   color=colour, fontsize=9)  # fmt: skip
+    return [within for within, _, _ in names]
