@@ -154,12 +154,38 @@ PEERS = (
 
 
 def put(job: Job, source: Source) -> Response:
-    """Put what is asked to a source: a test's scene, which slides, or a printed problem."""
+    """Put a job of this study to its source: a test's scene, which slides, or a printed problem.
+
+    Parameters
+    ----------
+    job : Job
+        Of `PeerTest.jobs`, or of a problem as for `solve_problem`.
+    source : Source
+
+    Returns
+    -------
+    Response
+        Of a printed problem a `Reading`, or a failed response; nothing that a source raises is
+        passed on.
+    """
     return (ask if isinstance(job.block, SlidingBlock) else solve_problem)(job, source)
 
 
 def read_off(job: Job, response: Response) -> Row:
-    """Return the columns that follow the labels and source; of a test its way and its mean rate."""
+    """Return the columns that follow the labels and source of a row.
+
+    Parameters
+    ----------
+    job : Job
+    response : Response
+        From `put`.
+
+    Returns
+    -------
+    dict
+        As of `studies.literature.readings.reduce`. Of a test that was sampled at two times, value
+        is the way [m] between them, other_side the mean rate [m/s].
+    """
     row, seen = reduce(job, response), response.history
     if isinstance(job.block, SlidingBlock) and seen and len(seen.time) == 2:
         way = float(np.ptp(seen.theta))
