@@ -42,6 +42,7 @@ class PeerTest(NamedTuple):
 
     held is what is asked of its scene, by source, as it is held here: without a fall at first,
     which adds `more` to the exact number. Where nothing is asked, answer is the exact number.
+    `passes`, `more` and `answer` are in the unit that `quantity` names.
     """
 
     name: str

@@ -43,7 +43,7 @@ AMPLITUDES = np.geomspace(1.0001, 60.0, 6000)
 class Reading(Response):
     """A response, and the quantity that is read from it.
 
-    Of a threshold, the response is that above the range in which it is looked for.
+    Of a threshold, the response is that at the upper end of the range in which it is looked for.
 
     Attributes
     ----------

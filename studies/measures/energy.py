@@ -53,8 +53,8 @@ def flights(
 def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
     """Return the largest rise of energy during free rocking over its largest value.
 
-    A rise is counted from the least energy before it, through all flights and impacts: free
-    rocking of a rigid block can only lose energy (`energy`, the exact model's).
+    The energy is the exact model's (`energy`). A rise is counted from the least energy before it,
+    through all flights and impacts: free rocking of a rigid block can only lose energy.
 
     Parameters
     ----------

@@ -57,6 +57,11 @@ def ask_for_moment(job: Job, source: Source) -> Response:
         Its observables are declared and measured: moments in steps from the begin of one. Failed,
         with the reason, of a preset that takes its own steps, an engine that is not available or
         raises, and one that a pull does not move as it should.
+
+    Raises
+    ------
+    KeyError
+        If the source is no engine.
     """
     if source.used.stepping is Stepping.OWN:
         return Response.failure("not asked: it takes no steps that others choose")
