@@ -21,9 +21,26 @@ LEAST_SWING = 1e-3
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the summary, the largest errors of period and decay over the swings, and the drift.
+    """Return how far the free rocking of a released block is from the closed forms of its model.
 
-    The fall from the tilt counts as a quarter of a period, and begins the drift.
+    The closed forms are `analytic.criteria.quarter_period` (Housner 1963; exactly, by elliptic
+    integrals) and `next_amplitude`, by energy. The fall from the tilt counts as a quarter of a
+    period, and begins the drift.
+
+    Parameters
+    ----------
+    job : Job
+        Of `studies.free.study.released`: its start is at rest, and its model the source's.
+    response : Response
+        With the history from the release to the end of the swings that are compared.
+
+    Returns
+    -------
+    dict
+        The columns of `summary`; swings, those that are compared; period_error and decay_error, the
+        largest relative errors of the time between impacts and of the next rotation; timed_impacts,
+        and drift_p, by how much the last of them is late, in units of 1/p. nan unless the block
+        rocked so often.
     """
     model = job.asked.model
     period_error = decay_error = drift = math.nan
@@ -58,7 +75,29 @@ def reduce(job: Job, response: Response) -> Row:
 
 
 def swing_times(block: RigidBlock, theta: float, model: str) -> list[float]:
-    """Return the times [s] between the impacts that are timed, after a fall from `theta` [rad]."""
+    """Return the times between the impacts that are timed, after a fall.
+
+    Each is twice the `quarter_period` of the rotation that it reaches, by energy.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    theta : float
+        Rotation [rad] of the release at rest, above 0 and below the model's saddle.
+    model : str
+        A key of `analytic.MODELS`.
+
+    Returns
+    -------
+    list of float
+        [s], from the first impact on: at most IMPACTS - 1, and none of a swing that stays below
+        LEAST_SWING of alpha.
+
+    Raises
+    ------
+    KeyError
+        If there is no such model.
+    """
     times: list[float] = []
     top = next_amplitude(block, theta, model)
     while len(times) < IMPACTS - 1 and top >= LEAST_SWING * block.alpha:

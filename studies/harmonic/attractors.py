@@ -61,7 +61,21 @@ class Shaking:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """What a response settled on, and the theta [rad] and rate [rad/s] where it stands."""
+    """What a response settled on, and where it stands.
+
+    Attributes
+    ----------
+    outcome : str
+        Value of an `Outcome`.
+    right, left : float
+        Largest rotations [rad] to either side, the larger first; inf of a block that overturned,
+        nan of a response that failed.
+    period, impacts : int
+        Forcing periods after which the response repeats, and impacts in that time; 0 if it does
+        not.
+    end : (float, float)
+        theta [rad] and rate [rad/s] at the end of the motion.
+    """
 
     outcome: str
     right: float
@@ -85,7 +99,15 @@ class State:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Attractor:
-    """An orbit on which responses settle, or overturning, and how many of the grid's starts do."""
+    """An orbit on which responses settle, or overturning.
+
+    Attributes
+    ----------
+    state : State
+        Of the first response that was found on it.
+    starts : int
+        How many of the grid's starts settle on it; 0 if it was found from a neighbour alone.
+    """
 
     state: State
     starts: int
@@ -131,11 +153,25 @@ def _shaken(shaking: Shaking, start: tuple[float, float], periods: int) -> State
 
 
 def attractors(points: Sequence[Shaking], starts: int, periods: int) -> list[list[Attractor]]:
-    """Return what lives at each point, what most of the grid's starts settle on first.
+    """Return the attractors at each point, those first on which most of the grid's starts settle.
 
-    Every start of a grid of `starts` rotations by as many rates is tried at every point; and each
-    orbit is followed to the points before and after it, as far as it goes, which finds it where
-    none of the grid's starts do.
+    The whole grid of starts is tried at every point; then each orbit is followed to the points
+    before and after it, as far as it goes, which finds it where none of the grid's starts do.
+
+    Parameters
+    ----------
+    points : sequence of Shaking
+        In the order of what is swept.
+    starts : int
+        Rotations in the grid of starts, and rates at each; at least 1.
+    periods : int
+        Forcing periods from each start before its orbit is read, at least 1; twice `LAST_PERIODS`
+        are taken in any case, and more where the orbit does not repeat by then.
+
+    Returns
+    -------
+    list of list of Attractor
+        One list for each point.
     """
     found: list[list[Attractor]] = []
     for shaking in points:

@@ -42,6 +42,7 @@ class PeerTest(NamedTuple):
 
     held is what is asked of its scene, by source, as it is held here: without a fall at first,
     which adds `more` to the exact number. Where nothing is asked, answer is the exact number.
+    `passes`, `more` and `answer` are in the unit that `quantity` names.
     """
 
     name: str
@@ -154,12 +155,38 @@ PEERS = (
 
 
 def put(job: Job, source: Source) -> Response:
-    """Put what is asked to a source: a test's scene, which slides, or a printed problem."""
+    """Put a job of this study to its source: a test's scene, which slides, or a printed problem.
+
+    Parameters
+    ----------
+    job : Job
+        Of `PeerTest.jobs`, or of a problem as for `solve_problem`.
+    source : Source
+
+    Returns
+    -------
+    Response
+        Of a printed problem a `Reading`, or a failed response; nothing that a source raises is
+        passed on.
+    """
     return (ask if isinstance(job.block, SlidingBlock) else solve_problem)(job, source)
 
 
 def read_off(job: Job, response: Response) -> Row:
-    """Return the columns that follow the labels and source; of a test its way and its mean rate."""
+    """Return the columns that follow the labels and source of a row.
+
+    Parameters
+    ----------
+    job : Job
+    response : Response
+        From `put`.
+
+    Returns
+    -------
+    dict
+        As of `studies.literature.readings.reduce`. Of a test that was sampled at two times, value
+        is the way [m] between them, other_side the mean rate [m/s].
+    """
     row, seen = reduce(job, response), response.history
     if isinstance(job.block, SlidingBlock) and seen and len(seen.time) == 2:
         way = float(np.ptp(seen.theta))

@@ -41,7 +41,15 @@ AMPLITUDES = np.geomspace(1.0001, 60.0, 6000)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reading(Response):
-    """The last response that was needed, and the quantity; nan where there is none."""
+    """A response, and the quantity that is read from it.
+
+    Of a threshold, the response is that at the upper end of the range in which it is looked for.
+
+    Attributes
+    ----------
+    values : tuple of float
+        One number, or two for either side of the block, in the unit of `Problem.quantity`.
+    """
 
     values: tuple[float, ...] = ()
 
@@ -55,7 +63,24 @@ NAMED = {problem.name: problem for problem in PROBLEMS}
 
 
 def solve_problem(job: Job, source: Source) -> Response:
-    """Put a problem to a source, and read its quantity."""
+    """Put a printed problem to a source, and read its quantity.
+
+    A threshold is bisected within REACH of the print, to a relative width of COARSE for an engine
+    and of FINE for all others; of other problems one response is enough.
+
+    Parameters
+    ----------
+    job : Job
+        Its label problem is a name of `NAMED`.
+    source : Source
+
+    Returns
+    -------
+    Response
+        A `Reading`; a failed response with its reason where there is no quantity: the source
+        failed, or its orbit does not repeat, or the model of the print has no threshold in that
+        range. Where another source has none there, its response with a message.
+    """
     problem = NAMED[str(job.labels["problem"])]
 
     def once(asked: Job) -> Response:
@@ -156,7 +181,20 @@ def _with(response: Response, *values: float) -> Reading:
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the columns that follow a problem's labels and source."""
+    """Return the columns that follow a problem's labels and source.
+
+    Parameters
+    ----------
+    job : Job
+    response : Response
+        From `solve_problem`.
+
+    Returns
+    -------
+    dict
+        outcome and message, and value and other_side in the unit of the problem's quantity; nan
+        where there is none.
+    """
     values = response.values if isinstance(response, Reading) else ()
     one, other = (*values, math.nan, math.nan)[:2]
     return {

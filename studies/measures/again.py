@@ -87,7 +87,19 @@ def written_out(source: str) -> bool:
 
 
 def built_by_script(engine: Engine, preset: Preset, asks: Sequence[Ability]) -> bool:
-    """Say whether what builds a scene that asks for some abilities is what a script quotes."""
+    """Say whether a scene is built by the engine's `build`, which its exported script quotes.
+
+    Parameters
+    ----------
+    engine, preset
+    asks : sequence of Ability
+        What the scene asks for beyond one body, from `studies.sources.registry.asks_of`.
+
+    Returns
+    -------
+    bool
+        False where the engine or the preset has a builder of its own for one of these.
+    """
     return engine.builder(asks, preset) is engine.build
 
 
@@ -117,7 +129,20 @@ def asked_again(
 
 
 def with_commands(table: pd.DataFrame, asked: Iterable[tuple[str, str]]) -> pd.DataFrame:
-    """Add compare and export to the rows of a table, from `commands` of each."""
+    """Add compare and export to the rows of a table.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Without these columns.
+    asked : iterable of (str, str)
+        What `commands` returns of each row, a pair for each, in their order.
+
+    Returns
+    -------
+    DataFrame
+        The rows under their index, with both columns.
+    """
     return table.join(pd.DataFrame(asked, index=table.index, columns=["compare", "export"]))
 
 

@@ -12,9 +12,17 @@ apart, and tell more of the step than of the impact."""
 
 
 def place_error(response: Response, exact: Response) -> float:
-    """Return the largest difference [m] of a cart's place, while both responses last.
+    """Return the largest difference of a cart's place, while both responses last.
 
-    Both have a history at the same times; nan where one has none.
+    Parameters
+    ----------
+    response, exact : Response
+        With histories at the same times, of which one may end before the other.
+
+    Returns
+    -------
+    float
+        [m]; nan where one has no history of its base.
     """
     if response.history is None or exact.history is None:
         return math.nan

@@ -19,7 +19,16 @@ TABLE = "findings.csv"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A statement, whether it holds (None: a source that it needs was not asked), the numbers."""
+    """A statement, and what became of it.
+
+    Attributes
+    ----------
+    statement : str
+    holds : bool or None
+        None where a source that it needs was not asked.
+    numbers : str
+        The numbers that decide it, with their units; or what was missing.
+    """
 
     statement: str
     holds: bool | None
@@ -64,7 +73,20 @@ def claim(statement: str, *needs: str) -> Callable[[Check], Claim]:
 
 
 def tally(items: Sequence[Finding], whose: str) -> str:
-    """Say how many of somebody's statements hold, and name those that do not."""
+    """Say how many of somebody's statements hold, and name those that do not.
+
+    Parameters
+    ----------
+    items : sequence of Finding
+        Those that were not tested count neither way.
+    whose : str
+        As it follows "Of": "the paper's conclusions".
+
+    Returns
+    -------
+    str
+        One sentence.
+    """
     tested = [item for item in items if item.holds is not None]
     failing = [item.statement for item in tested if not item.holds]
     words = f"Of {whose} {out_of(len(tested) - len(failing), len(tested))} hold"
@@ -72,7 +94,15 @@ def tally(items: Sequence[Finding], whose: str) -> str:
 
 
 def write_findings(folder: Path, items: Sequence[Finding]) -> None:
-    """Write a folder's findings as a table."""
+    """Write a folder's findings to TABLE, for `read_findings`.
+
+    Parameters
+    ----------
+    folder : Path
+        One that is there; a table of that name is replaced.
+    items : sequence of Finding
+        One at least: each is a row with the columns statement, holds and numbers.
+    """
     table = pd.DataFrame([asdict(item) for item in items])
     write_table(folder / TABLE, table)
 

@@ -140,7 +140,24 @@ def _different(*posed: FloatArray) -> tuple[list[FloatArray], NDArray[np.intp]]:
 def conditioning_of_one(
     block: Rocker, motion: Motion, start: tuple[float, float], exact: Response
 ) -> dict[str, float]:
-    """Return kappa and sensitivity of an exact response; nan where there is none."""
+    """Return the condition number and the sensitivity of an exact peak.
+
+    See `analytic.conditioning` (EQUATIONS.md, "Condition numbers") and `analytic.sensitivity`.
+
+    Parameters
+    ----------
+    block, motion, start
+        As for `analytic.simulate`; theta [rad] and theta' [rad/s] at time zero.
+    exact : Response
+        What `simulate` returns of them.
+
+    Returns
+    -------
+    dict
+        kappa, by the scale of the motion: nan unless the block rocks and survives. sensitivity: inf
+        where a small change of the motion or of eta changes the outcome, else 0 of a block that
+        stays at rest or overturns. Both nan where exact failed.
+    """
     if exact.outcome is Outcome.FAILED:
         return {"kappa": math.nan, "sensitivity": math.nan}
     kappa, _ = conditioning(block, motion, start=start)

@@ -51,10 +51,24 @@ def flights(
 
 
 def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
-    """Return the largest rise of energy during free rocking over its largest value; or nan.
+    """Return the largest rise of energy during free rocking over its largest value.
 
-    A rise is counted from the least energy before it, through all flights and impacts: free
-    rocking of a rigid block can only lose energy.
+    The energy is the exact model's (`energy`). A rise is counted from the least energy before it,
+    through all flights and impacts: free rocking of a rigid block can only lose energy.
+
+    Parameters
+    ----------
+    block : RigidBlock
+    motion : Motion
+        After its end the block rocks freely.
+    response : Response
+        With a history that goes on after the motion.
+
+    Returns
+    -------
+    float
+        0 where the energy never rises; nan where no flight to an impact has two samples that are
+        further from its ends than a part NEAR of it.
     """
     parts = flights(block, motion, response, NEAR)
     if not parts:
@@ -65,10 +79,20 @@ def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
 
 
 def energy_drift(job: Job, response: Response) -> float:
-    """Return how much the energy of free rocking varies between two impacts, relative; or nan.
+    """Return how much the energy of free rocking varies between two impacts.
 
-    The largest over the flights after the ground motion; the energy is the exact model's, over its
-    value at the flight's end, and the samples next to an impact are left out.
+    Parameters
+    ----------
+    job : Job
+        Of a block; after its motion it rocks freely.
+    response : Response
+        With a history that goes on after the motion.
+
+    Returns
+    -------
+    float
+        The largest over the flights: range of the exact model's energy over its value at the
+        flight's end, without the samples next to an impact. nan unless the block rocked so.
     """
     if response.outcome is not Outcome.ROCKED:
         return math.nan

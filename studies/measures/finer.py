@@ -25,9 +25,19 @@ def with_every_finer(keeps: pd.Series[Any], *uses: pd.Series[Any]) -> pd.Series[
 def cheapest_kept(
     lines: pd.DataFrame, keeps: pd.Series[Any], *uses: pd.Series[Any]
 ) -> pd.Series[Any] | None:
-    """Return the line of the least wall_s that keeps an error with every finer one, if any does.
+    """Return the fastest setting that keeps an error together with every finer one.
 
-    The others as in `with_every_finer`.
+    Parameters
+    ----------
+    lines : DataFrame
+        A line for each setting, from coarse to fine within its use, with wall_s [s].
+    keeps, *uses : Series
+        As for `with_every_finer`, under the index of the lines.
+
+    Returns
+    -------
+    Series or None
+        The line; None if there is none.
     """
     good = lines[with_every_finer(keeps, *uses)]
     return None if good.empty else good.sort_values("wall_s").iloc[0]

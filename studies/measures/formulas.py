@@ -41,7 +41,20 @@ def by_step(written: Callable[[float], str]) -> str:
 
 
 def at_step(written: str, dt_s: float) -> str:
-    """Return a text with its formulas of DT, as `by_step` writes them, as numbers at a step [s]."""
+    """Return a text with numbers in place of its formulas of DT.
+
+    Parameters
+    ----------
+    written : str
+        As `by_step` returns it: DT, 0.5*DT, 2/DT or DT**2.
+    dt_s : float
+        The step [s], above 0.
+
+    Returns
+    -------
+    str
+        The numbers in ten digits.
+    """
 
     def number(found: re.Match[str]) -> str:
         times, sign, power = found.groups()

@@ -106,10 +106,27 @@ def with_estimates(
 ) -> list[Row]:
     """Return rows of different sources with their estimates, and with what these bound.
 
-    bound is the estimate times the published factor; nan, and said in the message, for a source
-    whose estimates give none, or where they were not held against errors, as `unheld` says. The
-    message also says that the factor was found at another step, where the presets' own were not
-    used.
+    Parameters
+    ----------
+    rows, finer : sequence of dict
+        A row for each source, with source, outcome, peak_ratio, message and response; in the second
+        at half the step, without the sources that have none to halve (`halved`).
+    own_steps : bool, optional
+        Whether the presets' own steps were taken; if not, the message says that the factor was
+        found at another one.
+    unheld : str, optional
+        Why estimates were not held against errors here; no bound is given then.
+
+    Returns
+    -------
+    list of dict
+        The rows with estimate, relative as of `estimate_beyond`, and bound, the estimate times the
+        published factor; nan where there is none, and the message says why.
+
+    Raises
+    ------
+    studies.kit.journal.FolderError
+        If the published factors were edited.
     """
     halves = {row["source"]: row for row in finer}
     return [
@@ -158,7 +175,27 @@ class Trust(NamedTuple):
 
 
 def published_trust(source: str, path: Path = FACTORS) -> Trust | None:
-    """Return what was published of a source's estimates, as the preset is declared, if it was."""
+    """Return what was published of a source's estimates.
+
+    Parameters
+    ----------
+    source : str
+        Its name; an engine's best preset may be named or not.
+    path : Path, optional
+        The table of factors.
+
+    Returns
+    -------
+    Trust or None
+        None where the table has no line of it, or is not there.
+
+    Raises
+    ------
+    studies.kit.journal.FolderError
+        If the table is not what its folder's provenance tells of.
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
+    """
     if not path.is_file():
         return None
     check(path.parent, [path.name], "the folder of the factors")

@@ -24,7 +24,14 @@ PUBLISHED = Path(__file__).parents[1] / "published"
 
 
 def published_in(folder: Path | None, names: Sequence[str]) -> Path:
-    """Return the folder of published tables that --published gives, by default PUBLISHED.
+    """Return the folder of published tables that --published gives.
+
+    Parameters
+    ----------
+    folder : Path or None
+        What was given; None for PUBLISHED.
+    names : sequence of str
+        Tables that it must hold, as chapter/file.csv.
 
     Raises
     ------
@@ -78,7 +85,24 @@ def columns() -> dict[tuple[str, str], tuple[str, ...]]:
 
 
 def column_of(table: str, name: str) -> tuple[str, ...]:
-    """Return type, unit and meaning of a column of a table, called as its study and file."""
+    """Return what columns.csv tells of a column.
+
+    Parameters
+    ----------
+    table : str
+        Study and file, as "stability/steps"; empty for what holds in every table.
+    name : str
+
+    Returns
+    -------
+    tuple of str
+        Type, unit and meaning, in the order of TOLD.
+
+    Raises
+    ------
+    KeyError
+        If nothing is told of it.
+    """
     known = columns()
     return known.get((table, name)) or known["", name]
 

@@ -16,6 +16,21 @@ def samples(
 ) -> pd.DataFrame:
     """Return the history of a response as a tidy table, with the ground acceleration.
 
+    Parameters
+    ----------
+    response : Response
+        With a history.
+    block, motion
+        Whose response it is.
+    labels : dict
+        The first columns, the same in every row.
+
+    Returns
+    -------
+    DataFrame
+        A row for each sample: the labels, outcome, time_s [s], ground_g [g], theta_ratio
+        (theta/alpha) and velocity_rad_s [rad/s].
+
     Raises
     ------
     ValueError

@@ -67,7 +67,18 @@ ACCEPTED = (Verdict.GOOD, Verdict.UNSEEN, Verdict.INVALID)
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """A verdict with its reason and its numbers."""
+    """A verdict with its reason and its numbers.
+
+    Attributes
+    ----------
+    verdict : Verdict
+    reason : str
+        Empty where all is right.
+    error : float
+        Of the peak, relative; nan unless both rocked and survived.
+    energy_growth : float
+        As of `studies.measures.energy.growth`.
+    """
 
     verdict: Verdict
     reason: str
@@ -76,7 +87,27 @@ class Judgement:
 
 
 def judge(case: Extreme, source: str, response: Response) -> Judgement:
-    """Hold a response to a case against the exact solution, and against what that is valid for."""
+    """Hold a response to a case against the exact solution, and against what that is valid for.
+
+    Parameters
+    ----------
+    case : Extreme
+    source : str
+        Whose response it is.
+    response : Response
+        Its energy is judged only where it has a history that goes on after the pulse.
+
+    Returns
+    -------
+    Judgement
+        INVALID where the reference does not hold for an engine, unless the response is right all
+        the same, or the run broke down.
+
+    Raises
+    ------
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
+    """
     exact = simulate(case.block, case.motion)
     error = relative_error(response, exact)
     grown = growth(case.block, case.motion, response)
@@ -90,7 +121,17 @@ def judge(case: Extreme, source: str, response: Response) -> Judgement:
 
 
 def relative_error(response: Response, exact: Response) -> float:
-    """Return the relative error of the peak; nan unless both rocked and survived."""
+    """Return the relative error of the peak, peak/exact - 1.
+
+    Parameters
+    ----------
+    response, exact : Response
+
+    Returns
+    -------
+    float
+        nan unless both rocked and survived.
+    """
     if {response.outcome, exact.outcome} != {Outcome.ROCKED}:
         return math.nan
     return response.peak_ratio / exact.peak_ratio - 1.0
@@ -127,9 +168,21 @@ def is_at_an_edge(case: Extreme, outcome: enum.Enum) -> bool:
 
 
 def invalidity(case: Extreme, source: str, exact: Response) -> str:
-    """Say why an engine may differ from the exact solution, or return an empty string.
+    """Say why an engine may differ from the exact solution.
 
     Models, solvers and peers solve the same equation and may not.
+
+    Parameters
+    ----------
+    case : Extreme
+    source : str
+    exact : Response
+        The exact one to the case, with min_normal (in units of the weight) and friction_needed.
+
+    Returns
+    -------
+    str
+        Empty where it may not.
     """
     friction = friction_of(case, source)
     if math.isnan(friction):
@@ -142,7 +195,24 @@ def invalidity(case: Extreme, source: str, exact: Response) -> str:
 
 
 def friction_of(case: Extreme, source: str) -> float:
-    """Return the coefficient of friction of an engine in a case; nan for other sources."""
+    """Return the coefficient of friction of an engine in a case.
+
+    Parameters
+    ----------
+    case : Extreme
+    source : str
+
+    Returns
+    -------
+    float
+        The case's own, at most what the engine takes, or else the preset's; nan for a source that
+        is no engine.
+
+    Raises
+    ------
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
+    """
     asked = resolve(source)
     if asked.kind != "engine":
         return math.nan

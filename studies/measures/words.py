@@ -20,14 +20,31 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def out_of(count: float, total: float) -> str:
-    """Return "all 960", "none of 960" or "949 of 960"."""
+    """Return "all 960", "none of 960" or "949 of 960".
+
+    Parameters
+    ----------
+    count, total : float
+        Whole numbers, 0 <= count <= total; "all" is not said of one.
+    """
     if count == total > 1:
         return f"all {total:.0f}"
     return f"none of {total:.0f}" if count == 0 else f"{count:.0f} of {total:.0f}"
 
 
 def each_out_of(counts: Sequence[float], totals: Sequence[float]) -> str:
-    """Return several counts: "all 960", "949 and 955 of 960", "3 of 31 and all 27"."""
+    """Return several counts: "all 960", "949 and 955 of 960", "3 of 31 and all 27".
+
+    Parameters
+    ----------
+    counts, totals : sequence of float
+        As for `out_of`, of equal lengths.
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ.
+    """
     words = [out_of(*pair) for pair in zip(counts, totals, strict=True)]
     if len(set(words)) > 1 and len(set(totals)) == 1:
         return f"{listed([f'{count:.0f}' for count in counts])} of {totals[0]:.0f}"
@@ -35,13 +52,26 @@ def each_out_of(counts: Sequence[float], totals: Sequence[float]) -> str:
 
 
 def listed(words: Sequence[str], joint: str = "and") -> str:
-    """Return words as a list in a sentence: "a", "a and b", "a, b and c"; "none" without any."""
+    """Return words as a list in a sentence: "a", "a and b", "a, b and c"; "none" without any.
+
+    Parameters
+    ----------
+    words : sequence of str
+    joint : str, optional
+        What stands before the last.
+    """
     *first, last = words or ("none",)
     return f"{', '.join(first)} {joint} {last}" if first else last
 
 
 def alike(words: Sequence[str], joint: str = "and") -> str:
-    """Return a list of words, or the one word that they all are."""
+    """Return a list of words, or the one word that they all are.
+
+    Parameters
+    ----------
+    words, joint
+        As for `listed`.
+    """
     return words[0] if len(set(words)) == 1 else listed(words, joint)
 
 
@@ -122,7 +152,15 @@ def right_of(rows: pd.DataFrame) -> str:
 
 
 def right_but(counts: Counts, cases: float) -> str:
-    """Return the same from the counts, which may be the line of a summary."""
+    """Return how many outcomes are right, and the kinds of the others: "8 of 9 (no answer in 1)".
+
+    Parameters
+    ----------
+    counts : mapping
+        How many are wrong, by kind; the line of a summary is one.
+    cases : float
+        How many there are.
+    """
     lost = sum(counts[kind] for kind in WORDS)
     return out_of(cases - lost, cases) + (f" ({in_kinds(counts)})" if lost else "")
 

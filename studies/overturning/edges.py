@@ -41,14 +41,14 @@ IntArray = NDArray[np.intp]
 
 
 class Solve(Protocol):
-    """Modes at amplitudes, each in the column of that number."""
+    """Modes at amplitudes over g tan(alpha), each in the column of that number; both (n,)."""
 
     def __call__(self, column: IntArray, amplitude: FloatArray) -> Modes:
         """Solve."""
 
 
 class Points(NamedTuple):
-    """Amplitudes of columns and their modes."""
+    """Amplitudes over g tan(alpha) of columns, and their modes as of `Modes`, each (n,)."""
 
     column: IntArray
     amplitude: FloatArray
@@ -56,7 +56,18 @@ class Points(NamedTuple):
 
 
 def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
-    """Return the edges of a number of columns whose grid is `amplitudes`.
+    """Return the edges of a map: where the outcome changes along each of its columns.
+
+    How, and what can be missed, stands at the head of this module.
+
+    Parameters
+    ----------
+    solve : callable
+        A `Solve`.
+    columns : int
+        Their number; they are 0, 1, ...
+    amplitudes : ndarray (m,)
+        The grid of each column over g tan(alpha), increasing.
 
     Returns
     -------
@@ -64,6 +75,11 @@ def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFra
         With `column`, `low` and `high`, the amplitudes that bracket the edge, `below` and `above`,
         the modes there, and `found`: "grid", or "mode" or "margin" for those of an island that
         lies between two neighbours of the grid. Ordered by column and amplitude.
+
+    Raises
+    ------
+    RuntimeError
+        If islands are still found within islands after ROUNDS searches.
     """
     grid = np.broadcast_to(amplitudes, (columns, len(amplitudes)))
     number = np.broadcast_to(np.arange(columns)[:, None], grid.shape)
@@ -249,9 +265,22 @@ def _shrink(
 def intervals(
     edges: pd.DataFrame, first: NDArray[np.int32], low: float, high: float
 ) -> pd.DataFrame:
-    """Return the intervals between the edges of each column: column, low, high, mode.
+    """Return the intervals of the amplitude between the edges of each column.
 
-    `first` is the mode of each column at its lower end.
+    Parameters
+    ----------
+    edges : DataFrame
+        From `find_edges`.
+    first : ndarray of int32 (columns,)
+        The mode of each column at its lower end.
+    low, high : float
+        Ends of every column over g tan(alpha).
+
+    Returns
+    -------
+    DataFrame
+        column, low, high and mode, ordered by column and amplitude; of a column without an edge one
+        from end to end. They meet in the middle of an edge's bracket.
     """
     columns = len(first)
     middle = 0.5 * (edges["low"].to_numpy() + edges["high"].to_numpy())

@@ -31,14 +31,36 @@ THRESHOLD_WIDTH = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bisected(Response):
-    """The last response of a bisection, and the relative distance of the threshold; or nan."""
+    """The response at the upper end of a bisection, and what this found.
+
+    Attributes
+    ----------
+    shift : float
+        The threshold over the exact one, less 1; nan if it is not within SPREAD.
+    runs : int
+        Runs that the search took.
+    """
 
     shift: float
     runs: int
 
 
 def grid_jobs(window: Window, engines: Sequence[str], count: int) -> list[Job]:
-    """Return a job for each engine at each cell centre of a coarse grid."""
+    """Return a job for each engine at each cell centre of a coarse grid.
+
+    Parameters
+    ----------
+    window : Window
+    engines : sequence of str
+        Names that `studies.sources.registry.resolve` knows.
+    count : int
+        Columns of the grid, and amplitudes in each.
+
+    Returns
+    -------
+    list of Job
+        count**2 for each engine, whose labels are table ("engines"), x and onsets.
+    """
     return [
         _job(window, source, float(x), float(onsets), {"table": "engines"})
         for x in window.centres(count)
@@ -48,7 +70,22 @@ def grid_jobs(window: Window, engines: Sequence[str], count: int) -> list[Job]:
 
 
 def edge_jobs(window: Window, engines: Sequence[str], edges: pd.DataFrame) -> list[Job]:
-    """Return the jobs beside chosen edges, and a search for each engine's own threshold."""
+    """Return the jobs beside chosen edges, and a search for each engine's own threshold.
+
+    Parameters
+    ----------
+    window : Window
+    engines : sequence of str
+        As for `grid_jobs`.
+    edges : DataFrame
+        From `chosen_edges`, with x, low (the amplitude over g tan(alpha)) and above (the mode).
+
+    Returns
+    -------
+    list of Job
+        For each edge and engine one at each of OFFSETS (table "edges") and a search for `threshold`
+        (table "thresholds"); edge and overturns ("above" or "below" it) are labels of both.
+    """
     jobs = []
     for edge in edges.itertuples():
         x, onsets = float(str(edge.x)), float(str(edge.low))
@@ -77,10 +114,21 @@ def _job(window: Window, source: str, x: float, onsets: float, labels: Row) -> J
 
 
 def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
-    """Return the edges of the columns nearest to positions that have room; and how many have not.
+    """Return the edges of the columns nearest to some positions that have room.
 
-    `edges` has an `x`; an edge has room where the next ones are further than ROOM. Only columns
-    with an edge count.
+    An edge has room where the next ones in its column are further than ROOM.
+
+    Parameters
+    ----------
+    edges : DataFrame
+        Of one model, with x and low (over g tan(alpha)), ordered by column and amplitude.
+    positions : sequence of float
+        Abscissae of the map; only columns with an edge count.
+
+    Returns
+    -------
+    DataFrame, int
+        The lines of these edges, and how many in the same columns have no room.
     """
     columns = np.unique(edges["x"])
     nearest = [columns[np.argmin(abs(columns - x))] for x in positions if columns.size]
@@ -96,7 +144,24 @@ def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.Da
 
 
 def ask_for_table(job: Job, source: Source) -> Response:
-    """Put a job of any of the three tables to its source."""
+    """Put a job of any of the three tables to its source.
+
+    Parameters
+    ----------
+    job : Job
+        Of `grid_jobs` or `edge_jobs`.
+    source : Source
+
+    Returns
+    -------
+    Response
+        For the table "thresholds" a `Bisected`, or the response that failed.
+
+    Raises
+    ------
+    TypeError
+        If a threshold is asked for of a motion that is no `SinePulse`.
+    """
     if job.labels["table"] != "thresholds":
         return ask(job, source)
     return threshold(job, source)
@@ -134,7 +199,20 @@ def threshold(job: Job, source: Source) -> Response:
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the columns that follow the labels of a job's table."""
+    """Return the columns that follow the labels of a job's table.
+
+    Parameters
+    ----------
+    job : Job
+    response : Response
+        From `ask_for_table`.
+
+    Returns
+    -------
+    dict
+        Those of `summary`; for the table "thresholds" outcome, shift, runs (0 of a search that
+        failed) and message.
+    """
     if job.labels["table"] != "thresholds":
         return summary(job, response)
     found = isinstance(response, Bisected)

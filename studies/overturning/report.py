@@ -209,7 +209,22 @@ def window_of(folder: Path) -> Window:
 
 
 def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArray:
-    """Return the modes at every pair of a column's abscissa and an amplitude, (len(x), n)."""
+    """Return the modes of a model's map on a grid.
+
+    Parameters
+    ----------
+    areas : DataFrame
+        The model's lines of map.csv: x, low and mode of each interval.
+    x : ndarray (n,)
+        Abscissae; the nearest column of the map stands for each.
+    onsets : ndarray (m,)
+        Amplitudes over g tan(alpha).
+
+    Returns
+    -------
+    ndarray (n, m)
+        As of `analytic.maps.Modes`.
+    """
     groups = {float(str(at)): group for at, group in areas.groupby("x")}
     known = np.array(sorted(groups))
     found = np.empty((len(x), len(onsets)))
@@ -221,7 +236,20 @@ def modes_at(areas: pd.DataFrame, x: FloatArray, onsets: FloatArray) -> FloatArr
 
 
 def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
-    """Return the engines' cells with the exact mode, the verdict and the impacts."""
+    """Hold the outcomes of engines on a map against the exact ones.
+
+    Parameters
+    ----------
+    engines : DataFrame
+        Lines of engines.csv: x, onsets and outcome of each cell.
+    window : Window
+
+    Returns
+    -------
+    DataFrame
+        With exact_mode and verdict: right, missed or false (of an overturning), or the kind REST or
+        NO_ANSWER.
+    """
     mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
     # no pulse of the map is too weak to lift the block
     right = np.where(mode >= 0, Outcome.OVERTURNED.value, Outcome.ROCKED.value)
@@ -232,7 +260,28 @@ def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
 
 
 def no_impact_line(x: FloatArray, window: Window, model: str) -> FloatArray:
-    """Return the closed-form amplitude of overturning without impact over g tan(alpha)."""
+    """Return the least amplitudes that overturn a linearized block without an impact.
+
+    By the closed form of `analytic.criteria.overturning_amplitude`.
+
+    Parameters
+    ----------
+    x : ndarray (n,)
+        Abscissae of the map.
+    window : Window
+    model : str
+        A linear one of `analytic.MODELS`.
+
+    Returns
+    -------
+    ndarray (n,)
+        Over g tan(alpha); nan where no amplitude overturns it so.
+
+    Raises
+    ------
+    KeyError
+        If there is no such model.
+    """
     line = np.full(len(x), math.nan)
     for i, (alpha, ratio) in enumerate(zip(window.alpha(x), window.ratio(x), strict=True)):
         law = MODELS[model].law(float(alpha), 0.9)

@@ -28,11 +28,33 @@ AT_ONCE, ONE_BY_ONE = "at once", "one by one"
 
 
 def batch_table(engines: Sequence[str], quick: bool, budget_s: float) -> pd.DataFrame:
-    """Return two rows for each preset of which an engine can run many scenes at once.
+    """Return what it is worth to run many scenes at once, for each preset with which an engine can.
 
     Times are CPU times of all threads of a process, the best of several in turn, but for the first
     ones, in which all is loaded or compiled; memory is what a batch adds to the most that such a
     process has held before.
+
+    Parameters
+    ----------
+    engines : sequence of str
+        Their names, without a preset.
+    quick : bool
+        QUICK_WORLDS scenes instead of WORLDS.
+    budget_s : float
+        Time [s] after which a preset is not timed again.
+
+    Returns
+    -------
+    DataFrame
+        Two rows for each preset, taken AT_ONCE and ONE_BY_ONE: engine, preset, taken, driver,
+        worlds, batches, world_steps and runs; cpu_s [s] of one step of one scene, first_s [s] until
+        each was answered once, added_kib [KiB] for each scene; other_outcomes and largest_change
+        (of a peak, relative) from one by one. No row of a preset that runs its scenes alone.
+
+    Raises
+    ------
+    studies.kit.pool.TaskError, studies.kit.pool.OvertimeError
+        If a process fails, or takes longer than engines may to compile themselves.
     """
     rows = []
     with Pool(1) as pool:

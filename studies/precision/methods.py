@@ -20,7 +20,7 @@ class Method:
     setting : str
         Name of the open option; empty for a model in closed form, which has none.
     values : tuple
-        What the option runs through, from cheap to dear.
+        What the open option runs through, from cheap to dear; a step is p dt.
     of_engine : bool
         Whether the setting is one of an engine's own.
     options : mapping

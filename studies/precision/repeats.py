@@ -56,7 +56,16 @@ class Timed(Response):
 def best_of(action: Callable[[], Response], most_s: float) -> Timed:
     """Return the response with the shortest run time, and with the shortest set-up time.
 
-    The action is repeated until `enough`.
+    Parameters
+    ----------
+    action : callable
+        Returns a response with its run time; repeated until `enough`.
+    most_s : float
+        Time [s] after which there is no further run.
+
+    Returns
+    -------
+    Timed
     """
     return interleaved([action], most_s)[0]
 

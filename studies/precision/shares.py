@@ -33,12 +33,25 @@ def pose_case() -> tuple[RigidBlock, SinePulse]:
 
 
 def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
-    """Return where the time of a step goes: the engine's own step, the rest of the adapter, ...
+    """Return where the time of a step goes: the engine's own step, the adapter around it, the look.
 
     Each part is timed from within by a clock around it, whose own cost is taken off. The engine's
     own step is nan where no clock fits around it, and then counts as the adapter's; all are nan
     where the engine is not here. An engine that is stepped from a compiled loop has a row for that,
     too: the whole of its step, beside the engine's own as it was timed from Python.
+
+    Parameters
+    ----------
+    engines : sequence of str
+        Their names; each is asked with its best preset.
+    budget_s : float
+        Time [s] spent at most on each timing.
+
+    Returns
+    -------
+    DataFrame
+        engine, driver (of DRIVERS) and, in the columns SHARES, the time [s] of one step and of its
+        parts.
     """
     return pd.DataFrame(row for engine in engines for row in _shares(engine, budget_s))
 

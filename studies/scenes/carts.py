@@ -46,6 +46,24 @@ def carts(sources: Sequence[str], quick: bool) -> Iterator[Job]:
     """Yield the jobs of blocks on carts under pulses, and of one in other steps.
 
     Engines are asked with equal steps alone: no others are built for a cart.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        exact, and names of engines, of which those with other steps are left out.
+    quick : bool
+        One cart under one pulse alone.
+
+    Yields
+    ------
+    Job
+        Its labels are scene, mass_ratio, stiffness, amplitude_g, omega, refined (step over the
+        engine's own) and in_step (which of the steps that are tried).
+
+    Raises
+    ------
+    BadInputError
+        If a source is neither exact nor an engine.
     """
     sources = [name for name in sources if not resolve(name).accurate]
     for cart, pulse in ((cart, pulse) for cart in CARTS for pulse in PULSES):
@@ -77,7 +95,21 @@ def _jobs(
 
 
 def cart_row(job: Job, response: Response) -> Row:
-    """Return how far a response is from the exact one of its cart."""
+    """Return how far a response is from the exact one of its cart.
+
+    Parameters
+    ----------
+    job : Job
+        Of `carts`.
+    response : Response
+
+    Returns
+    -------
+    dict
+        exact, its peak; agrees; error, that of the peak, relative; eta, exact_eta and eta_error
+        (relative), of the velocity ratio at fast impacts; place_error_m [m]; momentum_error,
+        relative. Errors of peak and place are nan unless both rock and survive.
+    """
     exact = simulate(job.block, job.motion, duration=job.duration, times=job.times)
     both = response.outcome is Outcome.ROCKED is exact.outcome
     found, eta = impact_ratio(response), float(job.block.restitution)

@@ -33,7 +33,25 @@ HELD_S = 2.0
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
-    """Return the job of every case and source: of frames first, of carts last."""
+    """Return the job of every case and source: of frames first, of carts last.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        exact, and names of engines; each scene leaves out those that are not asked about it.
+    quick : bool
+        Fewer cases of all scenes but the floors.
+
+    Returns
+    -------
+    list of Job
+        Its label scene is a key of `studies.scenes.KINDS`.
+
+    Raises
+    ------
+    BadInputError
+        If a source is neither exact nor an engine: other sources know neither slides nor carts.
+    """
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
     rolling = [*cylinders(sources, quick), *carts(sources, quick)]
     return [*frames(sources, quick), *beyond, *rolling]

@@ -39,7 +39,21 @@ def usual(sources: Sequence[str], quick: bool) -> Iterator[Job]:
 
 
 def frames(sources: Sequence[str], quick: bool) -> Iterator[Job]:
-    """Yield the jobs of all frames: beside the usual ones the extreme, and one in other steps."""
+    """Yield the jobs of all frames: beside the usual ones the extreme, and one in other steps.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        Names that `studies.sources.registry.resolve` knows.
+    quick : bool
+        One usual frame alone.
+
+    Yields
+    ------
+    Job
+        Its labels are scene, columns, load, amplitude_g, omega, refined (step over the engine's
+        own), extreme and phase (which of the steps that are tried).
+    """
     yield from usual(sources, quick)
     for columns, load in () if quick else EXTREMES:
         yield from _jobs(columns, load, PULSES[0], sources, PHASES, extreme=True)

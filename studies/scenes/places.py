@@ -22,7 +22,30 @@ def steps(
     phases: int,
     duration: float | None = None,
 ) -> Iterator[dict[str, Any]]:
-    """Yield the options by which the first impact falls into different parts of equal steps."""
+    """Yield the options by which the first impact falls into different parts of equal steps.
+
+    With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
+    step earlier, for k = 0, 1, ..., N - 1.
+
+    Parameters
+    ----------
+    source : str
+    frame, motion
+    phases : int
+        N, at least 1.
+    duration : float, optional
+        As for `analytic.simulate`, whose first impact counts.
+
+    Yields
+    ------
+    dict
+        step, p dt of the frame or cart; one that is empty for a source without equal steps.
+
+    Raises
+    ------
+    IndexError
+        If the exact response has no impact.
+    """
     asked = resolve(source)
     if not asked.engine or asked.used.stepping is not Stepping.FIXED:
         yield {}

@@ -26,7 +26,21 @@ PARTS = (1.0, 0.5)
 
 
 def cylinders(sources: Sequence[str], quick: bool) -> Iterator[Job]:
-    """Yield the jobs of cylinders that roll; steps that land on impacts are not asked."""
+    """Yield the jobs of cylinders that roll.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        Names; asked are exact and the engines with equal steps.
+    quick : bool
+        One cylinder over the fewest turns.
+
+    Yields
+    ------
+    Job
+        Its labels are scene, radius_m, height_m, tilt_rad, turns and step_part, the part of its own
+        step at which a source is asked.
+    """
     for cylinder in CYLINDERS[: 1 if quick else None]:
         sizes = {"radius_m": cylinder.radius, "height_m": cylinder.height}
         sizes["tilt_rad"] = cylinder.tilt

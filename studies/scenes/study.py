@@ -67,7 +67,20 @@ def command(
 
 
 def reduce(job: Job, response: Response) -> Row:
-    """Return the summary, and how far the response is from the exact one of its scene."""
+    """Return the summary, and how far the response is from the exact one of its scene.
+
+    Parameters
+    ----------
+    job : Job
+        Of `studies.scenes.cases.jobs`.
+    response : Response
+
+    Returns
+    -------
+    dict
+        The columns of `summary` and reason, then those of the scene's table; errors of peaks are
+        relative, those of slips and places in metres, and nan where there is none.
+    """
     if job.labels["scene"] == "cylinder":
         reason = response.reason.name if response.reason else ""
         return {**reduced(job, response), "reason": reason}

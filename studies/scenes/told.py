@@ -262,7 +262,21 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
 
 
 def ends(name: str, lines: pd.DataFrame) -> str:
-    """Return by how much a scene is off as documented and with the last preset that was asked."""
+    """Say by how much a scene is off at most: with the first preset asked, and with the best.
+
+    Parameters
+    ----------
+    name : str
+        A key of SCENES.
+    lines : DataFrame
+        From `lines_of`, one at least.
+
+    Returns
+    -------
+    str
+        Largest errors in the scene's unit, "50 % → 10⁻⁵", over all engines with that preset; one
+        number where one preset was asked.
+    """
     presets = lines["source"].map(preset_of)
     known = in_order(presets)
     sizes = [lines.loc[presets == each, "largest_error"].max() for each in (known[0], known[-1])]

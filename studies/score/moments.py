@@ -42,7 +42,27 @@ CLOSE = 0.03
 
 
 def ask_for_moment(job: Job, source: Source) -> Response:
-    """Fly a block by a source; the answer observes the moment declared and the one measured."""
+    """Fly a block by a source, and read at which moment of a step its velocity holds.
+
+    Parameters
+    ----------
+    job : Job
+        Of BLOCK under UNFELT.
+    source : Source
+        An engine's preset.
+
+    Returns
+    -------
+    Response
+        Its observables are declared and measured: moments in steps from the begin of one. Failed,
+        with the reason, of a preset that takes its own steps, an engine that is not available or
+        raises, and one that a pull does not move as it should.
+
+    Raises
+    ------
+    KeyError
+        If the source is no engine.
+    """
     if source.used.stepping is Stepping.OWN:
         return Response.failure("not asked: it takes no steps that others choose")
     frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too

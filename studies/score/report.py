@@ -89,7 +89,19 @@ def published() -> pd.DataFrame:
 
 
 def table_of(folder: Path, name: str) -> pd.DataFrame:
-    """Return one of the tables: sweep, steps, extremes or moments."""
+    """Return one of the tables of a score.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        sweep, steps, extremes or moments.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the folder has no such table.
+    """
     return read_table(folder / f"score-{name}.csv")
 
 

@@ -35,7 +35,16 @@ MEASURES = (*LEAST.values(), *MOST.values())
 
 
 class Requirement(NamedTuple):
-    """What one of a preset's `MEASURES` must reach if it is of LEAST, and else may reach."""
+    """What a measure of a preset must reach if it is of LEAST, and else may reach.
+
+    Attributes
+    ----------
+    preset : str
+    measure : str
+        One of MEASURES.
+    bound : float
+        A number of cases, or a relative error of the peak.
+    """
 
     preset: str
     measure: str
@@ -52,7 +61,14 @@ class Requirement(NamedTuple):
 
 
 def required(text: str, engine: Engine) -> Requirement:
-    """Read a requirement, of the engine's best preset where it names none.
+    """Read a requirement: MEASURE=NUMBER or PRESET:MEASURE=NUMBER.
+
+    Parameters
+    ----------
+    text : str
+        The measure is one of MEASURES, the number finite and at least 0.
+    engine : Engine
+        Its best preset is meant where none is named.
 
     Raises
     ------
@@ -78,10 +94,26 @@ def required(text: str, engine: Engine) -> Requirement:
 def result_of(folder: Path, engine: Engine) -> dict[str, Any]:
     """Return the result of a folder's tables, as JSON knows it.
 
-    Its presets have `MEASURES`, an error being None where no peak survives, and how many cases and
-    extremes these are of. Its peaks are, for each preset and case, that of a block which rocked, or
-    what became of another; a case is called by its `CASE` with slashes between, or extreme/NAME.
-    Its moments are, for each preset, the one declared and the one measured, in steps.
+    Parameters
+    ----------
+    folder : Path
+        With the tables of a score.
+    engine : Engine
+        The one that was scored.
+
+    Returns
+    -------
+    dict
+        schema, engine and versions, of packages by name. presets: for each its `MEASURES`, an error
+        being None where no peak survives, and how many cases and extremes these are of. peaks: for
+        each preset and case that of a block which rocked, over its critical rotation, or what
+        became of another; a case is called by its `CASE` with slashes between, or extreme/NAME.
+        moments: for each preset the one declared and the one measured, in steps.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a table is missing.
     """
     cases, extremes, moments = (table_of(folder, name) for name in ("sweep", "extremes", "moments"))
     names = ["/".join(map(str, case)) for case in cases[list(CASE)].itertuples(index=False)]
@@ -120,6 +152,17 @@ def by_preset(table: pd.DataFrame) -> dict[Any, dict[Any, Any]]:
 def read(path: Path, engine: Engine) -> dict[str, Any]:
     """Read an engine's result back.
 
+    Parameters
+    ----------
+    path : Path
+        What --json wrote.
+    engine : Engine
+
+    Returns
+    -------
+    dict
+        As of `result_of`.
+
     Raises
     ------
     BadInputError
@@ -144,7 +187,19 @@ def read(path: Path, engine: Engine) -> dict[str, Any]:
 
 
 def since(then: dict[str, Any], now: dict[str, Any]) -> str:
-    """Say what moved between two results, of the answers that are in both."""
+    """Say what moved between two results, of the answers that are in both.
+
+    Parameters
+    ----------
+    then, now : dict
+        As of `result_of`, the earlier one first.
+
+    Returns
+    -------
+    str
+        A sentence; below it a table of other outcomes, and one of the peaks that moved by more than
+        NOISE, the most first, where there are any.
+    """
     answers = [pd.DataFrame(result["peaks"]).unstack().dropna() for result in (then, now)]
     both = pd.concat(answers, axis=1, join="inner", keys=["then", "now"])
     table = both.rename_axis(["preset", "case"]).reset_index()

@@ -43,7 +43,7 @@ QUICK = ("peak after an impact",)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Searched(Response):
-    """The response with the largest accurate step, and what the search found.
+    """The response with the largest accurate step, or else with START, and what the search found.
 
     largest_stable, largest_accurate are p dt, nan where none was found; runs is how many it took.
     """
@@ -54,7 +54,21 @@ class Searched(Response):
 
 
 def step_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
-    """Return a search for each problem and each source that steps."""
+    """Return a search for each problem, source that steps, and contact time to try it with.
+
+    Parameters
+    ----------
+    sources : iterable of str
+        Names; those that do not step are left out.
+    quick : bool
+        One problem, and steps to QUICK_FACTOR instead of FACTOR.
+
+    Returns
+    -------
+    list of Job
+        Its labels are table ("steps"), case, contact_s [s], nan where a source has none of its own,
+        and factor.
+    """
     problems = [case for case in PROBLEMS if not quick or case.name in QUICK]
     return [
         search_job(case, source, contact_s, quick)
@@ -105,7 +119,17 @@ def problem(job: Job) -> Extreme:
 def search(job: Job, source: Source, time_limit_s: float) -> Response:
     """Run a source with one step after another until both largest steps are known.
 
-    A run of an engine that takes longer than `time_limit_s` [s] is no answer.
+    Parameters
+    ----------
+    job : Job
+        Of `step_jobs`.
+    source : Source
+    time_limit_s : float
+        Of one run [s]: an engine's that takes longer is no answer.
+
+    Returns
+    -------
+    Searched
     """
     limit = {"time_limit_s": time_limit_s} if source.kind == "engine" else {}
     case = problem(job)
@@ -167,7 +191,22 @@ def largest_good(good: Callable[[float], bool], factor: float) -> float:
 
 
 def reduce_steps(job: Job, response: Response) -> Row:
-    """Return the columns of steps.csv that follow the labels."""
+    """Return the columns of steps.csv that follow the labels and source.
+
+    Parameters
+    ----------
+    job : Job
+        Of `step_jobs`.
+    response : Response
+        From `search`, or one that failed.
+
+    Returns
+    -------
+    dict
+        outcome, "searched" or failed; largest_stable and largest_accurate, p dt, and both over the
+        contact time, nan where none was found; runs, invalid (why the reference does not hold) and
+        message.
+    """
     stable = accurate = math.nan
     runs = 0
     if isinstance(response, Searched):

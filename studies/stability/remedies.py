@@ -19,13 +19,35 @@ SHARE = 0.3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remedied(Response):
-    """A response to an extreme case, and the setting that would have made it right, if any."""
+    """A wrong response to an extreme case, and the first setting tried that is right.
+
+    Attributes
+    ----------
+    remedy : str
+        In words; NOTHING if none is.
+    """
 
     remedy: str = ""
 
 
 def answer(case: Extreme, job: Job, source: Source, time_limit_s: float) -> Response:
-    """Put a case to a source; where its answer is wrong, look for a setting that is right."""
+    """Put a case to a source; where its answer is wrong, look for a setting that is right.
+
+    Parameters
+    ----------
+    case : Extreme
+    job : Job
+        The case's, to the source.
+    source : Source
+    time_limit_s : float
+        Time limit of the job [s]; an engine has SHARE of it for its answer, a tenth for each of
+        `remedies`.
+
+    Returns
+    -------
+    Response
+        A `Remedied` where the verdict on it is none of ACCEPTED.
+    """
     limited = _limited(job, source, SHARE * time_limit_s)
     response = ask(limited, source)
     if judge(case, job.source, response).verdict in ACCEPTED:

@@ -53,7 +53,21 @@ def perturbed(case: Extreme, quantity: str, delta: float) -> Extreme:
 
 
 def sensitivity_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
-    """Return each case as it is and perturbed, for every source that has the quantity."""
+    """Return each case as it is and perturbed, for every source that has the quantity.
+
+    Parameters
+    ----------
+    sources : iterable of str
+        Names; engines alone have a friction.
+    quick : bool
+        One case, and QUICK_DELTAS instead of DELTAS.
+
+    Returns
+    -------
+    list of Job
+        Its labels are table ("sensitivity"), case, quantity (of QUANTITIES) and delta, the relative
+        perturbation, 0 first.
+    """
     cases = [case for case in CASES if not quick or case.name in QUICK]
     deltas = (0.0, *(QUICK_DELTAS if quick else DELTAS))
     return [
@@ -78,7 +92,20 @@ def _job(case: Extreme, source: str, quantity: str, delta: float) -> Job:
 
 
 def reduce_sensitivity(job: Job, response: Response) -> Row:
-    """Return the columns that every study shares, and κ of the quantity."""
+    """Return the columns that follow the labels and source.
+
+    Parameters
+    ----------
+    job : Job
+        Of `sensitivity_jobs`.
+    response : Response
+
+    Returns
+    -------
+    dict
+        Those of `summary`; kappa, the condition number by the quantity, and exact_change, that of
+        ln(peak) of the exact solution: nan without a perturbation.
+    """
     case = next(case for case in CASES if case.name == job.labels["case"])
     quantity, delta = job.labels["quantity"], float(job.labels["delta"])
     if delta == 0.0:
@@ -94,8 +121,19 @@ def reduce_sensitivity(job: Job, response: Response) -> Row:
 def condition_number(case: Extreme, quantity: str) -> float:
     """Return κ = d ln(peak) / d ln(quantity) of the exact solution.
 
-    For a width it is a central difference; it is zero for friction, which the exact solution does
-    not have.
+    By the amplitude it is that of `analytic.conditioning` (EQUATIONS.md, "Condition numbers"); by
+    the width a central difference over NUDGE; by the friction, which the exact solution does not
+    have, it is zero.
+
+    Parameters
+    ----------
+    case : Extreme
+    quantity : {"amplitude", "width", "friction"}
+
+    Returns
+    -------
+    float
+        nan where the block does not rock and survive.
     """
     if quantity == "friction":
         return 0.0

@@ -71,7 +71,28 @@ def plan(numbers: Sequence[int], sources: Sequence[str], effort: Effort = OWN_EF
 
 
 def sweep_jobs(numbers: Sequence[int], sources: Sequence[str], effort: Effort) -> list[Job]:
-    """Return the jobs in the order of the table: case by case, source by source."""
+    """Return the jobs in the order of the table: case by case, source by source.
+
+    Parameters
+    ----------
+    numbers : sequence of int
+        Figures of the paper, keys of `studies.cases.paper.SWEEPS`, of 240 cases each.
+    sources : sequence of str
+        Names that `studies.sources.registry.resolve` knows.
+    effort : Effort
+
+    Returns
+    -------
+    list of Job
+        Its labels are the fields of a `studies.cases.paper.Case`.
+
+    Raises
+    ------
+    KeyError
+        If there is no such figure.
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
+    """
     options = {source: effort.options(source) for source in sources}
     jobs = []
     for case in sweep_cases(numbers):

@@ -52,7 +52,15 @@ OF_FRAMES = {
 
 
 def census(seed: int, kept: int, scene: Drawn = "block") -> pd.DataFrame:
-    """Count what was drawn until `kept` cases had a least normal force above LEAST_NORMAL.
+    """Count what was drawn until enough cases were kept, and why the others were left out.
+
+    Parameters
+    ----------
+    seed : int
+        Of the random cases.
+    kept : int
+        Cases to keep.
+    scene : {"block", "frame"}, optional
 
     Returns
     -------
@@ -131,7 +139,20 @@ def quantiles(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def worst(compared: pd.DataFrame, count: int = 5) -> pd.DataFrame:
-    """Return the cases that each source gets wrong, and then those in which it errs most."""
+    """Return the cases that each source gets wrong, and then those in which it errs most.
+
+    Parameters
+    ----------
+    compared : DataFrame
+        With the columns of `studies.measures.differences.with_reference`, and case.
+    count : int, optional
+        So many of each source at most, at least 1.
+
+    Returns
+    -------
+    DataFrame
+        Under the index of `compared`, source by source.
+    """
     size = compared["error"].abs().where(compared["agrees"], inf)
     order = compared.assign(size=size).sort_values("size", ascending=False)
     first = order.groupby("source").head(count).sort_values("source", kind="stable")
@@ -248,7 +269,22 @@ FALSE: Mapping[str, Hints] = {
 
 
 def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
-    """Return a job for each case, false hint, and engine whose steps land on impacts."""
+    """Return a job for each case, false hint, and engine whose steps land on impacts.
+
+    Each case is asked with the calm pulse of `calm`, too, and that with true hints beside.
+
+    Parameters
+    ----------
+    cases : iterable of RandomCase
+    sources : sequence of str
+        Names; those whose steps do not land are left out.
+    effort : Effort
+
+    Returns
+    -------
+    list of Job
+        Its labels are table ("hints"), hint (of FALSE, or KNOWN) and the fields of the case.
+    """
     landing = [source for source in sources if resolve(source).lands]
     asked = [
         (posed, name, hints)

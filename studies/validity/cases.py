@@ -23,7 +23,16 @@ HALF_CYCLES = 2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValidityCase:
-    """A block under a full-sine pulse."""
+    """A block under a full-sine pulse.
+
+    Attributes
+    ----------
+    aspect : float
+        H/B.
+    onsets : float
+        Amplitude over g B/H.
+    omega_over_p : float
+    """
 
     aspect: float
     onsets: float
@@ -54,7 +63,18 @@ class ValidityCase:
 
 
 def grid(onsets: Sequence[float], omegas: Sequence[float]) -> Iterator[ValidityCase]:
-    """Yield the cases of a grid, for every aspect ratio."""
+    """Yield the cases of a grid, for every one of ASPECTS.
+
+    Parameters
+    ----------
+    onsets, omegas : sequence of float
+        Amplitudes over g B/H, and frequencies omega/p.
+
+    Yields
+    ------
+    ValidityCase
+        By aspect ratio, then amplitude, then frequency.
+    """
     for aspect, onset, omega in product(ASPECTS, onsets, omegas):
         yield ValidityCase(aspect=aspect, onsets=onset, omega_over_p=omega)
 

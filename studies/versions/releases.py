@@ -117,7 +117,20 @@ def listed(engine: str) -> list[Release]:
 
 
 def check_releases(asked: Sequence[str], engines: Sequence[str]) -> None:
-    """Raise BadInputError unless each names releases of the engines."""
+    """Refuse what names no releases of some engines.
+
+    Parameters
+    ----------
+    asked : sequence of str
+        INSTALLED, MINOR, ALL, or ENGINE==RELEASE of a final release, which may not exist.
+    engines : sequence of str
+        Those of which a release may be named.
+
+    Raises
+    ------
+    BadInputError
+        That names the first word which is none of these.
+    """
     for word in asked:
         name, _, version = word.partition("==")
         of_one = name in engines and FINAL.fullmatch(version)
