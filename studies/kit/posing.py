@@ -247,7 +247,18 @@ def refuse_endless(
 
 
 def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
-    """Return --width and --height [m]; BadInputError if one is missing."""
+    """Return --width and --height, where a scene cannot do without them.
+
+    Parameters
+    ----------
+    width, height : float or None
+        Full sizes [m]; None where the option was not given.
+
+    Raises
+    ------
+    BadInputError
+        That names what is missing.
+    """
     if width is None or height is None:
         missing = " and ".join(
             f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
@@ -258,6 +269,11 @@ def both_sizes(width: float | None, height: float | None) -> tuple[float, float]
 
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height.
+
+    Parameters
+    ----------
+    width, height : float
+        Full sizes [m], positive and at most MOST_M.
 
     Raises
     ------
