@@ -33,7 +33,17 @@ OMEGA_RATIOS = tuple(k / 10 for k in range(1, 41))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One point of the paper's sensitivity analysis."""
+    """One point of the paper's sensitivity analysis.
+
+    Attributes
+    ----------
+    figure, pulse, excess_g : int, str, float
+        Of `SWEEPS`; the excess e is in g.
+    aspect, width_m : float
+        H/B, and B [m].
+    omega_over_p : float
+        Circular frequency of the pulse over p.
+    """
 
     figure: int
     pulse: str
@@ -134,5 +144,13 @@ def sweep_cases(figures: Iterable[int]) -> Iterator[Case]:
 
 
 def free_rocking_window(block: System, motion: Motion) -> float:
-    """Time [s] of an observation: the motion and 8/p of free rocking, a few impacts."""
+    """Return the time [s] of an observation: the motion and 8/p of free rocking, a few impacts.
+
+    Parameters
+    ----------
+    block : System
+        Of which p [rad/s] is used.
+    motion : Motion
+        From time 0; its duration [s] is used.
+    """
     return motion.duration + 8.0 / block.p

@@ -68,7 +68,24 @@ def variants(engine: str) -> Iterator[Variant]:
 
 
 def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return what a preset of an engine sets the named settings to."""
+    """Return what a preset of an engine sets the named settings to.
+
+    Parameters
+    ----------
+    engine, preset : str
+    names : sequence of str
+        Fields of the engine's settings, as `Factor.settings` names them.
+
+    Returns
+    -------
+    dict
+        Name -> value, in the unit of that setting.
+
+    Raises
+    ------
+    AttributeError
+        If the engine has no such setting.
+    """
     chosen = ENGINES[engine].preset(preset).settings
     return {name: getattr(chosen, name) for name in names}
 

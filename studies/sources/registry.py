@@ -150,7 +150,25 @@ def run_engine(
     times: FloatArray | None = None,
     **options: Any,
 ) -> Response:
-    """Build the scene and let the engine run it; `options` are those of the `Scene`."""
+    """Build the scene and let the engine run it.
+
+    Parameters
+    ----------
+    block, motion, preset, duration, times, **options
+        As for `scene_of`.
+    engine : str
+        A name in `ENGINES`.
+
+    Returns
+    -------
+    Response
+        Failed, with its reason, where the engine is not installed or cannot do what is asked.
+
+    Raises
+    ------
+    ValueError
+        As `scene_of` does, and if the engine has no such preset or setting.
+    """
     from engines.run.drive import run
 
     scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
@@ -166,6 +184,18 @@ def scene_of(
     **options: Any,
 ) -> Scene:
     """Return the scene that an engine is asked about.
+
+    Parameters
+    ----------
+    block : System
+    motion : Motion
+    preset : str or None
+        Name of one of the engine's presets; None for the best that the scene allows.
+    times : ndarray, shape (n,), optional
+        Increasing ground times [s] of the history.
+    **options
+        What else a `Scene` takes, by name and in its units: `duration` [s], `step` (p dt),
+        `friction`, `settings`, ...
 
     Raises
     ------
