@@ -183,7 +183,7 @@ def extremes(published: Path, source: str, target: float) -> dict[str, int]:
     published : Path
         The folder of the published tables.
     source : str
-        As in their column source.
+        The preset's name in them: "mujoco:fixed", or "mujoco" for the best.
     target : float
         Largest error of the peak, relative.
 

@@ -74,7 +74,17 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HistoryCase:
-    """One panel of the paper's time histories."""
+    """One panel of the paper's time histories.
+
+    Attributes
+    ----------
+    figure, panel, pulse : int, str, str
+        The pulse is one of `PULSES`.
+    width_m, height_m : float
+        B and H [m].
+    amplitude_g, omega_rad_s : float
+        Amplitude [g] and circular frequency [rad/s] of the pulse.
+    """
 
     figure: int
     panel: str

@@ -243,8 +243,8 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
     -------
     list of dict
         The columns SHARED, BESIDE, CONDITIONED and ESTIMATED of a row, as far as it has them; what
-        the exact solution needs, alike in all: min_normal, friction_needed and valid; where there
-        are any slips [m], place_error_m and the observables of the scene.
+        the exact solution needs, alike in all: min_normal, friction_needed and valid; and, where
+        there are any, slips [m], place_error_m and the observables of the scene.
     """
     objects: list[dict[str, Any]] = []
     for row in rows:

@@ -300,13 +300,8 @@ def changed(lines: pd.DataFrame, engine: str, preset: str) -> pd.DataFrame:
     Parameters
     ----------
     lines : DataFrame
-        The columns of variants.csv.
+        The columns of variants.csv; the lines of these variants are returned.
     engine, preset : str
-
-    Returns
-    -------
-    DataFrame
-        Those lines of it.
     """
     mine = (lines["engine"] == engine) & (lines["preset"] == preset)
     return lines[mine & (lines["factor"] != "")]

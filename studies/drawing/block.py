@@ -63,7 +63,7 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
     width, height : float, optional
         B and H, in units of the drawing, which is 2.95 wide and 3.1 high.
     theta : float, optional
-        Rotation [rad], positive: the names stand where they belong to a lean to the right.
+        Rotation [rad], positive: the names are placed for a lean to the right.
     """
     drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
     axes = drawing.subplots()

@@ -137,7 +137,7 @@ def cells(
     values : array_like, shape (m, n)
         Relative errors of either sign; nan and inf are none.
     low, high : float
-        Errors, positive, of the first and the last colour; beyond, these are kept.
+        Errors, positive, at the two ends of the colours; what is beyond has the colour of the end.
     columns : sequence of str, optional
         Names of the n columns, written above them.
 

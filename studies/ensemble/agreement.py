@@ -174,12 +174,12 @@ def share_bounds(successes: int, cases: int) -> tuple[float, float]:
     Parameters
     ----------
     successes, cases : int
-        Of `cases` independent ones, 0 or more.
+        The share is successes/cases, of independent cases; there may be none.
 
     Returns
     -------
     (float, float)
-        Between 0 and 1, which they are where there is no case.
+        The lower and the upper one; 0 and 1 where there is no case.
     """
     from scipy.stats import binomtest
 

@@ -262,10 +262,21 @@ class Yours:
     ) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source.
 
+        Parameters
+        ----------
+        sources : sequence of str
+        block : System or RollingCylinder
+            Of which p [rad/s] is used.
+
+        Returns
+        -------
+        dict
+            Source -> its options: friction, and step, p dt.
+
         Raises
         ------
         BadInputError
-            If one takes no step of its own, or none takes what is given.
+            If an engine whose steps are not equal is given one, or no source takes what is given.
         """
         asked = {name: resolve(name) for name in sources}
         idle = not any(source.engine for source in asked.values())

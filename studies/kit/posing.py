@@ -342,7 +342,14 @@ class Standing:
             )
 
     def system(self, width: float, height: float, friction: float | None) -> System:
-        """Return the system of these sizes [m].
+        """Return the system that the options mean.
+
+        Parameters
+        ----------
+        width, height : float
+            Full sizes of the block or of each column [m].
+        friction : float or None
+            Coefficient between base and a block that slides; other systems have none.
 
         Raises
         ------

@@ -58,12 +58,21 @@ class UnknownSourceError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
+    """Who answers a question; it can be sent to another process or machine.
 
-    It can be sent to another process or machine. `engine` and `preset` are names, the preset by
-    default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
-    ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
-    that by which it was asked for.
+    Attributes
+    ----------
+    kind : {"model", "solver", "peer", "engine"}
+    call : callable
+        ``(block, motion, *, duration, times, **options) -> Response``.
+    engine, preset : str
+        Names; empty where it is no engine. The preset is by default that of the best there is.
+    stepping : bool
+        Whether it has an option `step`, p dt; `accurate` ones have an option `accuracy`.
+    model : str
+        Name of the model whose equation it solves.
+    name : str
+        By which it was asked for.
     """
 
     kind: Kind
