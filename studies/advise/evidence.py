@@ -127,7 +127,19 @@ def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
 
 
 def options_at(preset: Preset, value: float) -> dict[str, Any]:
-    """Return the options of a scene that set a preset to a value; none for its own step."""
+    """Return the options of a scene that set a preset to a value.
+
+    Parameters
+    ----------
+    preset : Preset
+    value : float
+        p dt, or that of the preset's dial; nan for its own step, which needs no option.
+
+    Returns
+    -------
+    dict
+        For `engines.scene.Scene`.
+    """
     if math.isnan(value):
         return {}
     return {"settings": {preset.dial[0]: value}} if preset.dial else {"step": value}
@@ -141,7 +153,13 @@ def declared_value(preset: Preset) -> float:
 
 
 def in_words(preset: Preset, value: float) -> str:
-    """Return a setting of a preset: its p dt, its dial, or the library's own step."""
+    """Return a setting of a preset: its p dt, its dial, or the library's own step.
+
+    Parameters
+    ----------
+    preset, value
+        As for `options_at`.
+    """
     if math.isnan(value):
         return "its own step"
     return f"{'p dt' if preset.dial is None else preset.dial[0]} = {value:g}"
@@ -159,6 +177,20 @@ def extremes(published: Path, source: str, target: float) -> dict[str, int]:
 
     Off is another outcome, a failure, or an error above the target; cases where the reference does
     not hold, or whose rocking is too small to be seen, are not counted.
+
+    Parameters
+    ----------
+    published : Path
+        The folder of the published tables.
+    source : str
+        The preset's name in them: "mujoco:fixed", or "mujoco" for the best.
+    target : float
+        Largest error of the peak, relative.
+
+    Returns
+    -------
+    dict
+        extreme_cases, the number of cases, and extreme_off, of those that are off.
     """
     table = read_table(published / EXTREME)
     mine = table[table["source"] == source]

@@ -74,7 +74,20 @@ def literal(
 
 
 def tables(lines: pd.DataFrame, block: RigidBlock) -> dict[str, pd.DataFrame]:
-    """Return what keeps each error, and why nothing keeps the largest that a preset misses."""
+    """Return what keeps each error, and why nothing keeps the largest that a preset misses.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        From `studies.advise.choice.advice`.
+    block : RigidBlock
+        For which its steps are in seconds.
+
+    Returns
+    -------
+    dict
+        Title -> table.
+    """
     found = lines["message"] == ""
     here = f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s)"
     return {
@@ -92,7 +105,15 @@ def preset_of(line: pd.Series[Any]) -> Preset:
 
 
 def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None = None) -> str:
-    """Return the settings of the lines that found one, each once, in the libraries' words."""
+    """Return the settings of the lines that found one, each once, in the libraries' words.
+
+    Parameters
+    ----------
+    lines, block
+        As for `tables`.
+    friction : float, optional
+        As for `literal`, with its error.
+    """
     chosen = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
     parts = []
     for _, line in chosen.iterrows():
@@ -172,7 +193,18 @@ def kept_errors(
 def reverse_text(
     lines: pd.DataFrame, block: RigidBlock, dt_s: float, friction: float | None
 ) -> str:
-    """Return the errors as a table; of one engine also its settings, as formulas and values."""
+    """Return the errors as a table; of one engine also its settings, as formulas and values.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        From `kept_errors`.
+    block : RigidBlock
+    dt_s : float
+        The step [s] that it was asked for.
+    friction : float or None
+        As for `literal`, with its error.
+    """
     finding = (
         f"For a block of {block.width:g} x {block.height:g} m (p = {block.p:.5g} rad/s) a step of "
         f"{dt_s:g} s is p dt = {dt_s * block.p:.3g}; presets that land on impacts, or choose their "

@@ -53,6 +53,14 @@ class Strength:
 def strength(block: RigidBlock, motion: Motion, start: tuple[float, float]) -> Strength:
     """Find by which factors on a motion the exact block overturns.
 
+    Parameters
+    ----------
+    block : RigidBlock
+    motion : Motion
+        As it is at the factor 1.
+    start : (float, float)
+        Rotation [rad] and angular velocity [rad/s] at time 0, the same for all factors.
+
     Raises
     ------
     ValueError

@@ -43,7 +43,19 @@ def read_record(path: Path, units: str | None = None, argument: str = "--record"
 
 
 def corrected(record: Record, baseline: Baseline | None) -> Record:
-    """Return a record without its mean or its linear trend, or as it is."""
+    """Return a record without its mean or its linear trend, or as it is.
+
+    Parameters
+    ----------
+    record : Record
+    baseline : {"none", "constant", "linear"} or None
+        The mean is taken away, or the line that fits best; None is "none".
+
+    Raises
+    ------
+    ValueError
+        If nothing but rounding is left.
+    """
     if baseline is None or baseline == "none":
         return record
     return record.detrended(baseline)
@@ -56,6 +68,21 @@ def recorded(
     argument: str = "--records",
 ) -> list[Record]:
     """Read records, all of the same units where they state none, and correct them.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    units : str or None
+        One of UNITS; needed where a file does not state its own.
+    baseline : {"none", "constant", "linear"}, optional
+        As for `corrected`.
+    argument : str, optional
+        What a refusal names.
+
+    Returns
+    -------
+    list of Record
+        Acceleration [m/s2] over time [s], in the order of the paths.
 
     Raises
     ------
@@ -77,7 +104,20 @@ def recorded(
 
 
 def baseline_note(record: Record, baseline: str | None) -> str:
-    """Say how a record was corrected, and what velocity it leaves the base with; or nothing."""
+    """Say how a record was corrected, and what velocity it leaves the base with.
+
+    Parameters
+    ----------
+    record : Record
+        As it is used: corrected, and scaled.
+    baseline : {"none", "constant", "linear"} or None
+        How it was corrected.
+
+    Returns
+    -------
+    str
+        Empty where it is as it was read, and comes to rest up to DRIFT of its largest velocity.
+    """
     words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
     largest = float(np.abs(record.velocity(record.breakpoints)).max())
     if abs(record.final_velocity) > DRIFT * largest:

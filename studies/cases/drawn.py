@@ -23,7 +23,17 @@ That of a block that overturns until it passes the critical rotation for good.
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomCase:
-    """A block and a pulse drawn at random."""
+    """A block and a pulse drawn at random.
+
+    Attributes
+    ----------
+    case : int
+        Its number, from 0.
+    aspect, width_m : float
+        H/B, and B [m].
+    half_cycles, amplitude_g, omega_over_p : int, float, float
+        Length, amplitude [g] and circular frequency over p of the pulse.
+    """
 
     case: int
     aspect: float
@@ -49,7 +59,14 @@ class RandomCase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomFrame(RandomCase):
-    """A frame and a pulse drawn at random; aspect and width are a column's."""
+    """A frame and a pulse drawn at random; aspect and width are a column's.
+
+    Attributes
+    ----------
+    columns : int
+    load : float
+        Mass of the beam over that of all columns.
+    """
 
     columns: int
     load: float
@@ -82,6 +99,17 @@ def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
     reference's normal force stays above LEAST_NORMAL weights. Frames have 2 to 5 columns and loads
     from 0.1 to 10, with uniform logarithms; only where their beam would not tip, nor anything slide
     by a friction of FRICTION.
+
+    Parameters
+    ----------
+    seed : int
+        Of `numpy.random.default_rng`; not negative.
+    scene : {"block", "frame"}, optional
+
+    Yields
+    ------
+    RandomCase
+        Of frames, a `RandomFrame`; `case` counts from 0 those that are kept.
     """
     kept = (drawn for drawn, exact in everything(seed, scene) if fate_of(drawn, exact) == KEPT)
     for case, drawn in enumerate(kept):
@@ -89,7 +117,22 @@ def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
 
 
 def fate_of(drawn: RandomCase, exact: Response) -> str:
-    """Say whether a case is kept, or why it is left out."""
+    """Say whether a case is kept, or why it is left out.
+
+    Parameters
+    ----------
+    drawn : RandomCase
+    exact : Response
+        Its exact response, of which a block's `min_normal` is used; a frame's contacts are looked
+        at by `analytic.frame_demands`.
+
+    Returns
+    -------
+    str
+        KEPT; NEAR, where the smallest normal force is at most LEAST_NORMAL weights; LIFTED, where
+        it is not positive. Of a frame also SLIDES, where a contact needs more friction than
+        FRICTION, and TIPS, where the beam would tip.
+    """
     system, normal = drawn.block, exact.min_normal
     if isinstance(system, RockingFrame):
         apart, depth = SPACING * system.height, BEAM_DEPTH * system.height
@@ -103,7 +146,18 @@ def fate_of(drawn: RandomCase, exact: Response) -> str:
 
 
 def everything(seed: int, scene: Drawn = "block") -> Iterator[tuple[RandomCase, Response]]:
-    """Yield all that is drawn, numbered from 0, with its exact response."""
+    """Yield all that is drawn, kept or not, with its exact response; without end.
+
+    Parameters
+    ----------
+    seed, scene
+        As for `draw`.
+
+    Yields
+    ------
+    RandomCase, Response
+        `case` counts from 0 all that is drawn.
+    """
     generator = np.random.default_rng(seed)
     for number in count():
         aspect = float(generator.uniform(1.2, 12.0))

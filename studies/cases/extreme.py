@@ -113,9 +113,28 @@ def takes_spring(source: Source) -> bool:
 
 
 def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]:
-    """Return the engine's settings of a contact with a time of its own; `Engine.spring`.
+    """Return an engine's settings of a contact with a time T of its own.
 
-    time and step are in units of 1/p.
+    By `Engine.spring`: it holds the block's mass m by a spring of m/T^2 with critical damping.
+
+    Parameters
+    ----------
+    source : str
+        An engine, perhaps with a preset.
+    time, step : float
+        T, and the ordinary step, in units of 1/p.
+
+    Returns
+    -------
+    mapping
+        Setting -> value, as for `Scene.settings`.
+
+    Raises
+    ------
+    ValueError
+        If the engine has no such contact.
+    KeyError
+        If the source is no engine.
     """
     spring = resolve(source).declared.spring
     if spring is None:

@@ -33,7 +33,17 @@ OMEGA_RATIOS = tuple(k / 10 for k in range(1, 41))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One point of the paper's sensitivity analysis."""
+    """One point of the paper's sensitivity analysis.
+
+    Attributes
+    ----------
+    figure, pulse, excess_g : int, str, float
+        Of `SWEEPS`; the excess e is in g.
+    aspect, width_m : float
+        H/B, and B [m].
+    omega_over_p : float
+        Circular frequency of the pulse over p.
+    """
 
     figure: int
     pulse: str
@@ -64,7 +74,17 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HistoryCase:
-    """One panel of the paper's time histories."""
+    """One panel of the paper's time histories.
+
+    Attributes
+    ----------
+    figure, panel, pulse : int, str, str
+        The pulse is one of `PULSES`.
+    width_m, height_m : float
+        B and H [m].
+    amplitude_g, omega_rad_s : float
+        Amplitude [g] and circular frequency [rad/s] of the pulse.
+    """
 
     figure: int
     panel: str
@@ -134,5 +154,13 @@ def sweep_cases(figures: Iterable[int]) -> Iterator[Case]:
 
 
 def free_rocking_window(block: System, motion: Motion) -> float:
-    """Time [s] of an observation: the motion and 8/p of free rocking, a few impacts."""
+    """Return the time [s] of an observation: the motion and 8/p of free rocking, a few impacts.
+
+    Parameters
+    ----------
+    block : System
+        Of which p [rad/s] is used.
+    motion : Motion
+        From time 0; its duration [s] is used.
+    """
     return motion.duration + 8.0 / block.p

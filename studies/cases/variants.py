@@ -24,9 +24,19 @@ STILL = f"{OWN_STEP}, on a base at rest"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """One way to set an engine: a preset and what differs from it; factor is empty if nothing.
+    """One way to set an engine: a preset and what differs from it.
 
-    `source` is who is asked: the engine's preset, but for another engine in its place.
+    Attributes
+    ----------
+    engine, preset : str
+    factor, level : str
+        What differs, and how; of a preset as it is no factor, and its title.
+    settings, scene : mapping
+        Settings of the engine, and options of the `Scene`, that replace the preset's.
+    trap : str
+        Why it goes wrong without a word, where it does.
+    source : str
+        Who is asked: the engine's preset, but for another engine in its place.
     """
 
     engine: str
@@ -68,7 +78,24 @@ def variants(engine: str) -> Iterator[Variant]:
 
 
 def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return what a preset of an engine sets the named settings to."""
+    """Return what a preset of an engine sets the named settings to.
+
+    Parameters
+    ----------
+    engine, preset : str
+    names : sequence of str
+        Fields of the engine's settings, as `Factor.settings` names them.
+
+    Returns
+    -------
+    dict
+        Name -> value, in the unit of that setting.
+
+    Raises
+    ------
+    AttributeError
+        If the engine has no such setting.
+    """
     chosen = ENGINES[engine].preset(preset).settings
     return {name: getattr(chosen, name) for name in names}
 

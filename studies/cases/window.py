@@ -140,14 +140,29 @@ class Window:
     def modes(
         self, x: FloatArray, onsets: FloatArray, model: str = "exact", threads: int | None = None
     ) -> Modes:
-        """Return what happens at points of the plane, broadcast."""
+        """Return what happens at points of the plane, broadcast.
+
+        Parameters
+        ----------
+        x, onsets : ndarray
+            Abscissae, as `over` says, and amplitudes over g tan(alpha); their shapes broadcast.
+        model : {"exact", "housner", "modified", "onset-matched"}
+        threads : int, optional
+            By default the number of cores.
+        """
         alpha = self.alpha(x)
         amplitude = onsets * np.tan(alpha)
         ratio, cycles = self.ratio(x), self.half_cycles
         return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
 
     def peaks(self, x: FloatArray, onsets: FloatArray, threads: int | None = None) -> FloatArray:
-        """Return the exact peak ratios at points of the plane, broadcast; inf when overturned."""
+        """Return the exact peak ratios at points of the plane, broadcast; inf when overturned.
+
+        Parameters
+        ----------
+        x, onsets, threads
+            As for `modes`.
+        """
         alpha = self.alpha(x)
         amplitude, ratio = onsets * np.tan(alpha), self.ratio(x)
         return peak_ratios(alpha, amplitude, ratio, self.half_cycles, threads=threads)[0]
@@ -158,7 +173,13 @@ class Window:
         return condition_numbers(alpha, onsets * np.tan(alpha), self.ratio(x), self.half_cycles)
 
     def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
-        """Return the block and the pulse of a point, for sources other than the models."""
+        """Return the block and the pulse of a point, for sources other than the models.
+
+        Parameters
+        ----------
+        x, onsets : float
+            As for `modes`.
+        """
         alpha = float(self.alpha(np.array(x)))
         width = WIDTH_M
         if self.over == "size":

@@ -152,7 +152,18 @@ def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
 
 
 def slip_error(response: Response, exact: Response) -> float:
-    """Return the largest difference of a slip over the largest; nan where their numbers differ."""
+    """Return the largest difference of a slip from the exact one, over the largest exact slip.
+
+    Parameters
+    ----------
+    response, exact : Response
+        Of the same sliding block.
+
+    Returns
+    -------
+    float
+        Relative, not negative; nan where their numbers of slips differ, or there is no slip.
+    """
     if not exact.slips or len(response.slips) != len(exact.slips):
         return math.nan
     pairs = zip(response.slips, exact.slips, strict=True)
@@ -200,7 +211,13 @@ is null there."""
 
 
 def json_lines(rows: list[Row], note: str = "") -> str:
-    """Return one JSON object a line, of what `records` tells."""
+    """Return one JSON object a line, of what `records` tells.
+
+    Parameters
+    ----------
+    rows, note
+        As for `records`. A number that is not finite becomes null.
+    """
     return objects_as_lines(records(rows, note))
 
 
@@ -215,8 +232,19 @@ def objects_as_lines(objects: Sequence[Mapping[str, Any]]) -> str:
 def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
     """Return what is told of each row, by name, with a note in each message.
 
-    `valid` and what stands before it say what the exact solution needs, alike in all; slips [m]
-    and the observables of a scene follow where there are any.
+    Parameters
+    ----------
+    rows : list of dict
+        From `studies.compare.study.compare`, perhaps with kappa and sensitivity.
+    note : str, optional
+        On the motion of the base.
+
+    Returns
+    -------
+    list of dict
+        The columns SHARED, BESIDE, CONDITIONED and ESTIMATED of a row, as far as it has them; what
+        the exact solution needs, alike in all: min_normal, friction_needed and valid; and, where
+        there are any, slips [m], place_error_m and the observables of the scene.
     """
     objects: list[dict[str, Any]] = []
     for row in rows:
@@ -251,7 +279,21 @@ def table_text(
 ) -> str:
     """Return the table with its head, a note on the motion in it, and what is said below it.
 
-    Those are the messages of its rows, and what an answer near the edge hangs on.
+    Parameters
+    ----------
+    block : System
+    posed : Posed
+        The motion and the start.
+    window : float
+        Time [s] for which it was observed.
+    rows : list of dict
+        From `studies.compare.study.conditioned`; their messages stand below the table.
+    note : str, optional
+        On the motion of the base.
+    edge : str, optional
+        What an answer near the edge hangs on: the last line.
+    degrees : bool, optional
+        Show rotations in degrees, instead of in units of alpha.
     """
     motion, scale = posed.motion, math.degrees(block.alpha) if degrees else 1.0
     columns: dict[str, list[Any]] = {
@@ -331,7 +373,18 @@ def motion_name(motion: Motion) -> str:
 
 
 def draw(rows: list[Row], block: Any, motion: Motion, path: Path) -> None:
-    """Draw the histories of the rows over each other."""
+    """Draw the histories of the rows over each other; nothing where no row has one.
+
+    Parameters
+    ----------
+    rows : list of dict
+        With source and response, as from `studies.compare.study.compare` with times.
+    block : System
+        One that rocks.
+    motion : Motion
+    path : Path
+        The file to write, .png, .pdf or .svg.
+    """
     from studies.drawing.figures import draw_histories, save
 
     labels = {

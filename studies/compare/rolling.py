@@ -32,7 +32,30 @@ def compare_rolling(
     executor: Executor,
     json: bool,
 ) -> int:
-    """Ask every source, print a row for each and each number of turns; return the exit code."""
+    """Ask every source, print a row for each and each number of turns; return the exit code.
+
+    Parameters
+    ----------
+    cylinder : RollingCylinder
+    sources : sequence of str
+    duration : float or None
+        Watch until this time [s]; by default five turns, and fifty.
+    effort : Effort
+    yours : Yours
+    executor : Executor
+    json : bool
+        Print JSON objects, one a line, instead of a table.
+
+    Returns
+    -------
+    int
+        0 if every row is usable, 1 if some failed.
+
+    Raises
+    ------
+    BadInputError
+        If a source does not take what `effort` or `yours` says, or cannot be asked about it.
+    """
     own = yours.options(sources, cylinder)
     turns = TURNS if duration is None else (duration / cylinder.turn,)
     jobs = [

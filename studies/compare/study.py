@@ -289,7 +289,22 @@ def frame(
     yours: Yours,
     estimate: bool = False,
 ) -> pd.DataFrame:
-    """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`."""
+    """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`.
+
+    Parameters
+    ----------
+    block, motion, sources, start, duration, estimate
+        As there.
+    yours : Yours
+        Its friction and its step [s].
+
+    Raises
+    ------
+    BadInputError
+        If a value is not allowed, or a source cannot be asked so.
+    studies.sources.registry.UnknownSourceError
+        If there is no such source.
+    """
     window, posed = _window(block, motion, duration), Posed(motion, start)
     refuse_endless(block, window, duration=duration, dt=yours.dt)
     rows = compare(block, posed, sources, window, executor=_here, yours=yours, estimate=estimate)

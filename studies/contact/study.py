@@ -295,7 +295,14 @@ def finding(lines: pd.DataFrame) -> str:
 
 
 def changed(lines: pd.DataFrame, engine: str, preset: str) -> pd.DataFrame:
-    """Return the variants of an engine that change one setting of a preset."""
+    """Return the variants of an engine that change one setting of a preset.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of variants.csv; the lines of these variants are returned.
+    engine, preset : str
+    """
     mine = (lines["engine"] == engine) & (lines["preset"] == preset)
     return lines[mine & (lines["factor"] != "")]
 
@@ -303,11 +310,17 @@ def changed(lines: pd.DataFrame, engine: str, preset: str) -> pd.DataFrame:
 def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
     """Return the largest error of an engine's best preset without each of what it is helped by.
 
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of variants.csv.
+    engine : str
+
     Returns
     -------
     dict
-        Name of a `Help` -> the error and what fails; "" -> the preset as it is; "STEPS" -> that
-        with equal steps.
+        Name of a `Help` -> the error and what fails, in words; "" -> the preset as it is;
+        "STEPS" -> that with equal steps.
     """
     best = ENGINES[engine].best.name
     mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
@@ -319,7 +332,20 @@ def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
 
 
 def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
-    """Return an engine's rules, each with the errors without it and with it."""
+    """Return an engine's rules, each with the errors without it and with it.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        The columns of variants.csv.
+    engine : str
+
+    Returns
+    -------
+    list of (Rule, str, str)
+        Median and largest error of the peak, in words; rules of which a variant was not run are
+        left out.
+    """
     found = []
     for rule in ENGINES[engine].rules:
         plain = variant_of(lines, engine, rule.preset)

@@ -56,7 +56,15 @@ def outlines(system: System, at: float) -> FloatArray:
 
 
 def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:
-    """Draw a block that rocks, with the names of its parts."""
+    """Draw a block that rocks, with the names of its parts.
+
+    Parameters
+    ----------
+    width, height : float, optional
+        B and H, in units of the drawing, which is 2.95 wide and 3.1 high.
+    theta : float, optional
+        Rotation [rad], positive: the names are placed for a lean to the right.
+    """
     drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
     axes = drawing.subplots()
     axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6), aspect="equal")
@@ -74,7 +82,14 @@ def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> 
 
 
 def draw_scene(system: System | CartBlock, at: float) -> Figure:
-    """Draw the bodies of a system at rest, dashed, and where they are: see `outlines`."""
+    """Draw the bodies of a system where they are, and dashed where they are at rest.
+
+    Parameters
+    ----------
+    system : System
+    at : float
+        As for `outlines`: rotation [rad], or place along the base [m] where nothing rocks.
+    """
     rest, moved = outlines(system, 0.0), outlines(system, at)
     every = np.concatenate((rest, moved))
     (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))

@@ -64,14 +64,33 @@ def mark(error: float) -> str:
 
 
 def error_scale(axis: Axis, low: float, high: float, every: int = 2) -> None:
-    """Mark a logarithmic axis of errors at every so many powers of ten up to 100 %."""
+    """Mark a logarithmic axis of errors at every so many powers of ten up to 100 %.
+
+    Parameters
+    ----------
+    axis : Axis
+        The x or y axis of a panel; errors are relative, 1.0 is 100 %.
+    low, high : float
+        Errors between which there are marks; none below 1e-16.
+    every : int, optional
+        Powers of ten from a mark to the next, counted from 100 % down.
+    """
     powers = [k for k in range(0, -17, -every) if low <= 10.0**k <= high]
     axis.set_ticks([10.0**k for k in powers], [mark(10.0**k) for k in powers])
     axis.set_ticks([], minor=True)
 
 
 def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
-    """Name the rows of a panel from above, and draw a line along each."""
+    """Name the rows of a panel from above, and draw a line along each.
+
+    Parameters
+    ----------
+    axes : Axes
+        The first name stands at y = 0, the next ones at 1, 2, ..., downwards.
+    names : sequence of str
+    size : float, optional
+        Of the letters [points].
+    """
     axes.set_yticks(range(len(names)), names, fontsize=size)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
@@ -82,7 +101,19 @@ def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
 
 
 def strip_beyond(axes: Axes, start: float, words: str, *, along: str = "y") -> None:
-    """Shade what lies beyond the scale, from a value on, and say what stands there."""
+    """Shade what lies beyond the scale, from a value on, and say what stands there.
+
+    Parameters
+    ----------
+    axes : Axes
+        Logarithmic along the scale, with the limits that it will keep.
+    start : float
+        Where the strip begins, in units of the axis; it ends at the larger limit.
+    words : str
+        In the middle of the strip, by the logarithm; none where empty.
+    along : {"y", "x"}, optional
+        The axis of the scale.
+    """
     low, high = getattr(axes, f"get_{along}lim")()
     end = max(low, high)
     if along == "y":
@@ -100,9 +131,20 @@ def cells(
 ) -> Any:
     """Paint a matrix of errors, the first row above; what has none stays white.
 
+    Parameters
+    ----------
+    axes : Axes
+    values : array_like, shape (m, n)
+        Relative errors of either sign; nan and inf are none.
+    low, high : float
+        Errors, positive, at the two ends of the colours; what is beyond has the colour of the end.
+    columns : sequence of str, optional
+        Names of the n columns, written above them.
+
     Returns
     -------
     AxesImage
+        For a colour bar.
     """
     found = np.asarray(values, np.float64)
     shown = axes.imshow(np.ma.masked_invalid(np.abs(found)), aspect="auto", cmap=ERRORS,
@@ -116,7 +158,16 @@ def cells(
 
 
 def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:
-    """Return what stands in a key for a marker."""
+    """Return what stands in a key for a marker.
+
+    Parameters
+    ----------
+    name : str
+    marker, color
+        As matplotlib knows them.
+    **look
+        Further properties of `Line2D`.
+    """
     return Line2D([], [], linestyle="none", marker=marker, color=color, label=name, **look)
 
 
@@ -126,6 +177,18 @@ def preset_dots(presets: Iterable[str]) -> list[Line2D]:
 
 
 def key(drawing: Figure, handles: Sequence[Any], across: int = 6, **look: Any) -> None:
-    """Write a key below all panels."""
+    """Write a key below all panels.
+
+    Parameters
+    ----------
+    drawing : Figure
+        With a constrained layout, which leaves room for it.
+    handles : sequence of Artist
+        With labels, as from `dot`.
+    across : int, optional
+        How many stand side by side.
+    **look
+        Further options of `Figure.legend`; by default no frame, letters of 9 points.
+    """
     drawing.legend(handles=list(handles), loc="outside lower center", ncols=across,
                    **{"frameon": False, "fontsize": 9, **look})  # fmt: skip

@@ -171,7 +171,22 @@ def lay_out(drawing: Figure) -> None:
 
 
 def save(drawing: Figure, path: Path) -> None:
-    """Write a figure in one piece, in the format of the file's suffix."""
+    """Write a figure in one piece, in the format of the file's suffix.
+
+    Parameters
+    ----------
+    drawing : Figure
+        Its size is in inches; points are DPI to the inch. Its layout is fixed by this.
+    path : Path
+        Ends in .png, with COLOURS colours, or in what else matplotlib writes.
+
+    Raises
+    ------
+    OSError
+        That names `path`.
+    ValueError
+        If there is no such format.
+    """
     drawing.set_dpi(DPI)
     lay_out(drawing)
     with draft(path) as file:
@@ -189,7 +204,21 @@ def save(drawing: Figure, path: Path) -> None:
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:
-    """Write the figures of a study under their names into its folder; return the files."""
+    """Write the figures of a study under their names into its folder; return the files.
+
+    Parameters
+    ----------
+    drawings : mapping
+        Name of a file without suffix -> figure.
+    folder : Path
+    suffix : str, optional
+        With its dot; as for `save`.
+
+    Returns
+    -------
+    list of Path
+        In the order of the figures.
+    """
     paths = [folder / f"{name}{suffix}" for name in drawings]
     for drawing, path in zip(drawings.values(), paths, strict=True):
         save(drawing, path)

@@ -51,13 +51,36 @@ def tell(
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
-    """Return a finding and, under their titles, the tables that have rows."""
+    """Return a finding and, under their titles, the tables that have rows.
+
+    Parameters
+    ----------
+    finding : str
+        One paragraph; broken into lines of WIDTH letters.
+    tables : mapping
+        Title -> table.
+    """
     shown = [f"{title}:\n{in_columns(table)}" for title, table in tables.items() if len(table)]
     return "\n\n".join([fill(finding, WIDTH), *shown])
 
 
 def keep(study: Study, folder: Path, text: str, name: str = "") -> str:
-    """Write a study's figures and its text into its folder; return the text."""
+    """Write a study's figures and its text into its folder.
+
+    Parameters
+    ----------
+    study : Study
+    folder : Path
+        With the tables that the figures are drawn from.
+    text : str
+    name : str, optional
+        Of the text's file, by default the first that the study writes besides.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     if drawn := study.pictures(folder):
         from studies.drawing.figures import save_all
 

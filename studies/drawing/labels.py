@@ -49,8 +49,15 @@ def spread(levels: Sequence[float], gap: float) -> FloatArray:
 def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """Write names at the right of the axes, each level with its point or led to it by a line.
 
-    To be called when all is drawn: the limits of the axes stay what they are then. What has no
-    point, of a source that failed, has no name.
+    To be called when all is drawn: the limits of the axes stay what they are then.
+
+    Parameters
+    ----------
+    axes : Axes
+    names : sequence of Name
+        One whose point is not finite, of a source that failed, is left out.
+    size : float, optional
+        Of the letters [points].
     """
     names = [name for name in names if math.isfinite(name.x) and math.isfinite(name.y)]
     if not names:

@@ -75,7 +75,20 @@ def look_at(place: int) -> tuple[str, str]:
 
 
 def engine_style(engine: str, preset: str) -> Style:
-    """Return colour and marker of an engine, by its place among all, and the preset's fill."""
+    """Return colour and marker of an engine, by its place among all, and the preset's fill.
+
+    Parameters
+    ----------
+    engine : str
+        A name in `ENGINES`.
+    preset : str
+        Empty where the engine is named without one.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine.
+    """
     colour, marker = look_at(list(ENGINES).index(engine))
     return Style(colour, marker=marker, fill=told(preset).fill)
 

@@ -169,7 +169,18 @@ def bounds(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def share_bounds(successes: int, cases: int) -> tuple[float, float]:
-    """Return the exact confidence bounds of a share (Clopper and Pearson 1934)."""
+    """Return the exact bounds of a share at the level CONFIDENCE (Clopper and Pearson 1934).
+
+    Parameters
+    ----------
+    successes, cases : int
+        The share is successes/cases, of independent cases; there may be none.
+
+    Returns
+    -------
+    (float, float)
+        The lower and the upper one; 0 and 1 where there is no case.
+    """
     from scipy.stats import binomtest
 
     if cases == 0:

@@ -145,7 +145,19 @@ several_or_none = Parameter(consume_multiple=1)
 
 
 def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
-    """Raise BadInputError if a value is given twice, or none."""
+    """Refuse an argument of which a value is given twice, or none.
+
+    Parameters
+    ----------
+    argument : str
+        As the user wrote it, with its dashes; a refusal begins with it.
+    values : iterable
+        What it was given; compared by ==.
+
+    Raises
+    ------
+    BadInputError
+    """
     values = list(values)
     if not values:
         raise BadInputError(f"{argument} is empty; it must have at least one value")
@@ -156,7 +168,20 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
 
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:
-    """Raise BadInputError if one of the options, named without dashes, was given a value."""
+    """Refuse options that say nothing beside the others that were given.
+
+    Parameters
+    ----------
+    options : mapping
+        Name without dashes -> value, None where the option was not given.
+    allowed : str
+        When it may be given, as the refusal ends: "only without --records".
+
+    Raises
+    ------
+    BadInputError
+        That names all options which have a value.
+    """
     given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
     if given:
         raise BadInputError(f"{' and '.join(given)}; it may be given {allowed}")
@@ -172,7 +197,20 @@ def check_plot(path: Path | None) -> None:
 
 
 def check_writable(argument: str, path: Path) -> None:
-    """Raise BadInputError if the file that an argument names cannot be written."""
+    """Refuse a file that cannot be written, before what takes time begins.
+
+    Parameters
+    ----------
+    argument : str
+        As the user wrote it, with its dashes.
+    path : Path
+        A file that is there stays as it is; of a new one nothing is left behind.
+
+    Raises
+    ------
+    BadInputError
+        Also if it is there and no file: a pipe would be waited for.
+    """
     try:
         if path.exists() and not path.is_file():
             # a pipe would be waited for

@@ -50,10 +50,17 @@ def draft_place(path: Path) -> Iterator[Path]:
 def write_all(folder: Path, texts: Mapping[str, str]) -> None:
     """Write several files, the first of which takes its place when all others have theirs.
 
+    Parameters
+    ----------
+    folder : Path
+        One that there is.
+    texts : mapping
+        Name of a file in it -> its text, written in UTF-8.
+
     Raises
     ------
     OSError
-        As `draft_place` does; unless all of them were written, there is none.
+        As `draft_place` does; unless all of them were written, the first is still the one before.
     """
     with ExitStack() as places:
         for name, text in texts.items():

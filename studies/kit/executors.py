@@ -33,6 +33,18 @@ def batches(jobs: Mapping[int, Job], workers: int) -> list[list[int]]:
 
     They share their source and what else is `alike`. Each worker gets a part of every such group,
     as large as another's, so that none waits for long; an engine may want smaller ones.
+
+    Parameters
+    ----------
+    jobs : mapping
+        Number -> job.
+    workers : int
+        Processes that share the batches, 1 or more.
+
+    Returns
+    -------
+    list of list of int
+        A number stands in one batch at most; what stands in none is to be asked by itself.
     """
     groups: dict[tuple[str, Hashable], list[int]] = {}
     for number, job in jobs.items():
@@ -105,9 +117,25 @@ def compile_ahead(
 def ask_apart(
     ask_: Callable[[Job, Source], Response], job: Job, source: Source, many: bool
 ) -> Response:
-    """Put a job to its source in a process of its own; one of a few need not be compiled.
+    """Put a job to its source: what is called in the process of a pool.
 
-    A job that is long is not asked twice: what loads the compiled kernels is a short one.
+    Where jobs are many, the kernels are compiled first, and those of a model or solver loaded by a
+    short question, as a long one is not asked twice.
+
+    Parameters
+    ----------
+    ask_ : callable
+        How a job is put to its source.
+    job : Job
+    source : Source
+        What the name of the job's source means; the process need not have registered it.
+    many : bool
+        Whether the jobs are so many that compiling is worth its time.
+
+    Returns
+    -------
+    Response
+        Where memory ran out, its message says how much a process may take.
     """
     if many:
         compile_all()
@@ -122,7 +150,22 @@ def ask_apart(
 
 
 def outcome_of(task: Future[Response], time_limit_s: float) -> Response:
-    """Return what came of a job in a process, its failure if that is to blame for it."""
+    """Return what came of a job in a process: its response, or a failed one that says why.
+
+    Parameters
+    ----------
+    task : Future
+        From `studies.kit.pool.Pool.schedule`; waited for.
+    time_limit_s : float
+        That of the task [s], as its failure names it.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        If the pool was stopped meanwhile.
+    studies.kit.pool.StartError
+        If no process could be started.
+    """
     try:
         return task.result()
     except (CancelledError, StartError):

@@ -160,6 +160,23 @@ def sorted_rows(
 ) -> tuple[dict[str, Row], list[Stale]]:
     """Return the kept rows of jobs that would be made so now, by their keys, and the others.
 
+    Parameters
+    ----------
+    jobs : iterable of Job
+    kept : Kept
+        The rows of a folder, and what made them; those of other jobs are passed over.
+    makers : Makers
+        What would make them now.
+    folder : Path
+        Where they are kept; a refusal names it.
+
+    Returns
+    -------
+    dict
+        Key of a job -> its row.
+    list of Stale
+        One for each row of a job that would be another now; `why` puts them into words.
+
     Raises
     ------
     FolderError

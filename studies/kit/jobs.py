@@ -135,7 +135,19 @@ def short(job: Job) -> Job:
 
 
 def ask(job: Job, source: Source) -> Response:
-    """Run one job; whatever it raises becomes a failed response."""
+    """Run one job in this process; whatever it raises becomes a failed response.
+
+    Parameters
+    ----------
+    job : Job
+    source : Source
+        What the name of its source means: `Job.asked`, but for studies that ask another one.
+
+    Returns
+    -------
+    Response
+        The message of a failure names the kind of the exception.
+    """
     try:
         return source.call(
             job.block, job.motion, duration=job.duration, times=job.times, **job.options
@@ -145,7 +157,20 @@ def ask(job: Job, source: Source) -> Response:
 
 
 def summary(_: Job, response: Response) -> Row:
-    """Return the columns that every study shares."""
+    """Return the columns that every study shares.
+
+    Parameters
+    ----------
+    _ : Job
+        Not used; every `reduce` is given one.
+    response : Response
+
+    Returns
+    -------
+    dict
+        outcome, peak_ratio, impacts (their number), steps, wall_s [s] and message (in one line) of
+        the response.
+    """
     return {
         "outcome": response.outcome.value,
         "peak_ratio": float(response.peak_ratio),

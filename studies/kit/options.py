@@ -47,14 +47,40 @@ CONTAINER = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in
 
 
 def refuse_days(asked: str, seconds: float, yes: bool) -> None:
-    """Raise BadInputError if what was asked for takes longer than a day, unless that is wanted."""
+    """Refuse what takes longer than a day, unless that is wanted.
+
+    Parameters
+    ----------
+    asked : str
+        What the user asked for, as the refusal begins.
+    seconds : float
+        About how long it takes [s].
+    yes : bool
+        Whether it is wanted.
+
+    Raises
+    ------
+    BadInputError
+    """
     if seconds > DAY_S and not yes:
         days = f"{seconds / DAY_S:.0f} days"
         raise BadInputError(f"{asked}; that takes about {days}, and more than one needs --yes")
 
 
 def refuse_excess(asked: str, held: float) -> None:
-    """Raise BadInputError if what was asked for needs more memory [byte] than there is."""
+    """Refuse what needs more memory than there is.
+
+    Parameters
+    ----------
+    asked : str
+        What the user asked for, as the refusal begins.
+    held : float
+        About what it needs [byte].
+
+    Raises
+    ------
+    BadInputError
+    """
     if held > (there := memory()):
         needs = f"that needs about {held / 1e9:.0f} GB of memory"
         raise BadInputError(f"{asked}; {needs}, and at most {there / 1e9:.0f} GB are there")
@@ -236,10 +262,21 @@ class Yours:
     ) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source.
 
+        Parameters
+        ----------
+        sources : sequence of str
+        block : System or RollingCylinder
+            Of which p [rad/s] is used.
+
+        Returns
+        -------
+        dict
+            Source -> its options: friction, and step, p dt.
+
         Raises
         ------
         BadInputError
-            If one takes no step of its own, or none takes what is given.
+            If an engine whose steps are not equal is given one, or no source takes what is given.
         """
         asked = {name: resolve(name) for name in sources}
         idle = not any(source.engine for source in asked.values())
@@ -284,13 +321,38 @@ def check_written(dt: float | None) -> None:
 
 
 def refuse_two_steps(step: float | None, yours: Yours) -> None:
-    """Raise BadInputError if a step is given both in units of 1/p and in seconds."""
+    """Refuse a step that is given both in units of 1/p and in seconds.
+
+    Parameters
+    ----------
+    step : float or None
+        --step: p dt [-].
+    yours : Yours
+        With --dt: dt [s].
+
+    Raises
+    ------
+    BadInputError
+    """
     if None not in (step, yours.dt):
         raise BadInputError(f"--dt is {yours.dt:g} and --step is {step:g}; give one or the other")
 
 
 def slides(exact: Response, friction: float | None) -> str:
-    """Say that a block slides where the exact solution, which does not, needs more friction."""
+    """Say that a block slides where the exact solution, which does not, needs more friction.
+
+    Parameters
+    ----------
+    exact : Response
+        Of the exact solution; its `friction_needed` may be nan.
+    friction : float or None
+        Coefficient between block and base; None where none was given.
+
+    Returns
+    -------
+    str
+        Empty where it does not slide, or that is not known.
+    """
     if friction is None or not friction < exact.friction_needed:
         return ""
     return f"slides: needs {exact.friction_needed:.3g}, has {friction:.3g}"

@@ -77,7 +77,27 @@ class Plan:
 def carry_out(
     study: Study, plan: Plan, out: Path, running: Running, report: Callable[[Path], str]
 ) -> int:
-    """Run a study into a folder, print what `report` makes of it and return the exit code."""
+    """Run a study into a folder, print what `report` makes of it and return the exit code.
+
+    Parameters
+    ----------
+    study, plan, out, running
+        As for `fill`.
+    report : callable
+        Given the folder, it reduces and draws what is in it, and returns the text to print.
+
+    Returns
+    -------
+    int
+        0 if all rows that the plan needs are usable, 1 if some failed, which are named on stderr.
+
+    Raises
+    ------
+    FolderError
+        As `fill` does; also if rows that the folder already held break its tables or its report.
+    BadInputError
+        As `fill` does.
+    """
     began = time.perf_counter()
     with blaming_its_rows(out):
         rows = fill(study, plan, out, running)
@@ -90,10 +110,27 @@ def carry_out(
 def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING) -> list[Row]:
     """Run what a folder does not hold yet, write its tables and provenance; return all rows.
 
+    Parameters
+    ----------
+    study : Study
+    plan : Plan
+    out : Path
+        The results folder; made if there is none.
+    running : Running
+        Where the jobs run, for how long, and which other folders' rows are taken over.
+
+    Returns
+    -------
+    list of dict
+        In the order of the jobs: labels, source, then what the plan's `reduce` returns.
+
     Raises
     ------
     FolderError
         If a folder cannot be used: results of another study or of other settings are refused.
+    BadInputError
+        If the cluster or the number of processes cannot be used; or, of a run that a refusal or a
+        full disk ends early, to say how many rows are kept.
     """
     compile_all()  # what a folder holds may be a run time
     executor = running.executor(plan.ask)

@@ -65,6 +65,13 @@ class Pool:
     ) -> Future[Any]:
         """Let a process call a function.
 
+        Parameters
+        ----------
+        call, arguments : callable, tuple
+            Sent to the process; the function is one of a module.
+        limit_s : float
+            How long the call may take [s], without what it must first load.
+
         Returns
         -------
         Future

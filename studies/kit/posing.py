@@ -247,7 +247,18 @@ def refuse_endless(
 
 
 def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
-    """Return --width and --height [m]; BadInputError if one is missing."""
+    """Return --width and --height, where a scene cannot do without them.
+
+    Parameters
+    ----------
+    width, height : float or None
+        Full sizes [m]; None where the option was not given.
+
+    Raises
+    ------
+    BadInputError
+        That names what is missing.
+    """
     if width is None or height is None:
         missing = " and ".join(
             f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
@@ -258,6 +269,11 @@ def both_sizes(width: float | None, height: float | None) -> tuple[float, float]
 
 def posed_block(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height.
+
+    Parameters
+    ----------
+    width, height : float
+        Full sizes [m], positive and at most MOST_M.
 
     Raises
     ------
@@ -326,7 +342,14 @@ class Standing:
             )
 
     def system(self, width: float, height: float, friction: float | None) -> System:
-        """Return the system of these sizes [m].
+        """Return the system that the options mean.
+
+        Parameters
+        ----------
+        width, height : float
+            Full sizes of the block or of each column [m].
+        friction : float or None
+            Coefficient between base and a block that slides; other systems have none.
 
         Raises
         ------

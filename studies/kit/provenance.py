@@ -197,7 +197,20 @@ def finish(path: Path, record: dict[str, Any], began: float, **found: Any) -> No
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file in one piece: it is complete, or it is still the one before."""
+    """Write a file in one piece: it is complete, or it is still the one before.
+
+    Parameters
+    ----------
+    path : Path
+        In a folder that there is.
+    text : str
+        Written in UTF-8, its line ends as they are.
+
+    Raises
+    ------
+    OSError
+        That names `path`.
+    """
     with draft(path) as file:
         file.write(text.encode())
 

@@ -36,6 +36,30 @@ def run_jobs(
 
     A row in the journal that would be made otherwise now is computed again; how many are, and why,
     is said on stderr. Progress is shown there if it is a terminal.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    executor : Executor
+        Where they run.
+    reduce : callable
+        Makes of a job and its response the columns that follow its labels and source.
+    journal : Journal, optional
+        Gets each row as soon as there is one; without it, or without `makers`, all jobs are run.
+    makers : Makers, optional
+        What makes the rows now.
+
+    Returns
+    -------
+    list of dict
+        One for each job; equal jobs share a row.
+
+    Raises
+    ------
+    FolderError
+        If the journal has a row of something else under a job's key, or its folder is removed.
+    OSError, BadInputError
+        If the executor cannot start a process, or its cluster cannot be used.
     """
     keys = [job.key for job in jobs]
     done: dict[str, Row] = {}
@@ -64,7 +88,15 @@ def run_jobs(
 
 
 def exit_code(rows: Sequence[Row], shown: int = 10) -> int:
-    """Return 0 if every row is usable; else name those that failed on stderr and return 1."""
+    """Return 0 if every row is usable; else name those that failed on stderr and return 1.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        With outcome, source and message.
+    shown : int
+        How many are named one by one; of the others their number.
+    """
     failed = [row for row in rows if row["outcome"] == Outcome.FAILED.value]
     for row in failed[:shown]:
         case = ", ".join(f"{name} {row[name]}" for name in row if name in _LABELS)

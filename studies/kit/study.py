@@ -153,5 +153,13 @@ class Study:
         }
 
     def command_line(self, chapter: Chapter, folder: Path, full: bool) -> list[str]:
-        """Return the words after `rocking` that fill a folder for a chapter."""
+        """Return the words after `rocking` that fill a folder for a chapter.
+
+        Parameters
+        ----------
+        chapter : Chapter
+        folder : Path
+        full : bool
+            Whether in its full form, or the quick one.
+        """
         return [self.name, "--out", str(folder), *(chapter.full if full else chapter.quick)]

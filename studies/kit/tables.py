@@ -18,7 +18,19 @@ SHOWN = 60
 
 
 def write_table(path: Path, table: pd.DataFrame) -> None:
-    """Write a table as CSV, numbers to the bit and missing ones as nan, in one piece."""
+    """Write a table as CSV, numbers to the bit and missing ones as nan, in one piece.
+
+    Parameters
+    ----------
+    path : Path
+    table : DataFrame
+        Its index is not written.
+
+    Raises
+    ------
+    OSError
+        That names `path`.
+    """
     write_text(path, table.to_csv(index=False, na_rep="nan"))
 
 
@@ -36,7 +48,21 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
 
 
 def table_in(folder: Path, name: str, *words: str) -> pd.DataFrame:
-    """Read a table of a folder, packed or not, as `read_table` does; return none as empty."""
+    """Read a table of a folder, packed or not.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        Of the file, without .csv; of both the one that is not packed is read, the newer.
+    words : str
+        As for `read_table`.
+
+    Returns
+    -------
+    DataFrame
+        Empty where there is no such file.
+    """
     paths = (folder / f"{name}.csv", folder / f"{name}.csv{PACKED}")
     return next((read_table(path, *words) for path in paths if path.is_file()), pd.DataFrame())
 

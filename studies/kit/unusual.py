@@ -20,7 +20,17 @@ SLOW_RAD_S = 1.0
 
 
 def note_unusual(width: float, height: float, excitation: Excitation, motion: Motion) -> None:
-    """Say on stderr which values are unusual, and what they are in another unit."""
+    """Say on stderr which values are unusual, and what they are in another unit.
+
+    Parameters
+    ----------
+    width, height : float
+        Full sizes of the block or of each column [m].
+    excitation : Excitation
+        What was given of the motion and the start.
+    motion : Motion
+        What that means; of a `Record` the largest acceleration [m/s2] is looked at.
+    """
     for words in _unusual(width, height, excitation, motion):
         say(f"note: {words}")
 

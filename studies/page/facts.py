@@ -368,6 +368,13 @@ def minutes(full: bool) -> int:
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table of cells that are text; a bar in a cell would end it."""
+    """Return a Markdown table.
+
+    Parameters
+    ----------
+    heads : sequence of str
+    rows : iterable of sequence of str
+        A cell for each head; a bar in it, which would end it, is shown as another sign.
+    """
     lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
     return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)

@@ -43,7 +43,22 @@ class Cell:
 
 
 def write_page(path: Path, folder: Path, full: bool) -> None:
-    """Write the page about the results in `folder`, one folder inside for each chapter."""
+    """Write the page about the results of all studies.
+
+    Parameters
+    ----------
+    path : Path
+        The HTML file; it holds its pictures itself.
+    folder : Path
+        With a folder inside for each of CHAPTERS, as `rocking report` fills it.
+    full : bool
+        Whether it was filled by the full commands, which the page names, or by the quick ones.
+
+    Raises
+    ------
+    OSError
+        If the provenance or a table of a folder is missing, or the file cannot be written.
+    """
     environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
     text = environment.get_template("page.html").render(
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],

@@ -58,12 +58,21 @@ class UnknownSourceError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A callable ``(block, motion, *, duration, times, **options) -> Response`` and its kind.
+    """Who answers a question; it can be sent to another process or machine.
 
-    It can be sent to another process or machine. `engine` and `preset` are names, the preset by
-    default that of the best there is; `stepping` sources have an option `step`, p dt, `accurate`
-    ones an option `accuracy`. `model` is the name of the one whose equation it solves. `name` is
-    that by which it was asked for.
+    Attributes
+    ----------
+    kind : {"model", "solver", "peer", "engine"}
+    call : callable
+        ``(block, motion, *, duration, times, **options) -> Response``.
+    engine, preset : str
+        Names; empty where it is no engine. The preset is by default that of the best there is.
+    stepping : bool
+        Whether it has an option `step`, p dt; `accurate` ones have an option `accuracy`.
+    model : str
+        Name of the model whose equation it solves.
+    name : str
+        By which it was asked for.
     """
 
     kind: Kind
@@ -150,7 +159,25 @@ def run_engine(
     times: FloatArray | None = None,
     **options: Any,
 ) -> Response:
-    """Build the scene and let the engine run it; `options` are those of the `Scene`."""
+    """Build the scene and let the engine run it.
+
+    Parameters
+    ----------
+    block, motion, preset, duration, times, **options
+        As for `scene_of`.
+    engine : str
+        A name in `ENGINES`.
+
+    Returns
+    -------
+    Response
+        Failed, with its reason, where the engine is not installed or cannot do what is asked.
+
+    Raises
+    ------
+    ValueError
+        As `scene_of` does, and if the engine has no such preset or setting.
+    """
     from engines.run.drive import run
 
     scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
@@ -166,6 +193,18 @@ def scene_of(
     **options: Any,
 ) -> Scene:
     """Return the scene that an engine is asked about.
+
+    Parameters
+    ----------
+    block : System
+    motion : Motion
+    preset : str or None
+        Name of one of the engine's presets; None for the best that the scene allows.
+    times : ndarray, shape (n,), optional
+        Increasing ground times [s] of the history.
+    **options
+        What else a `Scene` takes, by name and in its units: `duration` [s], `step` (p dt),
+        `friction`, `settings`, ...
 
     Raises
     ------

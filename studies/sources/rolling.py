@@ -93,7 +93,18 @@ def space_scene(
     density: float = DENSITY,
     **options: Any,
 ) -> SpaceScene:
-    """Return the scene that an engine is asked about.
+    """Return the scene that an engine is asked about: the cylinder as it rolls steadily at time 0.
+
+    Parameters
+    ----------
+    cylinder : RollingCylinder
+    motion : Still
+    duration : float, optional
+        Watch until this time [s]; by default for `TURNS` turns.
+    density : float, optional
+        [kg/m3]
+    **options
+        Those of `OPTIONS`, in the units of `engines.scene.Scene`: `step` is p dt.
 
     Raises
     ------
