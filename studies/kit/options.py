@@ -63,7 +63,7 @@ def refuse_days(asked: str, seconds: float, yes: bool) -> None:
     BadInputError
     """
     if seconds > DAY_S and not yes:
-        days = f"{seconds / DAY_S:.0f} days"
+        days = f"{seconds / DAY_S:.1f} days"
         raise BadInputError(f"{asked}; that takes about {days}, and more than one needs --yes")
 
 
