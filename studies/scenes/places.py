@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from analytic import CartBlock, RockingFrame, simulate
-from analytic.motion import Motion
+from analytic.motion import SinePulse
 from engines.declaration import Stepping
 from studies.sources.registry import resolve
 
@@ -18,7 +19,7 @@ PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 def steps(
     source: str,
     frame: RockingFrame | CartBlock,
-    motion: Motion,
+    motion: SinePulse,
     phases: int,
     duration: float | None = None,
 ) -> Iterator[dict[str, Any]]:
@@ -52,6 +53,18 @@ def steps(
         return
     used = asked.used
     step = used.step if math.isfinite(used.step) else used.step_s * frame.p
-    impact = simulate(frame, motion, duration=duration).impacts[0].time * frame.p
+    impact = first_impact(frame, motion, duration) * frame.p
     for phase in range(phases):
         yield {"step": step * (1.0 + phase / phases * step / impact)}
+
+
+@cache  # one for all sources
+def first_impact(frame: RockingFrame | CartBlock, motion: SinePulse, duration: float | None) -> float:
+    """Return when the exact response has its first impact [s]; the arguments are those of `steps`.
+
+    Raises
+    ------
+    IndexError
+        If it has none.
+    """
+    return float(simulate(frame, motion, duration=duration).impacts[0].time)
