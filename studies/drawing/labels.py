@@ -94,6 +94,9 @@ def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     words = [text.get_window_extent().corners() for text in axes.texts]
     taken = [axes.transData.inverted().transform(line) for line in (*lines, *words) if len(line)]
     colours = [to_hex(name.colour) for name in names]
+    others = [it for it in axes.figure.axes if it is not axes and it.get_visible()]
+    for other in others:  # it draws the whole figure first
+        other.set_visible(False)
     allocate(
         axes,
         x=[name.x for name in names],
@@ -112,3 +115,5 @@ def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
         va="bottom",
         path_effects=[withStroke(linewidth=2.5, foreground="white")],
     )
+    for other in others:
+        other.set_visible(True)

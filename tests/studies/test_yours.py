@@ -189,7 +189,7 @@ def columns_of(text):
     lines = text.splitlines()
     head = next(number for number, line in enumerate(lines) if line.split()[:1] == ["source"])
     names = lines[head].replace("vs exact", "vs-exact").replace("bound 95 %", "bound").split()
-    rows = (re.sub("(?<=[0-9]) (?=ms|µs)", "", line).split() for line in lines[head + 1 :])
+    rows = (re.sub(r"(?<=[0-9]) (?=[mµ]?s\b)", "", line).split() for line in lines[head + 1 :])
     return {row[0]: dict(zip(names, row, strict=True)) for row in rows if len(row) == len(names)}
 
 
