@@ -59,7 +59,9 @@ def steps(
 
 
 @cache  # one for all sources
-def first_impact(frame: RockingFrame | CartBlock, motion: SinePulse, duration: float | None) -> float:
+def first_impact(
+    frame: RockingFrame | CartBlock, motion: SinePulse, duration: float | None
+) -> float:
     """Return when the exact response has its first impact [s]; the arguments are those of `steps`.
 
     Raises
