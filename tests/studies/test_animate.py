@@ -14,7 +14,6 @@ from matplotlib.collections import PolyCollection
 from PIL import Image
 
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
-from engines import ENGINES
 from studies.__main__ import run
 from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
@@ -115,7 +114,6 @@ def test_a_slide_is_drawn_where_it_is_and_told_where_it_lies():
     assert said == ["lies at +100.0 mm", "−20 mm off"]
 
 
-@pytest.mark.skipif(not ENGINES["newton"].installed, reason="Newton is not installed")
 @pytest.mark.parametrize(
     "options",
     [["--scene", "frame", "--load", "2"], ["--scene", "slide", "--friction", "0.2"]],
@@ -124,7 +122,7 @@ def test_another_scene_is_shown_and_an_engine_that_cannot_hold_it_is_named(
     options, tmp_path, capsys
 ):
     frame = "frame" in options
-    asked = "rapier:landing" if frame else "newton"
+    asked = "rapier:landing" if frame else "mujoco:fixed"
     film = ["--out", str(tmp_path / "film.gif"), "--sources", "exact", asked, "--slower", "0.2"]
     assert run(["animate", *CASE, *options, *film]) == int(frame)
     told = capsys.readouterr().err

@@ -203,7 +203,7 @@ def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
 
 
 @pytest.mark.skipif(not ENGINES["newton"].installed, reason="Newton is not installed")
-def test_an_engine_that_holds_one_scene_alone_has_its_report(tmp_path, capsys):
+def test_newton_alone_has_its_report(tmp_path, capsys):
     asked = ["scenes", "--quick", "--sources", "newton:fixed", "--jobs", "1"]
     assert run([*asked, "--out", str(tmp_path)]) == 0
     assert "newton:fixed" in capsys.readouterr().out
