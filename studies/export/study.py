@@ -92,7 +92,7 @@ def command(
             Job(labels={}, block=block, motion=motion, source=name, duration=window, options=how)
             for name, how in (("exact", begin), (source, options))
         ],
-        executor=Local(workers=1, time_limit_s=time_limit),
+        executor=Local(workers=1, time_limit_s=time_limit, at_once=True),
         reduce=_reduce,
     )
     if code := exit_code(rows):

@@ -161,6 +161,7 @@ def test_a_killed_worker_loses_nothing(station, monkeypatch):
     assert {response.outcome.value for _, response in got} == {"rocked"}
 
 
+@pytest.mark.slow
 def test_a_killed_scheduler_loses_nothing_and_is_one_line(tmp_path, monkeypatch):
     folder = tmp_path / "out"
     journal = folder / "journal.jsonl"
@@ -370,6 +371,7 @@ def configured(files):
         yield
 
 
+@pytest.mark.slow
 def test_an_encrypted_cluster_answers_who_has_its_certificate(tmp_path, capsys):
     ours, others = certificates(tmp_path / "ours"), certificates(tmp_path / "others")
     options = [
