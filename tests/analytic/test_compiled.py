@@ -71,7 +71,13 @@ def asked(package, **variables):
     return float(value), bool(int(hits)), Path(folder.strip())
 
 
-@pytest.mark.parametrize("place", ["the package", "NUMBA_CACHE_DIR", "HOME"])
+@pytest.mark.parametrize(
+    "place",
+    [
+        *(pytest.param(it, marks=pytest.mark.slow) for it in ("the package", "HOME")),
+        "NUMBA_CACHE_DIR",
+    ],
+)
 def test_a_kernel_is_never_older_than_what_it_calls(place, package, tmp_path):
     variables, kept = {}, package / "analytic" / "__pycache__"
     if place == "NUMBA_CACHE_DIR":

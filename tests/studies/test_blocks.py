@@ -266,6 +266,7 @@ def journalled(out):
     return path.read_bytes().count(b'"row"') if path.exists() else 0
 
 
+@pytest.mark.slow
 def test_what_finished_before_a_kill_is_not_lost(place):
     lines = [f"N{n},{0.3 + 0.01 * n},1.6" for n in range(24)]
     (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))

@@ -253,7 +253,7 @@ def test_what_an_engine_changes_while_it_is_loaded_is_taken_back(announced, tmp_
     assert capfd.readouterr() == ("written\n", "")
 
 
-@pytest.mark.parametrize("module", ["quits", "my_engine"])
+@pytest.mark.parametrize("module", ["quits", pytest.param("my_engine", marks=pytest.mark.slow)])
 def test_no_engine_and_no_time_limit_ends_in_a_traceback(module, announced, monkeypatch, capfd):
     """Neither an engine that does nothing but exit, nor a limit within which none can answer."""
     pytest.importorskip("pymunk")

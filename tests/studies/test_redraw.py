@@ -58,7 +58,7 @@ def test_what_is_no_table_is_one_line(content, tmp_path, capsys):
 
 def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
     before = dict(units.registry)
-    for study in ("free", "sweep", "stability", "validity", "overturning"):
+    for study in ("free", "sweep", "validity", "overturning"):
         folder = tmp_path / study
         folder.mkdir()
         # a map's window is in its provenance, and its long tables are packed

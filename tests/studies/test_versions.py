@@ -79,6 +79,7 @@ def pretender(tmp_path, monkeypatch):
     registry._places.cache_clear()
 
 
+@pytest.mark.slow
 def test_another_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path, capsys):
     out, here = tmp_path / "out", metadata.version("pretender")
     words = ["versions", "--engines", "pretender", "--quick", "--jobs", "1", "--out", str(out)]
