@@ -81,7 +81,7 @@ def notice_step(
     ----------
     holds : sequence of Hold (1,), updated
     arrays : tuple of ndarray, in the order of `Arrays`; written as by `notice`
-    forces : tuple, in the order of `Forces`: two counts, and for each row [1/kg] and [N]
+    forces : (int, int, ndarray (rows,) [1/kg], ndarray (rows,) [N]), in the order of `Forces`
     step : tuple (10,), the step that was taken, as for `prepare_step`
     """
     notice(holds[0], Arrays(*arrays), Forces(*forces), Step(*step))
@@ -245,7 +245,7 @@ def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
     Parameters
     ----------
     held : Hold, updated: the time, the place of the base, how fast the block turns
-    arrays : Arrays, of which two columns of pairs are written, what yields [m/s2]
+    arrays : Arrays, of which the columns `YIELDS` and `RESISTED` of pairs are written [m/s2]
     forces : Forces, of that step
     step : Step, that was taken
     """
