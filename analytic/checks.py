@@ -10,7 +10,13 @@ MOST_HALF_CYCLES = 10**15
 
 
 def finite(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is a finite number."""
+    """Return `value` as a float; raise ValueError unless it is a finite number.
+
+    Parameters
+    ----------
+    name : str, of the argument, for the message
+    value : float, or what `float` makes one of
+    """
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -21,7 +27,13 @@ def finite(name: str, value: float) -> float:
 
 
 def positive(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is positive and finite."""
+    """Return `value` as a float; raise ValueError unless it is positive and finite.
+
+    Parameters
+    ----------
+    name, value
+        As for `finite`.
+    """
     number = finite(name, value)
     if number <= 0.0:
         raise ValueError(f"{name} is {value!r}; it must be positive")
@@ -29,7 +41,13 @@ def positive(name: str, value: float) -> float:
 
 
 def measurable(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is positive, from LEAST to MOST."""
+    """Return `value` as a float; raise ValueError unless it is positive, from LEAST to MOST.
+
+    Parameters
+    ----------
+    name, value
+        As for `finite`.
+    """
     number = positive(name, value)
     if not LEAST <= number <= MOST:
         raise ValueError(f"{name} is {value!r}; it must be from {LEAST:g} to {MOST:g}")

@@ -189,7 +189,14 @@ LIKENESS = 0.7
 
 
 def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
-    """Raise ValueError unless `value` is one of those allowed."""
+    """Raise ValueError unless `value` is one of those allowed.
+
+    Parameters
+    ----------
+    name : str, what the value is of, for the message
+    value : str
+    allowed : sequence of str; the message names them, and before them one that is like the value
+    """
     if value not in allowed:
         near = [
             f", perhaps {word!r}" for word in get_close_matches(str(value), allowed, 1, LIKENESS)

@@ -24,7 +24,20 @@ class PlainSettings:
 
 
 def undeclared(name: str, build: Callable[[Scene, Any, float], World], library: str) -> Engine:
-    """Return an engine that is used as it is built, with equal steps and with ones that land."""
+    """Return an engine that is used as it is built, with equal steps and with ones that land.
+
+    Parameters
+    ----------
+    name : str, by which a user asks for it
+    build : callable, ``(scene, settings, dt_s) -> World``, settings being `PlainSettings` and dt_s
+        the ordinary step [s]
+    library : str, the module to import, and what pip is told to install
+
+    Returns
+    -------
+    Engine
+        It holds one body, in the frame "base" alone.
+    """
     return Engine(
         name=name,
         title=name,

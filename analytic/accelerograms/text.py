@@ -74,7 +74,13 @@ def _content(path: Path) -> bytes:
 
 
 def too_long(count: int, about: str = "") -> ValueError:
-    """Return the refusal of a record of so many samples, with what it would take."""
+    """Return the refusal of a record of so many samples, with what it would take.
+
+    Parameters
+    ----------
+    count : int, samples
+    about : str, what stands before their number in the message, as "some "
+    """
     minutes, gigabytes = count * SECONDS_A_SAMPLE / 60.0, count * BYTES_A_SAMPLE * 1e-9
     return ValueError(
         f"it holds {about}{count} samples, for which one exact solution would take some "

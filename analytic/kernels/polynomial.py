@@ -44,7 +44,14 @@ inverse_binomial = constant(
 
 @inner
 def value(a: FloatArray, degree: int, x: float) -> float:
-    """Return sum a[i] x^i."""
+    """Return sum a[i] x^i.
+
+    Parameters
+    ----------
+    a : ndarray (>= degree + 1,)
+    degree : int, 0 or more
+    x : float
+    """
     total = a[degree]
     for i in range(degree - 1, -1, -1):
         total = total * x + a[i]
@@ -53,7 +60,13 @@ def value(a: FloatArray, degree: int, x: float) -> float:
 
 @inner
 def slope(a: FloatArray, degree: int, x: float) -> float:
-    """Return sum i a[i] x^(i-1)."""
+    """Return sum i a[i] x^(i-1).
+
+    Parameters
+    ----------
+    a, degree, x
+        As for `value`.
+    """
     total = degree * a[degree]
     for i in range(degree - 1, 0, -1):
         total = total * x + i * a[i]

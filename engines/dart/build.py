@@ -30,7 +30,24 @@ from engines.world import Grip, Moment, Pose, Step
 
 
 def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
-    """Return the numbers of a scene in the settings' unit of length."""
+    """Return the numbers of a scene in the settings' unit of length.
+
+    Parameters
+    ----------
+    scene : Scene
+    s : DartSettings
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as n, lengths in units, of which a metre has s.unit:
+
+        - floor, beneath (3,): size and centre of the base; radius: of corner balls;
+        - coordinates (3,): the numbers of x, z and theta in a body's joint;
+        - of each of bodies: size (3,), corners (k, 3) about its centre, mass [kg], inertia (3,)
+          [kg units2], places (3,) [units, rad] and speeds (3,) [units/s, rad/s] in those
+          coordinates.
+    """
     unit, floor = s.unit, counted(floor_half_size(scene), s.unit)
     return SimpleNamespace(
         **{"floor": [2.0 * x for x in floor], "beneath": (0.0, 0.0, -floor[2])},
@@ -69,7 +86,19 @@ def values(s: DartSettings) -> SimpleNamespace:
 
 
 def touching(body: Any, shape: Any, at: Any, friction: float) -> Any:
-    """Give a body a shape."""
+    """Give a body a shape.
+
+    Parameters
+    ----------
+    body : BodyNode
+    shape : Shape
+    at : array_like (3,), centre of the shape in the body's frame [units of length]
+    friction : float, its coefficient; of two shapes that touch the smaller one counts
+
+    Returns
+    -------
+    ShapeNode
+    """
     node = body.createShapeNode(shape)
     node.createCollisionAspect()
     node.createDynamicsAspect().setFrictionCoeff(friction)  # the smaller one counts
@@ -83,7 +112,22 @@ def is_ball(node: Any) -> bool:
 
 
 def build(dart: Any, n: Any, s: Any) -> Any:
-    """Build bodies on a box whose joint is driven by its velocity."""
+    """Build bodies on a box whose joint is driven by its velocity.
+
+    Parameters
+    ----------
+    dart : module, dartpy
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    world : World
+    drive : TranslationalJoint, of the base
+    floor : BodyNode, the base's
+    joints, bodies : list of Joint, list of BodyNode, one for each of n.bodies
+    shapes : list of ShapeNode, of all bodies
+    """
     world = dart.simulation.World()
     solver = world.getConstraintSolver()
     if s.detector is not None:
@@ -149,7 +193,19 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
-    """Return a scene as calls of DART; see `engines.parts.script`."""
+    """Return a scene as calls of DART; see `engines.parts.script`.
+
+    Parameters
+    ----------
+    scene : Scene, whose frame says whether the base moves
+    settings : DartSettings
+    dt_s : float, ordinary step [s], which a script calls `DT`
+
+    Raises
+    ------
+    ValueError
+        If a base that moves is moved in a way that is not in `FLOORS`.
+    """
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
     unit, theta = settings.unit, n.coordinates[2]

@@ -62,7 +62,25 @@ WITHIN = 8
 
 
 def numbers(scene: Scene, s: DrakeSettings) -> SimpleNamespace:
-    """Return the numbers of a scene."""
+    """Return the numbers of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    s : DrakeSettings
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as n, lengths [m]:
+
+        - plane (3, 3): `PLANE`; radius: of corner spheres;
+        - moving: whether the base does; floor, below, along (3,): its size, centre and axis; heavy:
+          its mass [kg];
+        - state (6 bodies,): z, x, theta of every body [m, rad], then their rates [m/s, rad/s];
+        - of each of bodies: mass [kg], size (3,), corners (k, 3) about its centre; where it is
+          free, place (3,), velocity (3,) [m/s], theta [rad] and spin (3,) [rad/s].
+    """
     bodies = [of_body(scene, number, s) for number in range(len(scene.bodies))]
     x, y, z = floor_half_size(scene)
     return SimpleNamespace(
@@ -92,7 +110,25 @@ def of_body(scene: Scene, number: int, s: DrakeSettings) -> SimpleNamespace:
 
 
 def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
-    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    """Return settings as the library is given them, for ordinary steps dt_s [s].
+
+    Parameters
+    ----------
+    scene : Scene
+    s : DrakeSettings
+    dt_s : float, ordinary step [s], of a discrete plant its own
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as s; None leaves a number to the library:
+
+        - config: arguments of MultibodyPlantConfig [s, m/s]; material: those of AddContactMaterial,
+          the stiffness [N/m] that of one of two shapes, dissipation [s/m];
+        - relaxation: of one of two shapes [s]; gains: p [N/m] and d [N s/m] of the base's drive;
+        - scheme: of an integrator; longest: its longest step [s]; accuracy: what it aims at; fixed:
+          whether it takes its steps as told, without a look at the error.
+    """
     block, continuous = scene.system, s.solver == CENIC
     scale = block.p * block.R
     config = {
@@ -121,7 +157,22 @@ def values(scene: Scene, s: DrakeSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(drake: Any, n: Any, s: Any) -> Any:
-    """Build bodies on a half-space that does not move, or on a box on a rail."""
+    """Build bodies on a half-space that does not move, or on a box on a rail.
+
+    Parameters
+    ----------
+    drake : namespace, of `library`
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    plant : MultibodyPlant
+    scene_graph : SceneGraph
+    bodies : list of RigidBody, one for each of n.bodies
+    simulator : Simulator
+    context : Context, the plant's, at the start of the scene
+    """
     builder = drake.DiagramBuilder()
     config = drake.MultibodyPlantConfig(**s.config)
     plant, scene_graph = drake.AddMultibodyPlant(config, builder)
@@ -193,7 +244,14 @@ POSES = {
 
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Drake; see `engines.parts.script`."""
+    """Return a scene as calls of Drake; see `engines.parts.script`.
+
+    Parameters
+    ----------
+    scene : Scene, whose frame says whether the base moves
+    settings : DrakeSettings
+    dt_s : float, ordinary step [s], which a script calls `DT`
+    """
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     count, lines_of_pose = len(scene.bodies), POSES[settings.planar]

@@ -138,7 +138,14 @@ class MujocoWorld:
 
 
 def world_of(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
-    """Build a scene; a preset's impratio is kept to what the friction allows."""
+    """Build a scene; a preset's impratio is kept to what the friction allows.
+
+    Parameters
+    ----------
+    scene : Scene
+    settings : MujocoSettings
+    dt_s : float, ordinary step [s], from which depths of the contact follow
+    """
     return MujocoWorld(scene, kept(scene, settings), dt_s)
 
 

@@ -1,7 +1,9 @@
 """How MuJoCo's contact holds a block, step by step: set before a step, looked at after it.
 
 The functions read and write the library's own arrays. They are compiled, and serve both who steps
-from Python and who steps from a compiled loop.
+from Python and who steps from a compiled loop. In all of them held is what is known of the block
+and of what holds it, arrays are the library's, step is the one that follows, or that was taken, and
+pair is the number of a row of arrays.pairs.
 """
 
 import math
@@ -41,7 +43,13 @@ FREE, WELDED = 7, 6
 
 @kernel
 def read_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> None:
-    """Read the state, for Python."""
+    """Read the state, for Python.
+
+    Parameters
+    ----------
+    holds : sequence of Hold (1,), from `Hold.blank`
+    arrays : tuple of ndarray, in the order of `Arrays`; the last one, (bodies, 4), is written
+    """
     read(holds[0], Arrays(*arrays))
 
 
@@ -49,7 +57,14 @@ def read_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> None:
 def prepare_step(
     holds: Sequence[Hold], arrays: tuple[FloatArray, ...], step: tuple[Any, ...]
 ) -> None:
-    """Set what a step needs, but for its length; for Python."""
+    """Set what a step needs, but for its length; for Python.
+
+    Parameters
+    ----------
+    holds : sequence of Hold (1,), updated
+    arrays : tuple of ndarray, in the order of `Arrays`; written as by `prepare`
+    step : tuple (10,), the step that follows, in the order of `Step`, with a number for its grip
+    """
     prepare(holds[0], Arrays(*arrays), Step(*step))
 
 
@@ -60,13 +75,21 @@ def notice_step(
     forces: tuple[int, int, FloatArray, FloatArray],
     step: tuple[Any, ...],
 ) -> None:
-    """Note what a step has done, for the next one; for Python."""
+    """Note what a step has done, for the next one; for Python.
+
+    Parameters
+    ----------
+    holds : sequence of Hold (1,), updated
+    arrays : tuple of ndarray, in the order of `Arrays`; written as by `notice`
+    forces : (int, int, ndarray (rows,) [1/kg], ndarray (rows,) [N]), in the order of `Forces`
+    step : tuple (10,), the step that was taken, as for `prepare_step`
+    """
     notice(holds[0], Arrays(*arrays), Forces(*forces), Step(*step))
 
 
 @shared
 def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
-    """Return the pose of a body."""
+    """Return the pose of a body [m, rad, rad/s] relative to the base, by its number."""
     q, v = arrays.position, arrays.velocity
     if held.planar:
         x, z = arrays.homes[body, 0], arrays.homes[body, 1]
@@ -79,7 +102,13 @@ def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
 
 @shared
 def read(held: Hold, arrays: Arrays) -> None:
-    """Read the state."""
+    """Read the state: write every body's `Pose` into a row of it.
+
+    Parameters
+    ----------
+    held : Hold, of which the place of the base is used
+    arrays : Arrays, of which state (bodies, 4) is written
+    """
     for body in range(len(arrays.homes)):
         pose = pose_of(held, arrays, body)
         arrays.state[body, 0], arrays.state[body, 1] = pose.x, pose.z
@@ -88,7 +117,15 @@ def read(held: Hold, arrays: Arrays) -> None:
 
 @shared
 def prepare(held: Hold, arrays: Arrays, step: Step) -> None:
-    """Set what a step needs, but for its length."""
+    """Set what a step needs, but for its length.
+
+    Parameters
+    ----------
+    held : Hold, updated
+    arrays : Arrays, written: gravity, references and margins of contacts, the column `RESISTED` of
+        pairs, place and velocity of a base that moves
+    step : Step, that follows
+    """
     if step.dt_s != held.dt or held.by_step:
         held.dt = step.dt_s
         set_reference(held, arrays, step)
@@ -121,14 +158,14 @@ def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
 
 @shared
 def put_pair(table: FloatArray, first: float, second: float) -> None:
-    """Write two numbers into every row."""
+    """Write two numbers into every row of a table (k, 2)."""
     for row in range(len(table)):
         table[row, 0], table[row, 1] = first, second
 
 
 @shared
 def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
-    """Set from which gap on each contact acts, and preload the one that carries the block."""
+    """Set from which gap [m] on each contact acts, and preload the one that carries the block."""
     if step.grip == Grip.REST and step.side == 0.0:
         hold_at_rest(held, arrays, step)
         return
@@ -203,7 +240,15 @@ def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
 
 @shared
 def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
-    """Note what a step has done, for the next one."""
+    """Note what a step has done, for the next one.
+
+    Parameters
+    ----------
+    held : Hold, updated: the time, the place of the base, how fast the block turns
+    arrays : Arrays, of which the columns `YIELDS` and `RESISTED` of pairs are written [m/s2]
+    forces : Forces, of that step
+    step : Step, that was taken
+    """
     held.moved = step.base_x if held.moving else 0.0
     if held.welded:
         look_at_base(held, arrays, step)
@@ -216,7 +261,7 @@ def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
 
 @shared
 def look_at_base(held: Hold, arrays: Arrays, step: Step) -> None:
-    """Note where a welded base is, whose joint is the last, and how far off."""
+    """Note where a welded base is [m], whose joint is the last, and how far off."""
     at = len(arrays.position) - FREE
     held.moved = arrays.position[at]
     held.raised = arrays.position[at + 2] - arrays.base_place[0, 2]

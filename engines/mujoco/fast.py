@@ -84,7 +84,17 @@ def drive(
     lists: Lists,
     most: int,
 ) -> int:
-    """Take up to so many steps while the run goes on; return how many were taken."""
+    """Take up to so many steps while the run goes on; return how many were taken.
+
+    Parameters
+    ----------
+    holds : sequence of Hold (1,), updated
+    lent : tuple of ndarray, in the order of `Arrays`, written
+    memory : Memory, of the same model and data
+    runs, lists
+        As for `engines.run.look.onward`, updated.
+    most : int, how many; with 0 the state is read, and nothing is taken
+    """
     held, arrays = holds[0], Arrays(*lent)
     read(held, arrays)
     for taken in range(most):
@@ -114,7 +124,13 @@ def forces_in(memory: Memory) -> Forces:
 
 
 def memory_of(model: Any, data: Any) -> Memory | None:
-    """Return the memory of a model and its data; None where it is not what it should be."""
+    """Return the memory of a model and its data; None where it is not what it should be.
+
+    Parameters
+    ----------
+    model, data : MjModel, MjData
+        They must outlive what is returned, which has no memory of its own.
+    """
     return None if interpreted() or obstacle() else _memory(model, data)
 
 

@@ -101,8 +101,31 @@ carries at rest.
 class Arrays(NamedTuple):
     """The library's arrays, and three of what it is asked about.
 
-    pairs has a row for each of the library's, homes is where each body's centre is at rest and half
-    of its height [m], and state the last one that was read.
+    Attributes
+    ----------
+    position, velocity : ndarray (nq,), (nv,)
+        Of every joint, a welded base's last. A body in the plane has x, z [m] from its home, theta
+        [rad], and their rates; a free one x, y, z [m] and a quaternion, its real part first, and a
+        velocity [m/s] and angular velocity [rad/s].
+    gravity : ndarray (3,)
+        [m/s2].
+    pair_reference, pair_friction : ndarray (pairs, 2)
+        The reference along the normal, and along the base: minus a stiffness [1/s2] and minus a
+        damping [1/s], or a time constant [s] and a damping ratio.
+    pair_margin : ndarray (pairs,)
+        Gap [m] from which on a pair acts.
+    geom_reference : ndarray (geoms, 2)
+        The reference of shapes that touch without a pair.
+    surface_velocity : ndarray (geoms, 6)
+        Of each shape's surface [m/s, rad/s], first that of a base with one; none in older releases.
+    base_place : ndarray (bodies moved, 3)
+        Where bodies are [m] that are moved by their place.
+    pairs : ndarray (pairs, 8)
+        A row for each of the library's, columns `SIDE` to `RESISTED`.
+    homes : ndarray (bodies, 3)
+        Where the centre is at rest, along and above the base, and half of the height [m].
+    state : ndarray (bodies, 4)
+        The last one that was read, a `Pose` a row.
     """
 
     position: FloatArray
@@ -120,7 +143,16 @@ class Arrays(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What the solver says of a step: how many contacts and rows, and of each its R and force."""
+    """What the solver says of a step.
+
+    Attributes
+    ----------
+    contacts, rows : int
+        How many contacts there are, and rows of the solver: those of a weld first, then as many for
+        each contact.
+    resistance, force : ndarray (rows,)
+        Of each row R [1/kg] and the force [N].
+    """
 
     contacts: int
     rows: int
@@ -129,7 +161,16 @@ class Forces(NamedTuple):
 
 
 def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> None:
-    """Prepare for a scene in ordinary steps of `dt_s` [s], of which so many pairs touch."""
+    """Prepare for a scene in ordinary steps of `dt_s` [s], of which so many pairs touch.
+
+    Parameters
+    ----------
+    held : Hold, blank, to be filled
+    scene : Scene
+    s : MujocoSettings
+    dt_s : float, ordinary step [s]
+    pairs : int, pairs of the model; 0 where shapes touch without one
+    """
     impedance = 1.0 if s.impedance is None else s.impedance[1]
     sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
     fill(
@@ -178,7 +219,14 @@ def pairs_of(held: Hold, scene: Scene) -> FloatArray:
 
 
 def arrays_of(model: Any, data: Any, held: Hold, scene: Scene) -> Arrays:
-    """Return the library's arrays, which share its memory."""
+    """Return the library's arrays, which share its memory.
+
+    Parameters
+    ----------
+    model, data : MjModel, MjData, of the scene
+    held : Hold, from `begin_hold`
+    scene : Scene
+    """
     homes = np.array([(*body.home, 0.5 * body.height) for body in scene.bodies])
     return Arrays(
         data.qpos,

@@ -34,7 +34,16 @@ library's own for so large a box, 240000 at equal densities, is where its solver
 
 
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
-    """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s]."""
+    """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s].
+
+    The step, and the references of contacts that go by it, are not in it: a run sets them.
+
+    Parameters
+    ----------
+    scene : Scene, whose bodies stand here upright at rest, wherever they begin
+    s : MujocoSettings
+    dt_s : float, ordinary step [s], from which the depth of a soft surface follows
+    """
     margin = (s.margin or 0.0) * scene.system.width
     named = ((name, getattr(s, name)) for name in OPTIONS)
     options = " ".join(f'{name}="{value}"' for name, value in named if value is not None)
@@ -97,7 +106,13 @@ def _base(scene: Scene, s: MujocoSettings) -> str:
 
 
 def welded(scene: Scene, s: MujocoSettings) -> bool:
-    """Return whether the base is a body of its own, welded to the one that is moved."""
+    """Return whether the base is a body of its own, welded to the one that is moved.
+
+    Parameters
+    ----------
+    scene, s
+        As for `model_xml`.
+    """
     return scene.frame == "world" and s.floor == "weld"
 
 
@@ -145,7 +160,19 @@ def surface_name(body: int, s: MujocoSettings) -> str:
 
 
 def impedance_of(scene: Scene, s: MujocoSettings, dt_s: float) -> tuple[float, ...] | None:
-    """Return the five numbers of solimp, the width [m] of the soft surface among them."""
+    """Return the five numbers of solimp, the width [m] of the soft surface among them.
+
+    Parameters
+    ----------
+    scene, s, dt_s
+        As for `model_xml`.
+
+    Returns
+    -------
+    tuple (5,) or None
+        Impedances at the surface and at the width, the width [m], midpoint and power; None leaves
+        all to the library.
+    """
     if s.impedance is None or s.soft_surface is None:
         return s.impedance
     surface, whole, _, *curve = s.impedance
@@ -171,7 +198,18 @@ def _pairs(scene: Scene, s: MujocoSettings, contact: str) -> Iterator[str]:
 
 
 def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the positions and the velocities from which the bodies set out."""
+    """Return the positions and the velocities from which the bodies set out.
+
+    Parameters
+    ----------
+    scene, s
+        As for `model_xml`.
+
+    Returns
+    -------
+    places, velocities : tuple of float (nq,), (nv,)
+        qpos and qvel; see `engines.mujoco.hold.Arrays`.
+    """
     places: list[float] = []
     velocities: list[float] = []
     for body in scene.bodies:
@@ -194,14 +232,33 @@ def direct_reference(
 ) -> tuple[float, float]:
     """Return the two numbers of a direct reference with k dt^2 and b dt, at a step dt_s [s].
 
-    The library divides both by the impedance, the first one twice.
+    The library divides both by the impedance, the first one twice (MuJoCo's modeling.rst, "Solver
+    parameters").
+
+    Parameters
+    ----------
+    impedance : float, in (0, 1]
+    dt_s : float, the step [s]
+    stiffness, damping : float, k dt^2 and b dt, without units
+
+    Returns
+    -------
+    (float, float)
+        A pair's solref: minus a stiffness [1/s2] and minus a damping [1/s].
     """
     unit = impedance / dt_s
     return -stiffness * (unit * unit), -unit * damping
 
 
 def stepped_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
-    """Return the model of a scene with what the adapter sets at a step dt_s [s], a line each."""
+    """Return the model of a scene with what the adapter sets at a step dt_s [s], a line each.
+
+    Parameters
+    ----------
+    scene, s
+        As for `model_xml`.
+    dt_s : float, the step [s], of which all are
+    """
     root = ElementTree.fromstring(model_xml(scene, s, dt_s))
     option = root.find("option")
     if option is not None:

@@ -41,7 +41,18 @@ def edited(model: Any) -> list[FloatArray]:
 
 
 def taken(mj: Any, xml: str) -> Built:
-    """Return a model in the library's own language that no run uses, as good as new."""
+    """Return a model in the library's own language that no run uses, as good as new.
+
+    Parameters
+    ----------
+    mj : module, mujoco
+    xml : str, the model, by which one that is idle is known again
+
+    Raises
+    ------
+    ValueError
+        If the library cannot read the model.
+    """
     if xml in idle:
         return idle.pop(xml)
     model = mj.MjModel.from_xml_string(xml)
@@ -50,7 +61,13 @@ def taken(mj: Any, xml: str) -> Built:
 
 
 def given_back(mj: Any, built: Built) -> None:
-    """Make a model as it was."""
+    """Make a model as it was, and keep it for a later run.
+
+    Parameters
+    ----------
+    mj : module, mujoco
+    built : Built, from `taken`; its run has ended
+    """
     *arrays, gravity, timestep = built.new
     for array, new in zip(edited(built.model), arrays, strict=True):
         array[:] = new

@@ -42,7 +42,14 @@ def _step(scene: Scene, s: MujocoSettings) -> Iterator[str]:
 
 
 def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
-    """Return a scene as a model of MuJoCo; see `engines.parts.script`."""
+    """Return a scene as a model of MuJoCo; see `engines.parts.script`.
+
+    Parameters
+    ----------
+    scene : Scene, whose frame says whether the base moves
+    s : MujocoSettings, of which impratio is kept to what the friction allows
+    dt_s : float, the step [s], which stands in the model
+    """
     s = kept(scene, s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())

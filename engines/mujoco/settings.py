@@ -277,13 +277,34 @@ RULES = (
 
 
 def kept(scene: Scene, s: MujocoSettings) -> MujocoSettings:
-    """Return settings with a preset's impratio kept to what the friction allows."""
+    """Return settings with a preset's impratio kept to what the friction allows.
+
+    Parameters
+    ----------
+    scene : Scene, whose own impratio, where its settings have one, is left as it is
+    s : MujocoSettings, the preset's with the scene's in their place
+
+    Returns
+    -------
+    MujocoSettings
+        With an impratio of at most (friction/`NARROWEST_CONE`)^2.
+    """
     if s.impratio is None or "impratio" in scene.settings:
         return s
     return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
 
 
 def spring(time: float, step: float) -> dict[str, float]:
-    """Return the settings of a contact with a time of its own; see `Engine.spring`."""
+    """Return the settings of a contact with a time of its own; see `Engine.spring`.
+
+    Parameters
+    ----------
+    time, step : float, positive, the contact's time and the step, in units of 1/p
+
+    Returns
+    -------
+    dict
+        stiffness, k dt^2, and damping, b dt, of critical damping.
+    """
     ratio = step / time
     return {"stiffness": ratio**2, "damping": 2.0 * ratio}

@@ -21,7 +21,20 @@ MOST_IDLE = 8
 
 
 class Made(NamedTuple):
-    """What a model and its step are made of."""
+    """What a model and its step are made of.
+
+    Attributes
+    ----------
+    settings : NewtonSettings
+    dt_s : float
+        The step [s].
+    size : (float, float, float)
+        Half of the block's along x, y and z [m].
+    density, gravity : float
+        [kg/m3], [m/s2].
+    moving : bool
+        Whether the base moves.
+    """
 
     settings: NewtonSettings
     dt_s: float
@@ -32,7 +45,24 @@ class Made(NamedTuple):
 
 
 def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
-    """Return the numbers of a block, wherever it begins."""
+    """Return the numbers of a block, wherever it begins.
+
+    Parameters
+    ----------
+    scene : Scene, of one body
+    s : NewtonSettings
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as n:
+
+        - x, y, z: half sizes [m]; radius: of corner spheres [m]; corners (4, 3): about the centre
+          [m];
+        - mass [kg], density [kg/m3], inertia (9,) by rows [kg m2]; weight: gravity along z [m/s2],
+          < 0;
+        - most: room for contacts; moving: whether the base does.
+    """
     (body,) = scene.bodies
     (x, y, z), radius = half_size(body), s.corner_radius * body.width
     first, second, third = body.inertia
@@ -46,7 +76,21 @@ def numbers(scene: Scene, s: NewtonSettings) -> SimpleNamespace:
 
 
 def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
-    """Return settings as the library is given them, for steps of dt_s [s]."""
+    """Return settings as the library is given them, for steps of dt_s [s].
+
+    Parameters
+    ----------
+    scene : Scene
+    s : NewtonSettings
+    dt_s : float, the step [s]
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as s: dt is the step [s], delta the depth that is left alone [m], xpbd
+        holds that solver's arguments, the others are as in the settings. None leaves a number to
+        the library.
+    """
     return SimpleNamespace(
         **{"geometry": s.geometry, "friction": float(s.friction), "dt": dt_s},
         restitution=s.restitution,
@@ -57,7 +101,26 @@ def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
-    """Build a block in space, on a plane at rest or a kinematic one, and record a step."""
+    """Build a block in space, on a plane at rest or a kinematic one, and record a step.
+
+    Parameters
+    ----------
+    newton, wp : module, newton and warp, or what stands in for the first
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    model, solver, now, graph
+        The model, its solver, the state that a step advances, and the step that is recorded.
+    force, place, velocity : ndarray (bodies, 6), (bodies, 7), (bodies, 6)
+        Views of the state in single precision, the block first, then a plane that moves: force [N]
+        and moment [N m] that act; position [m] and quaternion, its real part last; velocity [m/s]
+        and angular velocity [rad/s].
+    joint_q, joint_qd : ndarray
+        Views of the joints' coordinates; the last are place [m] and velocity [m/s] of a plane that
+        moves.
+    """
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, n.weight))
     if s.solver != "xpbd":
         newton.solvers.SolverKamino.register_custom_attributes(builder)
@@ -134,6 +197,13 @@ class Recorded:
     settings : NewtonSettings
     dt_s : float
         Length of the step [s].
+
+    Attributes
+    ----------
+    made_of : Made
+        By which it is known again.
+    model, graph, force, place, velocity, joint_q, joint_qd
+        As `build` returns them.
     """
 
     def __init__(
@@ -154,13 +224,27 @@ idle: "OrderedDict[Made, Recorded]" = OrderedDict()
 
 
 def made_of(scene: Scene, settings: NewtonSettings, dt_s: float) -> Made:
-    """Return what the model of a scene is made of; where the scene begins is none of it."""
+    """Return what the model of a scene is made of; where the scene begins is none of it.
+
+    Parameters
+    ----------
+    scene : Scene, of one body
+    settings : NewtonSettings
+    dt_s : float, the step [s]
+    """
     size, moving = half_size(scene.bodies[0]), scene.frame == "world"
     return Made(settings, dt_s, size, scene.density, scene.system.gravity, moving)
 
 
 def taken(newton: Any, warp: Any, scene: Scene, settings: NewtonSettings, dt_s: float) -> Recorded:
-    """Return a model that no other run uses, as good as new."""
+    """Return a model that no other run uses, as good as new.
+
+    Parameters
+    ----------
+    newton, warp : module
+    scene, settings, dt_s
+        As for `made_of`.
+    """
     recorded = idle.pop(made_of(scene, settings, dt_s), None)
     recorded = recorded or Recorded(newton, warp, scene, settings, dt_s)
     recorded.put_back()

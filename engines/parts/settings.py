@@ -83,7 +83,18 @@ def check(settings: Any) -> None:
 
 
 def largest(settings: Any, name: str) -> float:
-    """Return the largest value that a setting may have."""
+    """Return the largest value that a setting may have.
+
+    Parameters
+    ----------
+    settings : dataclass instance, of an engine
+    name : str, one of its fields
+
+    Returns
+    -------
+    float
+        inf where nothing bounds it.
+    """
     metadata = next(item.metadata for item in fields(settings) if item.name == name)
     return float(metadata["allowed"].most) if "allowed" in metadata else math.inf
 

@@ -35,7 +35,25 @@ NOTHING = 1e-9
 
 
 def numbers(scene: Scene, s: PhysxSettings) -> SimpleNamespace:
-    """Return the numbers of a scene in the settings' unit of length."""
+    """Return the numbers of a scene in the settings' unit of length.
+
+    Parameters
+    ----------
+    scene : Scene
+    s : PhysxSettings
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as n, lengths in units:
+
+        - radius: of corner balls; gravity (3,) [units/s2];
+        - base_half, below, lowered (3,): half the base's size, its centre in its frame, and its
+          place;
+        - of each of bodies: half (3,) its size, density [kg/units3], mass [kg], inertia (3,)
+          [kg units2], corners: each at (3,) about its centre, place (3,), turn (4,): a quaternion,
+          its real part first, velocity (3,) [units/s], spin (3,) [rad/s].
+    """
     unit, sunk = s.unit_of(scene), s.sunk_of(scene)
     radius = CORNER * scene.bodies[0].height
     x, y, z = floor_half_size(scene)
@@ -63,7 +81,23 @@ def of_body(scene: Scene, number: int, s: PhysxSettings, radius: float) -> Simpl
 
 
 def values(scene: Scene, s: PhysxSettings, dt_s: float) -> SimpleNamespace:
-    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    """Return settings as the library is given them, for ordinary steps dt_s [s].
+
+    Parameters
+    ----------
+    scene : Scene
+    s : PhysxSettings
+    dt_s : float, ordinary step [s]
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as s; None leaves a number to the library:
+
+        - dt [s], damping [1/s], depenetration [units/s];
+        - scene, shape, solver: arguments of set_scene_config, set_shape_config, set_body_config,
+          lengths in units.
+    """
     unit = s.unit_of(scene)
     bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
     fastest = None if s.depenetration is None else s.depenetration * unit
@@ -84,7 +118,21 @@ def values(scene: Scene, s: PhysxSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(sapien: Any, n: Any, s: Any) -> Any:
-    """Build bodies on a kinematic box."""
+    """Build bodies on a kinematic box.
+
+    Parameters
+    ----------
+    sapien : module
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    stage : Scene
+    system : PhysxCpuSystem
+    base : PhysxRigidDynamicComponent
+    bodies : list of PhysxRigidDynamicComponent, one for each of n.bodies
+    """
     physx = sapien.physx
     physx.set_scene_config(gravity=n.gravity, **s.scene)
     physx.set_body_config(**s.solver)
@@ -147,7 +195,14 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
-    """Return a scene as calls of SAPIEN; see `engines.parts.script`."""
+    """Return a scene as calls of SAPIEN; see `engines.parts.script`.
+
+    Parameters
+    ----------
+    scene : Scene, whose frame says whether the base moves
+    settings : PhysxSettings
+    dt_s : float, ordinary step [s], which a script calls `DT`
+    """
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, unit = filled(build, n=n, s=s), settings.unit_of(scene)
     times, weight = "" if unit == 1.0 else f" * {unit!r}", scene.system.gravity

@@ -52,7 +52,14 @@ class Call:
 
 
 def engine_call(scene: Scene, s: BulletSettings, dt_s: float) -> Call:
-    """Return the call that sets the contact solver; dt_s [s] is the ordinary step."""
+    """Return the call that sets the contact solver; dt_s [s] is the ordinary step.
+
+    Parameters
+    ----------
+    scene : Scene
+    s : BulletSettings
+    dt_s : float, ordinary step [s], from which the gap follows up to which contacts are kept
+    """
     wanted = {
         "numSolverIterations": s.iterations_of(scene),
         "solverResidualThreshold": s.residual,
@@ -88,7 +95,13 @@ def corner_radius(scene: Scene, s: BulletSettings, dt_s: float) -> float:
 
 
 def constrained(scene: Scene, s: BulletSettings) -> bool:
-    """Return whether the base is a body with a mass, held by a constraint that moves it."""
+    """Return whether the base is a body with a mass, held by a constraint that moves it.
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    """
     return scene.frame == "world" and s.floor == "constraint"
 
 
@@ -98,14 +111,27 @@ def _boxed(scene: Scene, s: BulletSettings) -> bool:
 
 
 def base_shape(scene: Scene, s: BulletSettings) -> Call:
-    """Return the call that makes the shape of the base."""
+    """Return the call that makes the shape of the base; it answers the shape's number.
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    """
     if _boxed(scene, s):
         return _shape("GEOM_BOX", halfExtents=floor_half_size(scene))
     return _shape("GEOM_PLANE", planeNormal=(0.0, 0.0, 1.0))
 
 
 def body_shape(scene: Scene, number: int, s: BulletSettings, dt_s: float) -> Call:
-    """Return the call that makes what a body touches others with, or is touched on."""
+    """Return the call that makes what a body touches others with, or is touched on.
+
+    Parameters
+    ----------
+    scene, s, dt_s
+        As for `engine_call`.
+    number : int, of the body in the scene
+    """
     body = scene.bodies[number]
     if s.geometry == "box" or scene.layout.rests(number):
         return _shape("GEOM_BOX", halfExtents=half_size(body))
@@ -126,18 +152,38 @@ def _shape(kind: str, **shape: Any) -> Call:
 
 
 def base_place(scene: Scene, s: BulletSettings) -> Point:
-    """Return where the centre of the base is [m]."""
+    """Return where the centre of the base is [m], shape (3,).
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    """
     return (0.0, 0.0, -scene.bodies[0].height if _boxed(scene, s) else 0.0)
 
 
 def base_body(scene: Scene, s: BulletSettings, shape: Any) -> Call:
-    """Return the call that makes the base of its shape."""
+    """Return the call that makes the base of its shape; it answers the base's number.
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    shape : int, the shape's number, or what a script calls it
+    """
     mass = FLOOR_MASSES * _mass(scene) if constrained(scene, s) else 0.0
     return _body(mass, shape, base_place(scene, s), False)
 
 
 def hold_call(scene: Scene, s: BulletSettings, base: Any) -> Call:
-    """Return the call that holds the base where it is."""
+    """Return the call that holds the base where it is; it answers the constraint's number.
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    base : int, the base's number, or what a script calls it
+    """
     frames = {"parentFramePosition": NOWHERE, "childFramePosition": base_place(scene, s)}
     ends = {"parentBodyUniqueId": base, "parentLinkIndex": -1}
     world = {"childBodyUniqueId": -1, "childLinkIndex": -1}
@@ -156,6 +202,14 @@ def move_call(
     """Return the call that moves the base, or its constraint of a largest force [N].
 
     It goes to a place [m], which the velocity along x [m/s] leads it to in a step.
+
+    Parameters
+    ----------
+    s : BulletSettings, of which floor says how
+    base : int, the base's number, or what a script calls it
+    held_by : (int, float), its constraint, likewise, and the force
+    place : list (3,), of its centre at the end of the step [m]
+    speed : float, its velocity along x [m/s]; a script has words for it and for the place
     """
     if s.floor == "constraint":
         constraint, most = held_by
@@ -174,7 +228,14 @@ def _mass(scene: Scene) -> float:
 
 
 def body_of(body: Body, s: BulletSettings, shape: Any) -> Call:
-    """Return the call that makes a body of its shape."""
+    """Return the call that makes a body of its shape; it answers the body's number.
+
+    Parameters
+    ----------
+    body : Body, which is put where it is at rest
+    s : BulletSettings
+    shape : int, the shape's number, or what a script calls it
+    """
     x, z = body.home
     return _body(body.mass, shape, (x, 0.0, z), not s.multibody)
 
@@ -196,7 +257,15 @@ def aloft(scene: Scene) -> list[Point]:
 
 
 def body_call(scene: Scene, number: int, s: BulletSettings, body: Any) -> Call:
-    """Return the call that sets a body's dynamics."""
+    """Return the call that sets a body's dynamics.
+
+    Parameters
+    ----------
+    scene, s
+        As for `engine_call`.
+    number : int, of the body in the scene
+    body : int, its number in the library, or what a script calls it
+    """
     p, it = scene.system.p, scene.bodies[number]
     wanted: dict[str, Any] = {
         "lateralFriction": s.friction,
@@ -214,7 +283,13 @@ def body_call(scene: Scene, number: int, s: BulletSettings, body: Any) -> Call:
 
 
 def base_call(s: BulletSettings, body: Any) -> Call:
-    """Return the call that sets the base's dynamics."""
+    """Return the call that sets the base's dynamics.
+
+    Parameters
+    ----------
+    s : BulletSettings, whose restitution says whether base_restitution is set
+    body : int, the base's number, or what a script calls it
+    """
     bounce = None if s.restitution is None else s.base_restitution
     return _change(s, body, given({"lateralFriction": 1.0, "restitution": bounce}))
 

@@ -36,7 +36,13 @@ def connected(p: Any) -> int:
 
 
 def given_back(p: Any, client: int) -> None:
-    """Empty a client, and give the library back what it holds for the process."""
+    """Empty a client, and give the library back what it holds for the process.
+
+    Parameters
+    ----------
+    p : module, pybullet
+    client : int, from `taken`; its run has ended
+    """
     p.resetSimulation(physicsClientId=client)
     with held_for_all:
         p.setPhysicsEngineParameter(

@@ -94,7 +94,15 @@ class Hold(State):
 
 
 def begin_hold(held: Hold, scene: Scene, s: BulletSettings, dt_s: float) -> None:
-    """Prepare for a scene in ordinary steps of `dt_s` [s], but for its bodies."""
+    """Prepare for a scene in ordinary steps of `dt_s` [s], but for its bodies.
+
+    Parameters
+    ----------
+    held : Hold, blank, to be filled; the numbers of body and base are left to the caller
+    scene : Scene
+    s : BulletSettings
+    dt_s : float, ordinary step [s]
+    """
     fill(
         held,
         by_phase=s.by_phase,
@@ -138,7 +146,21 @@ class Client(NamedTuple):
 def drive(
     holds: Sequence[Hold], client: Client, runs: Sequence[Run], lists: Lists, most: int
 ) -> int:
-    """Take up to so many steps while the run goes on; return how many were taken."""
+    """Take up to so many steps while the run goes on; return how many were taken.
+
+    Parameters
+    ----------
+    holds : sequence of Hold (1,), updated
+    client : Client, of which state (bodies, 4) is written
+    runs, lists
+        As for `engines.run.look.onward`, updated.
+    most : int, how many; with 0 the state is read, and nothing is taken
+
+    Raises
+    ------
+    RuntimeError
+        If the library does not say where a body is, or says it elsewhere than before.
+    """
     held = holds[0]
     read(held, client)
     for before in range(most):
@@ -151,7 +173,7 @@ def drive(
 
 @shared
 def take(held: Hold, client: Client, step: Step) -> None:
-    """Set what a step needs, and take it."""
+    """Set what a step needs, and take it; held and the client are updated."""
     command = parameters(client.handle)
     put_time_step(command, step.dt_s)
     put_gravity(command, step.pull_x, 0.0, step.pull_z)
@@ -173,6 +195,16 @@ def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> tuple[float, float]
     None in a step around an impact: a short step would make a velocity of it. None across at rest,
     where the places that two corners are held at contradict each other by a rounding, and the
     solver would look for a compromise until its iterations end.
+
+    Parameters
+    ----------
+    grip : Grip, of the step
+    dt_s, ordinary_s : float, its length, and that of an ordinary one [s]
+
+    Returns
+    -------
+    (float, float)
+        Each from 0 to 1.
     """
     if grip == Grip.APPROACH or grip == Grip.STRIKE:
         return 0.0, 0.0
@@ -235,13 +267,38 @@ def located(handle: int, body: int, answer: NDArray[np.int64]) -> None:
 
 @exclusive
 def once(holds: Sequence[Hold], client: Client, step: tuple[Any, ...]) -> None:
-    """Take a step, and read the poses after it; for Python."""
+    """Take a step, and read the poses after it; for Python.
+
+    Parameters
+    ----------
+    holds, client
+        As for `drive`.
+    step : tuple (10,), in the order of `Step`, with a number for its grip
+
+    Raises
+    ------
+    RuntimeError
+        As `drive`.
+    """
     take(holds[0], client, Step(*step))
     read(holds[0], client)
 
 
 def client_of(p: Any, number: int, body: int, state: FloatArray) -> Client:
-    """Return the client of a number, in which a body is; poses are read into a state."""
+    """Return the client of a number, in which a body is; poses are read into a state.
+
+    Parameters
+    ----------
+    p : module, pybullet
+    number : int, of the client, one that `clients` knows
+    body : int, of any body in it
+    state : ndarray (bodies, 4), written whenever poses are read
+
+    Raises
+    ------
+    RuntimeError
+        If the library does not say where the body is.
+    """
     handle, answer = int(clients(p)[number]), np.zeros(2, np.int64)
     located(handle, body, answer)
     place, motion = answer.tolist()

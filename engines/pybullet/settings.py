@@ -305,5 +305,16 @@ RULES = (
 
 
 def spring(time: float, step: float) -> dict[str, float]:
-    """Return the settings of a contact with a time of its own; see `Engine.spring`."""
+    """Return the settings of a contact with a time of its own; see `Engine.spring`.
+
+    Parameters
+    ----------
+    time : float, positive, the contact's time in units of 1/p
+    step : float, which such a contact does not depend on
+
+    Returns
+    -------
+    dict
+        contact_stiffness over m p^2, and contact_damping over m p, of critical damping.
+    """
     return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}

@@ -61,7 +61,21 @@ def of_body(scene: Scene, number: int, s: RapierSettings, radius: float) -> Simp
 
 
 def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
-    """Return settings as the library is given them, for ordinary steps dt_s [s]."""
+    """Return settings as the library is given them, for ordinary steps dt_s [s].
+
+    Parameters
+    ----------
+    scene : Scene
+    s : RapierSettings
+    dt_s : float, ordinary step [s], from which a contact's spring follows
+
+    Returns
+    -------
+    SimpleNamespace
+        What `build` takes as s: spring is a contact's frequency [Hz] and damping ratio, target
+        whether the base is led by its place, the others are as in the settings. None leaves a
+        number to the library.
+    """
     base = s.restitution if s.base_restitution is None else s.base_restitution
     target = scene.frame == "world" and s.floor == "target"
     return SimpleNamespace(
@@ -76,7 +90,21 @@ def values(scene: Scene, s: RapierSettings, dt_s: float) -> SimpleNamespace:
 
 
 def build(rapier: Any, n: Any, s: Any) -> Any:
-    """Build bodies on a kinematic box."""
+    """Build bodies on a kinematic box.
+
+    Parameters
+    ----------
+    rapier : module, rapier3d
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    world : PhysicsWorld
+    parameters : IntegrationParameters, of which dt [s] is the step
+    base : RigidBody
+    bodies : list of RigidBody, one for each of n.bodies
+    """
     world = rapier.PhysicsWorld()
     parameters = world.integration_parameters
     if s.substeps is not None:
@@ -142,7 +170,19 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Rapier; see `engines.parts.script`."""
+    """Return a scene as calls of Rapier; see `engines.parts.script`.
+
+    Parameters
+    ----------
+    scene : Scene, whose frame says whether the base moves
+    settings : RapierSettings
+    dt_s : float, ordinary step [s], which a script calls `DT`
+
+    Raises
+    ------
+    ValueError
+        If a base that moves is moved in a way that is not in `FLOORS`.
+    """
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
     led = f"base_x{times}" if settings.floor == "both" else "base.translation.x"

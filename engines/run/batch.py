@@ -158,7 +158,14 @@ def _checked(states: FloatArray, scene: Scene, steps: FloatArray) -> FloatArray:
 
 @kernel
 def plan(runs: Sequence[Run], lists: Lists, steps: FloatArray) -> None:
-    """Write down the steps that come next, whatever the state."""
+    """Write down the steps that come next, whatever the state.
+
+    Parameters
+    ----------
+    runs, lists
+        As for `engines.run.look.onward`; the runs are moved on.
+    steps : ndarray (steps, 10), to be written in the order of the fields of `Step`
+    """
     nowhere = np.zeros((1, 4))
     for number in range(len(steps)):
         put_step(steps[number], onward(runs, lists, nowhere))
@@ -166,7 +173,15 @@ def plan(runs: Sequence[Run], lists: Lists, steps: FloatArray) -> None:
 
 @kernel
 def watch(runs: Sequence[Run], lists: Lists, steps: FloatArray, states: FloatArray) -> int:
-    """See the states after some steps while the run goes on; return how many were taken."""
+    """See the states after some steps while the run goes on; return how many were taken.
+
+    Parameters
+    ----------
+    runs, lists
+        As for `engines.run.look.undecided`, updated.
+    steps : ndarray (steps, 10), from `plan`
+    states : ndarray (steps, bodies, 4), a `Pose` a row, at the end of each
+    """
     pace = runs[0].pace
     for number in range(len(steps)):
         pace.last_dt, pace.time = steps[number, 0], steps[number, 1]

@@ -164,7 +164,10 @@ def _with_lag(response: Response, world: World) -> Response:
 
 
 def driven(look: Look, world: World) -> Callable[[int], int] | None:
-    """Return how a world takes up to so many steps at once; None where it cannot."""
+    """Return how a world takes up to so many steps at once; None where it cannot.
+
+    What is returned takes how many at most, and returns how many it took.
+    """
     drive: Driver | None = getattr(world, "drive", None)
     if drive is None:
         return None

@@ -4,6 +4,8 @@ What to expect comes from the poses seen until now and from the base's motion; w
 engine's, whatever was expected. Before an impact each step covers half of the way that is left, so
 that the contact about which the block turns is never out of reach of the next step; through the
 impact the steps are too short for anything but the contact to act.
+
+What functions take is said at `choose`, which calls them all; a `Choice` is the step that follows.
 """
 
 import math
@@ -232,7 +234,10 @@ def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
 
 @shared
 def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Choice:
-    """Leave a part of the way for the next step, or all of it to the shortest steps."""
+    """Leave a part of the way for the next step, or all of it to the shortest steps.
+
+    The impact is `ahead` [s] away; no step is longer than `longest` [s].
+    """
     if not to.approaching and ahead > longest:
         return Choice(0.5 * ahead, Grip.SWING, to.side)
     to.approaching = True
@@ -248,7 +253,7 @@ def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Cho
 def stands(to: Landing, ahead: float, pose: Pose) -> bool:
     """Return whether the free corner touches the base as it is: what is left no longer halves.
 
-    A rounding of its height would otherwise be approached for ever.
+    A rounding of its height would otherwise be approached for ever. The impact is `ahead` [s] away.
     """
     touches = to.last_approach and gap(to, pose) < to.touching
     return touches and (1.0 - REMAINDER) * ahead >= to.last_dt

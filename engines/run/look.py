@@ -30,7 +30,9 @@ from engines.watching.watch import EVENTS_A_LOOK, Watch, begin_watch
 from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution, Step
 
 Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]
-"""The ground, the stops, the loads, the rows of a history, and the events."""
+"""The ground, the stops and the loads, as for `engines.run.steps.next_step`; and of each body that
+rocks the rows of a history (bodies, k, 4), a `Row` each, and the events (bodies, k, 4), their
+columns as in `engines.watching.watch`."""
 
 GRIP, GRIPS = Step._fields.index("grip"), tuple(Grip)
 
@@ -109,7 +111,19 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
 
 @kernel
 def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
-    """See a state, and choose the next step unless the run is over; return whether it goes on."""
+    """See a state, and choose the next step unless the run is over; return whether it goes on.
+
+    Parameters
+    ----------
+    runs, lists, state
+        As for `onward`; the runs are updated, and lists written.
+    step : ndarray (10,), where the next step is written, as by `put_step`
+
+    Raises
+    ------
+    SpentError
+        If it is interpreted, and one look too many for that.
+    """
     spend()
     if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
         return False
@@ -213,7 +227,17 @@ class Look:
         self.lists = (*self.lists[:3], rows, events)
 
     def next(self, state: ArrayLike) -> Step | None:
-        """See the state after a step; return the next step, or None where the run is over."""
+        """See the state after a step; return the next step, or None where the run is over.
+
+        Parameters
+        ----------
+        state : array_like (bodies, 4), a `Pose` a row
+
+        Raises
+        ------
+        ValueError
+            If the state has another shape.
+        """
         # most engines fill the same array again
         where = self._last if state is self._last else self._checked(state)
         # plain numbers are the faster ones for Python
@@ -270,7 +294,13 @@ def compile_look() -> None:
 
 
 def roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
-    """Return tables, or larger copies, that have room for so many more rows than are used."""
+    """Return tables, or larger copies, that have room for so many more rows than are used.
+
+    Parameters
+    ----------
+    tables : ndarray (bodies, rows, columns)
+    used, more : int, rows
+    """
     if used + more <= tables.shape[1]:
         return tables
     larger = np.zeros((len(tables), 2 * (used + more), tables.shape[2]))

@@ -140,13 +140,19 @@ def next_step(
 
 @shared
 def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
-    """Return the base velocity [m/s] to which the block's velocity after a step belongs."""
+    """Return the base velocity [m/s] to which the block's velocity after a step belongs.
+
+    The step ends at `end` [s] and is `dt` [s] long.
+    """
     return mean_velocity_over(ground, end, end if pace.part == END else end + dt)
 
 
 @shared
 def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool) -> Choice:
-    """Choose the next step; one that is all equal says neither what it is for nor the corner."""
+    """Choose the next step; one that is all equal says neither what it is for nor the corner.
+
+    What it takes is said at `next_step`.
+    """
     if pace.policy == FIXED:
         return Choice(pace.dt, Grip.SWING, 0.0)
     pass_to(pace.times, stops, loads, pace.time)

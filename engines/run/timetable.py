@@ -160,7 +160,7 @@ def even(left_s: float, longest: float) -> float:
 
 
 def loads_of(motion: Motion, onset: float) -> list[Load]:
-    """Return the times during which abs(u_g'') exceeds `onset` [m/s2]."""
+    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], in order."""
     grid = np.union1d([0.0, motion.duration, *_turns(motion)], motion.breakpoints)
     above = PULLS[:, None] * motion.acceleration(grid) > onset
     pulled, change = np.nonzero(above[:, 1:] != above[:, :-1])

@@ -94,20 +94,39 @@ def resolved(swing: Swing) -> bool:
 
 @shared
 def put(rows: FloatArray, number: int, row: Row) -> None:
-    """Write a row."""
+    """Write a row.
+
+    Parameters
+    ----------
+    rows : ndarray (k, 4), columns `TIME` [s], `RATE_S` [s], `THETA` [rad] and `RATE` [rad/s]
+    number : int, of the row that is written
+    row : Row
+    """
     rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
     rows[number, THETA], rows[number, RATE] = row.theta, row.rate
 
 
 @shared
 def row_of(rows: FloatArray, number: int) -> Row:
-    """Read a row."""
+    """Read a row.
+
+    Parameters
+    ----------
+    rows, number
+        As for `put`.
+    """
     return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
 
 
 @shared
 def copy(rows: FloatArray, source: int, to: int) -> None:
-    """Write a row again in another place; a slice would compile for much longer."""
+    """Write a row again in another place; a slice would compile for much longer.
+
+    Parameters
+    ----------
+    rows : ndarray (k, n), written
+    source, to : int, numbers of the row that is read, and of the one that is written
+    """
     for column in range(rows.shape[1]):
         rows[to, column] = rows[source, column]
 
