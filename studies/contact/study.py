@@ -6,12 +6,14 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import pandas as pd
 
+from analytic import conditioning
 from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Stepping
@@ -25,22 +27,29 @@ from engines.parts.factors import (
     OWN_STEPS,
     Rule,
 )
+from engines.scene import Scene
+from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import STILL, Variant, preset_values, variants
 from studies.contact import STUDY
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out
+from studies.kit.arguments import Out, one_of
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import CORE, Engines
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
-from studies.measures.differences import with_reference
+from studies.measures.differences import (
+    WELL_CONDITIONED,
+    with_reference,
+    with_reference_of_frames,
+)
 from studies.measures.energy import SAMPLES, energy_drift, growth
 from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
+from studies.sources.registry import resolve
 
 __all__ = ["command", "finding", "report"]
 
@@ -49,12 +58,18 @@ STEP, QUICK_STEP = 1e-3, 2e-3
 QUICK_ASPECTS = (2, 4)
 STRONG = 0.1
 """Impacts faster than this, in units of p alpha, show a velocity ratio."""
+SEED, FRAMES = 1, 4
+"""Of the random frames, and how many of them are asked about."""
+
+Posed: TypeAlias = "Case | RandomCase"
+"""A case of the paper, or a random frame."""
 
 
 def command(
     *,
     out: Out,
     engines: Engines = CORE,
+    scene: Annotated[Drawn, one_of(Drawn)] = "block",
     quick: bool = False,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
@@ -64,24 +79,28 @@ def command(
     ----------
     engines
         Names of engines, without a preset.
+    scene
+        block: cases of the paper. frame: random frames, a beam on 2 to 5 columns.
     quick
         Fewer cases and twice the step: less than a minute on 2 cores.
     """
-    return carry_out(STUDY, plan(engines, quick), out, running, report)
+    return carry_out(STUDY, plan(engines, quick, scene), out, running, report)
 
 
-def plan(engines: Sequence[str], quick: bool) -> Plan:
+def plan(engines: Sequence[str], quick: bool, scene: Drawn = "block") -> Plan:
     """Return the plan that puts every variant of some engines to the cases."""
+    asked_about = cases(quick) if scene == "block" else frame_cases(quick)
     return Plan(
         jobs=[
             job_of(variant, kind, case, quick, own_step)
             for own_step, asked in ((False, all_variants), (True, of_defaults))
             for variant in asked(engines)
-            for kind, case in cases(quick)
+            for kind, case in asked_about
+            if scene == "block" or holds(variant, case)
         ],
-        settings={"quick": quick},
+        settings={"quick": quick, **({} if scene == "block" else {"scene": scene})},
         growing={"engine": engines},
-        reduce=reduce,
+        reduce=reduce if scene == "block" else reduce_frame,
         needed=unchanged,
     )
 
@@ -111,7 +130,25 @@ def cases(quick: bool) -> tuple[tuple[str, Case], ...]:
     return tuple(chosen)
 
 
-def job_of(variant: Variant, kind: str, case: Case, quick: bool, own_step: bool = False) -> Job:
+@functools.cache
+def frame_cases(quick: bool) -> tuple[tuple[str, RandomCase], ...]:
+    """Return the first random frames that rock and survive, with a κ below WELL_CONDITIONED."""
+    calm = (
+        case
+        for case in draw(SEED, "frame")
+        if np.abs(conditioning(case.block, case.motion)).max() < WELL_CONDITIONED
+    )
+    return tuple(("typical", case) for case in islice(calm, FRAMES // 2 if quick else FRAMES))
+
+
+def holds(variant: Variant, case: Posed) -> bool:
+    """Say whether a variant's preset is built for a case: some are for one block alone."""
+    asked = resolve(variant.source)
+    scene = Scene(system=case.block, motion=case.motion, preset=asked.preset)
+    return not asked.declared.lacks(scene, asked.used)
+
+
+def job_of(variant: Variant, kind: str, case: Posed, quick: bool, own_step: bool = False) -> Job:
     """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
@@ -152,6 +189,11 @@ def reduce(job: Job, response: Response) -> Row:
         "energy_drift": energy_drift(job, response),
         "energy_growth": growth(job.block, job.motion, response),
     }
+
+
+def reduce_frame(job: Job, response: Response) -> Row:
+    """Return the same of a frame, whose velocity ratio implies no e of a single corner."""
+    return {**reduce(job, response), "newton_e": math.nan}
 
 
 def velocity_ratio(job: Job, response: Response) -> float:
@@ -207,8 +249,9 @@ def report(folder: Path) -> str:
 
 def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
     """Return one line for each variant: its errors, what it changes, its impact, its cost."""
-    compared = with_reference(rows)
-    case = ["set", "figure", "aspect"]
+    framed = "load" in rows
+    compared = with_reference_of_frames(rows) if framed else with_reference(rows)
+    case = ["set", "case"] if framed else ["set", "figure", "aspect"]
     base = compared[compared["factor"] == ""].set_index(["engine", "preset", *case])["peak_ratio"]
     base = base.where(np.isfinite(base))  # a preset that overturns has no peak to move
     own = base.reindex(pd.MultiIndex.from_frame(compared[["engine", "preset", *case]])).to_numpy()

@@ -13,8 +13,9 @@ from analytic import simulate
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import Stepping
+from engines.layouts import Ability
 from engines.mujoco.settings import TUNED, MujocoSettings
-from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT, OWN_STEPS
+from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.registry import VARIANTS as OTHERS
@@ -30,6 +31,7 @@ from studies.contact.study import (
     prices,
     recommendation,
     reduce,
+    reduce_frame,
     report,
     rules,
     unchanged,
@@ -222,6 +224,35 @@ OF_CORE = [v for v in CHOSEN if ENGINES[v.engine].core]
 @pytest.fixture(scope="module")
 def small_table():
     return rows_of(OF_CORE)
+
+
+@pytest.mark.parametrize("engine", installed_engines())
+def test_of_frames_is_asked_whoever_holds_one(engine):
+    jobs = plan([engine], True, "frame").jobs
+    asked = {job.labels["preset"] for job in jobs}
+    stacked = Ability.STACKED in ENGINES[engine].holds
+    built = [use.name for use in ENGINES[engine].presets if stacked and use.stacked is not None]
+    assert asked == {v.preset for v in all_variants([engine])}.intersection(built)
+    factors = {v.factor for v in all_variants([engine]) if v.preset in asked}
+    assert {job.labels["factor"] for job in jobs} == factors
+
+
+@pytest.mark.slow
+def test_of_frames_the_same_is_told_as_of_blocks():
+    jobs = [job for job in plan(["mujoco"], True, "frame").jobs if not job.labels["own_step"]]
+    few = [job for job in jobs if job.labels["factor"] in ("", "cone")]
+    rows = [
+        {**job.labels, "source": job.source, **reduce_frame(job, ask(job, job.asked))}
+        for job in few
+    ]
+    table = variant_table(pd.DataFrame(rows)).set_index(["preset", "level"])
+    assert (table["cases"] == 2).all() and table["newton_e"].isna().all()
+    for job, row in zip(few, rows, strict=True):
+        exact = simulate(job.block, job.motion).peak_ratio
+        if row["preset"] == "landing":
+            assert row["peak_ratio"] == pytest.approx(exact, rel=1e-5)
+    fixed = table.loc["fixed"]
+    assert fixed["max_error"].iloc[0] < 5e-3 < 0.02 < fixed.loc[BY_DEFAULT, "max_error"]
 
 
 def test_report_of_a_small_table(small_table, tmp_path):
