@@ -34,7 +34,7 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import STILL, Variant, preset_values, variants
 from studies.contact import STUDY
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out, one_of
+from studies.kit.arguments import BadInputError, Out, one_of
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import CORE, Engines
@@ -90,14 +90,18 @@ def command(
 def plan(engines: Sequence[str], quick: bool, scene: Drawn = "block") -> Plan:
     """Return the plan that puts every variant of some engines to the cases."""
     asked_about = cases(quick) if scene == "block" else frame_cases(quick)
+    jobs = [
+        job_of(variant, kind, case, quick, own_step)
+        for own_step, asked in ((False, all_variants), (True, of_defaults))
+        for variant in asked(engines)
+        for kind, case in asked_about
+        if scene == "block" or holds(variant, case)
+    ]
+    if not jobs:
+        words = f"none of --engines is built for it: {', '.join(engines)}"
+        raise BadInputError(f"--scene is {scene!r}; {words}")
     return Plan(
-        jobs=[
-            job_of(variant, kind, case, quick, own_step)
-            for own_step, asked in ((False, all_variants), (True, of_defaults))
-            for variant in asked(engines)
-            for kind, case in asked_about
-            if scene == "block" or holds(variant, case)
-        ],
+        jobs=jobs,
         settings={"quick": quick, **({} if scene == "block" else {"scene": scene})},
         growing={"engine": engines},
         reduce=reduce if scene == "block" else reduce_frame,

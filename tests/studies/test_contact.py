@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 
 from analytic import simulate
 from analytic.response import Outcome, Reason
@@ -226,15 +227,22 @@ def small_table():
     return rows_of(OF_CORE)
 
 
-@pytest.mark.parametrize("engine", installed_engines())
+STACKING = [name for name in installed_engines() if Ability.STACKED in ENGINES[name].holds]
+
+
+@pytest.mark.parametrize("engine", STACKING)
 def test_of_frames_is_asked_whoever_holds_one(engine):
     jobs = plan([engine], True, "frame").jobs
     asked = {job.labels["preset"] for job in jobs}
-    stacked = Ability.STACKED in ENGINES[engine].holds
-    built = [use.name for use in ENGINES[engine].presets if stacked and use.stacked is not None]
+    built = [use.name for use in ENGINES[engine].presets if use.stacked is not None]
     assert asked == {v.preset for v in all_variants([engine])}.intersection(built)
     factors = {v.factor for v in all_variants([engine]) if v.preset in asked}
     assert {job.labels["factor"] for job in jobs} == factors
+
+
+def test_of_frames_whoever_holds_none_is_refused(capsys, tmp_path):
+    asked = ["contact", "--scene", "frame", "--engines", "warp", "--out", tmp_path]
+    refused(capsys, asked, "--scene is 'frame'", "none of --engines", "warp")
 
 
 @pytest.mark.slow
