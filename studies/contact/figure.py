@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -97,7 +98,8 @@ def _summed(others: pd.DataFrame) -> str:
     kept, lost = others[~others["broken"]], int(others["broken"].sum())
     words = [f"{lost} break a case"] * bool(lost)
     if len(kept):
-        moved = part(float(kept["moved"].max()))
+        # where the preset says "at rest", no part of its peak is what one moves by
+        moved = part(float(kept.loc[np.isfinite(kept["moved"]), "moved"].max()))
         words.append(f"{len(kept) if lost else 'they'} move a peak by {moved} at most")
     return f"{len(others)} others: {', '.join(words)}"
 
