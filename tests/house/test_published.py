@@ -83,7 +83,7 @@ def test_random_cases_are_what_comes_out_today():
             omega=row.omega_over_p * block.p,
             half_cycles=row.half_cycles,
         )
-        within = equal_to(row.source, 1e-6)
+        within = equal_to(row.source.partition(":")[0], 1e-6)
         assert respond(row.source, block, pulse).peak_ratio == pytest.approx(
             row.peak_ratio, rel=within
         )
