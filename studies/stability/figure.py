@@ -14,6 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from studies.drawing.facets import key
 from studies.drawing.styles import name_of
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
 
 
@@ -86,7 +87,7 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
     axes.set(xlim=(0, len(sources)), ylim=(len(names) + 1, 0))
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    drawing.suptitle("Extreme cases: what each method's answer is worth", fontsize=12)
+    drawing.suptitle(_message(rows), fontsize=12)
     handles = [
         Patch(fc=mark.colour, ec="#888888", hatch=mark.hatch,
               label=f"{mark.symbol}  {verdict.sentence}")
@@ -143,3 +144,18 @@ def _label_cases(axes: Axes, cases: pd.DataFrame) -> None:
     right.tick_params(length=0)
     right.spines["right"].set_visible(False)
     axes.text(1.02, 1.005, "exact peak", transform=axes.transAxes, fontsize=7.5, color="#555555")
+
+
+def _message(rows: pd.DataFrame) -> str:
+    """Say how many valid cases engines get right as they come and at best."""
+    asked = rows[rows["source"].map(is_engine) & (rows["verdict"] != Verdict.INVALID.value)]
+    right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"].map(preset_of))
+    good, total = right.sum().to_dict(), right.size().to_dict()
+    if not total:
+        return "Extreme cases: what each method's answer is worth"
+    names = in_order(map(str, total))
+    words = [
+        f"{in_words(name)} {good[name]:.0f} of {total[name]}"
+        for name in dict.fromkeys((names[0], names[-1]))
+    ]
+    return f"Of engines' answers to extreme cases are right: {', '.join(words)}"
