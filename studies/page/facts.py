@@ -241,6 +241,26 @@ def ports(published: Path) -> str:
     return table(heads, rows)
 
 
+def starts(published: Path) -> str:
+    """Return how long a user waits for whole commands, as a table of Markdown; empty without any.
+
+    Over R, the time in which Python loads numba and pandas, so that it holds on any machine.
+    """
+    lines = table_in(published / "cost", "starts")
+    if lines.empty:
+        return ""
+    heads = ("", "the first time", "later", "over R: first", "later")
+    rows = [
+        (
+            f"`{line['command']}`" if "," not in line["command"] else line["command"],
+            *(duration(line[name]) for name in ("cold_s", "warm_s")),
+            *(f"{line[name]:.2g}" for name in ("cold_ratio", "warm_ratio")),
+        )
+        for _, line in lines.iterrows()
+    ]
+    return f"R = {duration(lines['unit_s'].iloc[0])}:\n\n{table(heads, rows)}"
+
+
 def advised(published: Path) -> str:
     """Return the cheapest advice for each error with each loop as a table of Markdown."""
     lines = table_in(published / "advice", "advice")

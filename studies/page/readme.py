@@ -86,6 +86,7 @@ def pages(root: Path) -> dict[Path, str]:
         "models": facts.models(published),
         "advised": facts.advised(published),
         "ports": facts.ports(published),
+        "starts": facts.starts(published),
         "choices_all": facts.choices_text(steps),
         "counts": facts.counts(published),
         "made": facts.made(published),

@@ -122,6 +122,7 @@ def test_a_burst_of_other_work_slows_no_scene(monkeypatch):
     assert set(table["driver"]) == {"compiled"}
 
 
+@pytest.mark.slow
 def test_a_batch_is_held_against_its_scenes_one_by_one(monkeypatch):
     with announced("looped", "rocking_batch:BRISK"):
         table = batches.batch_table(["looped", "mujoco"], True, 0.0)

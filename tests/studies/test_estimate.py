@@ -131,6 +131,7 @@ def test_nothing_is_known_of_the_factor_of_no_case():
     assert interval(pd.Series([], dtype=float), 0.95) == (0.0, math.inf)
 
 
+@pytest.mark.slow
 def test_the_interval_holds_the_factor_as_often_as_it_says():
     """Errors over estimates with a heavy tail, drawn 2000 times: 95 % or more, within 3 sigma."""
     generator = np.random.default_rng(1)

@@ -104,7 +104,10 @@ def closing(*numbers):
     return before
 
 
-@pytest.mark.parametrize("numbers", [(0,), (1,), (2,), (0, 1, 2)])
+@pytest.mark.parametrize(
+    "numbers",
+    [*(pytest.param((one,), marks=pytest.mark.slow) for one in (0, 1, 2)), (0, 1, 2)],
+)
 def test_closed_streams_change_no_exit_code_and_no_result(numbers, tmp_path):
     before = closing(*numbers)
     out = ["--sources", "exact", "mujoco:fixed", "--cases", "5", "--out", tmp_path / "out"]

@@ -56,6 +56,7 @@ def test_what_is_no_table_is_one_line(content, tmp_path, capsys):
     refused(capsys, ["redraw", tmp_path])
 
 
+@pytest.mark.slow
 def test_results_are_drawn_from_their_tables_alone(tmp_path, capsys):
     before = dict(units.registry)
     for study in ("free", "sweep", "validity", "overturning"):

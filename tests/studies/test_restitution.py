@@ -228,6 +228,7 @@ def test_a_block_whose_library_says_that_it_went_wrong_keeps_no_number(monkeypat
     assert all(map(math.isnan, found))
 
 
+@pytest.mark.slow
 def test_the_published_lines_follow_from_the_published_strikes():
     folder = PUBLISHED / "restitution"
     rows = study.STUDY.read(folder, "restitution")

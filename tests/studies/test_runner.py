@@ -214,6 +214,7 @@ def test_an_interrupted_run_says_how_to_go_on(number, tmp_path):
     assert len(lines_of(folder)) == HEAD + FREE
 
 
+@pytest.mark.slow
 def test_a_full_disk_loses_nothing_that_finished(tmp_path):
     folder = tmp_path / "out"
     gate_of(folder).touch()

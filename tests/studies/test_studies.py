@@ -103,6 +103,7 @@ def test_the_paper_has_960_cases():
     assert last.motion.half_cycles == 2
 
 
+@pytest.mark.slow
 def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
     assert histories.command(out=tmp_path) == 0
     text = capsys.readouterr().out

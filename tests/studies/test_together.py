@@ -123,6 +123,7 @@ def test_a_batch_that_fails_is_asked_one_by_one(trap, note):
     assert "failed" not in {row["outcome"] for row in rows}  # by itself it does no harm
 
 
+@pytest.mark.slow
 def test_a_time_limit_holds_for_each_of_a_batch(note):
     """What takes two limits for five has time for five; what takes for ever is one row."""
     slow = [job(n, options={"density": SLOW}) for n in range(5)]

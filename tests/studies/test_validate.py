@@ -97,6 +97,7 @@ def test_frames_are_held_against_their_own_reference():
 PULSED = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
 
 
+@pytest.mark.slow
 def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
     asked = ["validate", "--scene", "frame", "--cases", "5", "--sources", "mujoco:landing"]
     assert run([*asked, "--out", str(tmp_path), "--jobs", "1"]) == 0

@@ -126,6 +126,7 @@ def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path,
     assert [each["release"] for each in runs] == [["all"], named[1:]]
 
 
+@pytest.mark.slow
 def test_without_a_network_there_is_one_line(pretender, tmp_path, capsys):
     for path in pretender.iterdir():
         path.unlink()

@@ -111,6 +111,7 @@ def test_symptoms_are_mended_with_the_friction_that_is_given(tmp_path, capsys):
     assert "slides in" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
     few = ["--cases", "1", "--tests", "1", "--sources", "pymunk:naive"]
     own = ["--friction", "0.9", "--dt", "0.003"]
