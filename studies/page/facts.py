@@ -252,7 +252,7 @@ def starts(published: Path) -> str:
     heads = ("", "the first time", "later", "over R: first", "later")
     rows = [
         (
-            f"`{line['command']}`" if "," not in line["command"] else line["command"],
+            line["command"],
             *(duration(line[name]) for name in ("cold_s", "warm_s")),
             *(f"{line[name]:.2g}" for name in ("cold_ratio", "warm_ratio")),
         )

@@ -120,6 +120,7 @@ def test_a_workers_address_is_no_schedulers(station, tmp_path, capsys):
     assert "scheduler (TypeError: Worker." in refusal(first, capsys, tmp_path)
 
 
+@pytest.mark.slow
 def test_who_was_stopped_is_not_waited_for(station, monkeypatch, tmp_path, capsys):
     address, running, workers = station
     for limit, process in (("ANSWER_S", workers[0]), ("CONNECT_S", running)):

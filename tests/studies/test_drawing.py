@@ -195,7 +195,9 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     assert height < width * lines["engine"].nunique() / 3.0
 
 
-@pytest.mark.parametrize("study", ["contact", "validate", "precision"])
+@pytest.mark.parametrize(
+    "study", ["contact", "validate", pytest.param("precision", marks=pytest.mark.slow)]
+)
 def test_published_results_without_their_largest_table_are_drawn_again(study, tmp_path, capsys):
     folder = Path(shutil.copytree(PUBLISHED / study, tmp_path / study))
     (folder / f"{study}.png").unlink()

@@ -193,6 +193,7 @@ def test_one_world_by_itself_is_a_world():
     )
 
 
+@pytest.mark.slow
 def test_a_cluster_is_given_batches_too(tmp_path, note):
     engine = {registry.FURTHER: os.environ[registry.FURTHER], rocking_batch.NOTE: str(note)}
     options = ("--nthreads", 1, "--no-dashboard", "--no-nanny")
