@@ -145,6 +145,7 @@ def test_the_page(alone, few, tmp_path, capsys):
     assert peaks["6/half-sine/0.05/2/0.5/0.1"] == again.outcome.value == "overturned"
 
 
+@pytest.mark.slow
 def test_a_result_is_kept_and_the_next_one_held_against_it(few, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     asked = ["score", "mujoco", "--quick", "--json", "result.json"]

@@ -72,7 +72,7 @@ def asked_alone(job, source):
     return ask(job, source)
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_a_batch_gives_the_rows_of_single_runs_to_the_bit(workers, note):
     jobs = [
         *(job(number) for number in range(5)),
