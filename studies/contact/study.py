@@ -327,18 +327,31 @@ def error_words(line: pd.Series[Any], columns: Sequence[str] = ("max_error",)) -
     return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
 
 
+MATTERS = 1.1
+"""Errors over that of the tuned preset from which a setting is what they come from."""
+
+
 def finding(lines: pd.DataFrame) -> str:
     """Say which setting, left at its default, leaves the largest error in each engine."""
     left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
     worst = left.sort_values("max_error", ascending=False).drop_duplicates("engine").sort_index()
+    tuned = lines[(lines["preset"] == BEST) & (lines["factor"] == "")]
+    own = worst["engine"].map(tuned.set_index("engine")["max_error"])
+    matters = worst["max_error"] > MATTERS * own
     words = [
         f"{line['factor']} in {line['engine']} ({part(line['max_error'])})"
-        for _, line in worst.iterrows()
+        for _, line in worst[matters].iterrows()
     ]
-    return (
+    said = (
         "Of a tuned contact, the setting whose default alone leaves the largest error is "
-        f"{listed(words)}."
+        f"{listed(words)}"
     )
+    others = [
+        f"{engine} ({part(error)})"
+        for engine, error in zip(worst.loc[~matters, "engine"], own[~matters], strict=True)
+    ]
+    beside = f"; none errs by more than as tuned in {listed(others)}" if others else ""
+    return f"{said}{beside}."
 
 
 def changed(lines: pd.DataFrame, engine: str, preset: str) -> pd.DataFrame:

@@ -26,6 +26,7 @@ from studies.contact.study import (
     QUICK_ASPECTS,
     all_variants,
     cases,
+    finding,
     job_of,
     newton_e,
     plan,
@@ -238,6 +239,21 @@ def test_of_frames_is_asked_whoever_holds_one(engine):
     assert asked == {v.preset for v in all_variants([engine])}.intersection(built)
     factors = {v.factor for v in all_variants([engine]) if v.preset in asked}
     assert {job.labels["factor"] for job in jobs} == factors
+
+
+def test_what_errs_no_more_than_as_tuned_is_no_setting_that_matters():
+    lines = pd.DataFrame(
+        [
+            ("mujoco", BEST, "", "fixed", 0.01),
+            ("mujoco", BEST, "cone", BY_DEFAULT, 0.2),
+            ("mujoco", BEST, "friction", BY_DEFAULT, 0.01),
+            ("pymunk", BEST, "", "fixed", 0.3),
+            ("pymunk", BEST, "friction", BY_DEFAULT, 0.3),
+        ],
+        columns=["engine", "preset", "factor", "level", "max_error"],
+    )
+    told = finding(lines)
+    assert "is cone in mujoco (20 %); none errs by more than as tuned in pymunk (30 %)." in told
 
 
 def test_of_frames_whoever_holds_none_is_refused(capsys, tmp_path):
