@@ -4,7 +4,7 @@ A scene is data: bodies, where they begin, which faces touch (`engines.layouts`)
 moves (`engines.scene`). An adapter builds it, chooses the engine's settings, decides when it steps
 and how its contact holds. It never decides what the state becomes: places and velocities are set
 once, before the first step, and the impact is the engine's. What a preset does besides setting the
-engine is declared (`engines.declaration.Help`), and so is which scenes it can hold.
+engine is declared (`engines.disclosure.Help`), and so is which scenes it can hold.
 
 To add an engine, write one folder beside these and one line in ``engines.registry.OWN``,
 or declare it in a package of your own under the entry point group ``rocking.engines``::

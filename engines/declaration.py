@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.metadata import Distribution
-from typing import Any, NamedTuple
+from typing import Any
 
 from analytic.motion import FloatArray
+from engines.disclosure import Help, Miss, Source
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
@@ -21,26 +22,6 @@ Builder = Callable[[Any, Any, float], Any]
 
 IN_EQUAL_STEPS = (Ability.FREE_BASE, Ability.CYLINDER)
 """What is simulated in equal steps alone."""
-
-
-class Help(enum.Enum):
-    """What an adapter does for a preset, besides setting the engine once."""
-
-    STEPS = "steps that land on impacts, uplifts and the corners of the motion"
-    PHASES = "a contact that holds as firmly as each phase of the motion needs"
-    REFLECTION = "the pivot's velocity given back while the block turns about it"
-    MARGIN = "the pivot kept in contact over the gap by which it rises in a step"
-    PRELOAD = "the pivot pressed by its load from the start of a step"
-    POSITIONS = "positions moved by the adapter, from the engine's velocities"
-
-
-class Miss(enum.Enum):
-    """What an engine gets wrong as it comes, without a word."""
-
-    MIRROR = "shaken the other way, the block does not answer the other way"
-    PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
-    SLEEP = "a block that stood still for two seconds sleeps on while it is shaken"
-    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 
 class Stepping(enum.Enum):
@@ -56,14 +37,6 @@ class Precision(enum.Enum):
 
     DOUBLE = 2.0**-53
     SINGLE = 2.0**-24
-
-
-class Source(NamedTuple):
-    """Where documentation says what a preset sets: a page, a file or a header, and the version."""
-
-    setting: str
-    value: str
-    where: str
 
 
 AT_REST = "naive-base-at-rest"

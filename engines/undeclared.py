@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Help
 from engines.parts.settings import check, setting
 from engines.scene import Scene
 from engines.world import World

@@ -15,7 +15,8 @@ from engines.box2d.settings import (
 )
 from engines.box2d.stacks import Box2DStacks
 from engines.cart import CartWorld
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.declaration import Engine, Precision, Preset, Stepping
+from engines.disclosure import Help, Miss
 from engines.layouts import Ability
 
 NAIVE = Preset(

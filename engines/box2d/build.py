@@ -126,19 +126,7 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Box2D; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    settings : Box2DSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-
-    Raises
-    ------
-    ValueError
-        If a base that moves is moved in a way that is not in `FLOORS`.
-    """
+    """Return a scene as calls of Box2D; see `engines.parts.script`."""
     n, s = numbers(scene, settings, dt_s), values(scene, settings)
     lines = filled(build, n=n, s=s)
     step = f"world.Step({{}}, {s.iterations}, {s.position_iterations})"

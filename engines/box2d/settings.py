@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.declaration import Source
+from engines.disclosure import Source
 from engines.parts.factors import (
     AS_BEST,
     ASLEEP,

@@ -16,7 +16,8 @@ from engines.dart.settings import (
     DartSettings,
 )
 from engines.dart.stacks import DartStacks
-from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Help, Miss
 from engines.layouts import Ability
 
 NAIVE = Preset(

@@ -193,19 +193,7 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
-    """Return a scene as calls of DART; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    settings : DartSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-
-    Raises
-    ------
-    ValueError
-        If a base that moves is moved in a way that is not in `FLOORS`.
-    """
+    """Return a scene as calls of DART; see `engines.parts.script`."""
     n = numbers(scene, settings)
     lines = filled(build, n=n, s=values(settings))
     unit, theta = settings.unit, n.coordinates[2]

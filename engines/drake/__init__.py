@@ -3,10 +3,12 @@
 from functools import partial
 
 from engines.cart import CartWorld
-from engines.declaration import Engine, Miss, Preset, Stepping
-from engines.drake.build import DrakeWorld, script
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Miss
+from engines.drake.build import DrakeWorld
 from engines.drake.cart import DrakeCart
 from engines.drake.cylinder import DrakeCylinder
+from engines.drake.script import script
 from engines.drake.settings import (
     CONTROLLED,
     DOCUMENTED,

@@ -2,7 +2,8 @@
 
 from functools import partial
 
-from engines.declaration import BatchEngine, Precision, Preset, Source
+from engines.declaration import BatchEngine, Precision, Preset
+from engines.disclosure import Source
 from engines.layouts import Ability
 from engines.mjx.build import MjxWorlds
 from engines.mjx.settings import FACTORS, RULES, TUNED, MjxSettings

@@ -3,7 +3,8 @@
 from functools import partial
 
 from engines.cart import CartWorld
-from engines.declaration import Engine, Help, Miss, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Help, Miss
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.cart import MujocoCart

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.declaration import Source
+from engines.disclosure import Source
 from engines.parts.factors import (
     BOTH,
     DEFAULT,

@@ -85,14 +85,7 @@ class NewtonWorld:
 
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Newton; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, of one body, whose frame says whether the base moves
-    settings : NewtonSettings
-    dt_s : float, the step [s], which is recorded
-    """
+    """Return a scene as calls of Newton; see `engines.parts.script`."""
     n, at = numbers(scene, settings), scene.bodies[0].at
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     return Script(

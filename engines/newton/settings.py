@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from engines.declaration import Source
+from engines.disclosure import Source
 from engines.parts.factors import (
     AS_BEST,
     BEST,

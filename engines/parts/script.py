@@ -2,6 +2,10 @@
 
 What builds an engine's scene is a plain function of the library, the settings ``s`` and the numbers
 ``n`` of the scene. A run calls it; a script has its source, with the values filled in.
+
+An engine's own ``script(scene, settings, dt_s)`` returns the `Script` of a scene, whose frame says
+whether its base moves, with settings of the engine and ordinary steps dt_s [s], which the script
+calls `DT`. ValueError, where a base would be moved in a way that no line stands for.
 """
 
 import ast

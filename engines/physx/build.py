@@ -195,14 +195,7 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
-    """Return a scene as calls of SAPIEN; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    settings : PhysxSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-    """
+    """Return a scene as calls of SAPIEN; see `engines.parts.script`."""
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, unit = filled(build, n=n, s=s), settings.unit_of(scene)
     times, weight = "" if unit == 1.0 else f" * {unit!r}", scene.system.gravity

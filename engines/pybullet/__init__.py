@@ -3,7 +3,8 @@
 from functools import partial
 
 from engines.cart import CartWorld
-from engines.declaration import Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Help
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.cart import BulletCart

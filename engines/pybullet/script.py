@@ -34,14 +34,7 @@ PLACE, SPEED = map(Constant, ("base_x", "base_velocity"))
 
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
-    """Return a scene as calls of PyBullet; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    s : BulletSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-    """
+    """Return a scene as calls of PyBullet; see `engines.parts.script`."""
     ground, moves, holds = base_place(scene, s), scene.frame == "world", constrained(scene, s)
     hold = hold_call(scene, s, BASE)
     move = move_call(s, BASE, (HELD_BY, most_force(scene)), [PLACE, *ground[1:]], SPEED)

@@ -137,19 +137,7 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
-    """Return a scene as calls of pymunk; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    settings : PymunkSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-
-    Raises
-    ------
-    ValueError
-        If a base that moves is moved in a way that is not in `FLOORS`.
-    """
+    """Return a scene as calls of pymunk; see `engines.parts.script`."""
     s, moves = values(scene, settings, dt_s), scene.frame == "world"
     lines, unit = filled(build, n=numbers(scene, settings.unit), s=s), settings.unit
     held, times = defined(hold, s=s) if s.margin else (), "" if unit == 1.0 else f" * {unit!r}"

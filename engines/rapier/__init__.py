@@ -3,7 +3,8 @@
 from functools import partial
 
 from engines.cart import CartWorld
-from engines.declaration import Engine, Help, Miss, Precision, Preset, Stepping
+from engines.declaration import Engine, Precision, Preset, Stepping
+from engines.disclosure import Help, Miss
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.cart import RapierCart

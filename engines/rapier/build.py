@@ -170,19 +170,7 @@ FLOORS = {
 
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Rapier; see `engines.parts.script`.
-
-    Parameters
-    ----------
-    scene : Scene, whose frame says whether the base moves
-    settings : RapierSettings
-    dt_s : float, ordinary step [s], which a script calls `DT`
-
-    Raises
-    ------
-    ValueError
-        If a base that moves is moved in a way that is not in `FLOORS`.
-    """
+    """Return a scene as calls of Rapier; see `engines.parts.script`."""
     n, s = numbers(scene, settings), values(scene, settings, dt_s)
     lines, times = filled(build, n=n, s=s), "" if n.unit == 1.0 else f" * {n.unit!r}"
     led = f"base_x{times}" if settings.floor == "both" else "base.translation.x"

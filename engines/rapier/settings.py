@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from engines.declaration import Source
+from engines.disclosure import Source
 from engines.parts.factors import (
     ASLEEP,
     BEST,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 
-from engines.declaration import Source
+from engines.disclosure import Source
 from engines.mujoco.port import refuse_step_by_step
 from engines.mujoco.settings import TUNED as MUJOCO_TUNED
 from engines.mujoco.settings import MujocoSettings

@@ -29,7 +29,7 @@ from studies.kit.arguments import (
 from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
-from studies.kit.posing import Height, Width, posed_block
+from studies.kit.standing import Height, Width, posed_block
 from studies.measures.published import published_in, too_slippery
 from studies.measures.words import listed
 

@@ -21,18 +21,10 @@ from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_COMPUTING, NOT_YOURS, Computing, Yours
-from studies.kit.posing import (
-    DEFAULT_EXCITATION,
-    ONE_BLOCK,
-    Excitation,
-    Height,
-    Posed,
-    Standing,
-    Width,
-    refuse_endless,
-)
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.provenance import check
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.standing import ONE_BLOCK, Height, Standing, Width
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from analytic.accelerograms.text import lines_of, number, shown
 from analytic.block import RigidBlock
 from studies.cases.refusal import BadInputError
-from studies.kit.posing import MOST_M
+from studies.kit.standing import MOST_M
 
 COLUMNS = ("name", "width", "height", "friction", "tilt")
 NEEDED = COLUMNS[:3]

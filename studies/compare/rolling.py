@@ -8,7 +8,8 @@ from typing import Any
 
 from analytic.cylinder import RollingCylinder
 from analytic.motion import Still
-from studies.compare.rendering import objects_as_lines, right_aligned
+from studies.compare.records import objects_as_lines
+from studies.compare.rendering import right_aligned
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job
 from studies.kit.journal import Row

@@ -20,7 +20,8 @@ from analytic.slide import SlidingBlock
 from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
-from studies.compare.rendering import draw, json_lines, records, slip_error, table_text
+from studies.compare.records import json_lines, records
+from studies.compare.rendering import draw, slip_error, table_text
 from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
     BadInputError,
@@ -43,19 +44,9 @@ from studies.kit.options import (
     refuse_two_steps,
     slides,
 )
-from studies.kit.posing import (
-    DEFAULT_EXCITATION,
-    ONE_BLOCK,
-    WHERE_IT_ROCKS,
-    Excitation,
-    Height,
-    Posed,
-    Standing,
-    Width,
-    both_sizes,
-    refuse_endless,
-)
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width, both_sizes
 from studies.kit.unusual import note_unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates

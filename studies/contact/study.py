@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -22,16 +22,13 @@ from engines.parts.factors import (
     BEST,
     BY_DEFAULT,
     DEFAULT,
-    LEFT_OUT,
-    OWN_STEP,
     OWN_STEPS,
-    Rule,
 )
 from engines.scene import Scene
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.cases.variants import STILL, Variant, preset_values, variants
+from studies.cases.variants import Variant, preset_values, variants
 from studies.contact import STUDY
 from studies.drawing.kept import tell
 from studies.kit.arguments import BadInputError, Out, one_of
@@ -61,7 +58,7 @@ STRONG = 0.1
 SEED, FRAMES = 1, 4
 """Of the random frames, and how many of them are asked about."""
 
-Posed: TypeAlias = "Case | RandomCase"
+AnyCase: TypeAlias = "Case | RandomCase"
 """A case of the paper, or a random frame."""
 
 
@@ -145,14 +142,14 @@ def frame_cases(quick: bool) -> tuple[tuple[str, RandomCase], ...]:
     return tuple(("typical", case) for case in islice(calm, FRAMES // 2 if quick else FRAMES))
 
 
-def holds(variant: Variant, case: Posed) -> bool:
+def holds(variant: Variant, case: AnyCase) -> bool:
     """Say whether a variant's preset is built for a case: some are for one block alone."""
     asked = resolve(variant.source)
     scene = Scene(system=case.block, motion=case.motion, preset=asked.preset)
     return not asked.declared.lacks(scene, asked.used)
 
 
-def job_of(variant: Variant, kind: str, case: Posed, quick: bool, own_step: bool = False) -> Job:
+def job_of(variant: Variant, kind: str, case: AnyCase, quick: bool, own_step: bool = False) -> Job:
     """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
@@ -313,20 +310,6 @@ def recommendation(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
     return table.iloc[(-matter).argsort(kind="stable")].reset_index()
 
 
-def name_of(line: pd.Series[Any]) -> str:
-    """Return a variant's name."""
-    return f"{line['factor']}: {line['level']}" if line["factor"] else str(line["level"])
-
-
-def error_words(line: pd.Series[Any], columns: Sequence[str] = ("max_error",)) -> str:
-    """Return the largest or other errors, and how many of all cases are wrong, in few words."""
-    if line["failed"] == line["cases"]:
-        return "no result"
-    errors = ", ".join(part(line[name]) for name in columns)
-    broken = int(line["failed"]) + int(line["wrong"])
-    return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
-
-
 MATTERS = 1.1
 """Errors over that of the tuned preset from which a setting is what they come from."""
 
@@ -352,89 +335,3 @@ def finding(lines: pd.DataFrame) -> str:
     ]
     beside = f"; none errs by more than as tuned in {listed(others)}" if others else ""
     return f"{said}{beside}."
-
-
-def changed(lines: pd.DataFrame, engine: str, preset: str) -> pd.DataFrame:
-    """Return the variants of an engine that change one setting of a preset.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of variants.csv; the lines of these variants are returned.
-    engine, preset : str
-    """
-    mine = (lines["engine"] == engine) & (lines["preset"] == preset)
-    return lines[mine & (lines["factor"] != "")]
-
-
-def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
-    """Return the largest error of an engine's best preset without each of what it is helped by.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of variants.csv.
-    engine : str
-
-    Returns
-    -------
-    dict
-        Name of a `Help` -> the error and what fails, in words; "" -> the preset as it is;
-        "STEPS" -> that with equal steps.
-    """
-    best = ENGINES[engine].best.name
-    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
-    asked = mine[mine["factor"].isin(["", LEFT_OUT])]
-    found = {line["level"] if line["factor"] else "": line for _, line in asked.iterrows()}
-    words = {name.upper(): error_words(line) for name, line in found.items()}
-    equal = variant_of(lines, engine, BEST)
-    return words | ({} if equal is None else {"STEPS": error_words(equal)})
-
-
-def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
-    """Return an engine's rules, each with the errors without it and with it.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of variants.csv.
-    engine : str
-
-    Returns
-    -------
-    list of (Rule, str, str)
-        Median and largest error of the peak, in words; rules of which a variant was not run are
-        left out.
-    """
-    found = []
-    for rule in ENGINES[engine].rules:
-        plain = variant_of(lines, engine, rule.preset)
-        other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
-        if plain is not None and other is not None:
-            pair = (plain, other) if rule.kept else (other, plain)
-            without, with_it = (error_words(one, ("median_error", "max_error")) for one in pair)
-            found.append((rule, without, with_it))
-    return found
-
-
-def frames(lines: pd.DataFrame) -> list[tuple[str, str, str]]:
-    """Return of each engine what its defaults err by in either frame, at the library's own step."""
-    found = []
-    for engine in lines["engine"].unique():
-        still, moved = (
-            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (STILL, OWN_STEP)
-        )
-        if still is not None and moved is not None:
-            found.append((str(engine), error_words(still), error_words(moved)))
-    return found
-
-
-def variant_of(
-    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
-) -> pd.Series[Any] | None:
-    """Return the line of a preset, or of a variant of it; None where there is none."""
-    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
-    wanted &= lines["factor"] == factor
-    if level:
-        wanted &= lines["level"] == level
-    return lines[wanted].iloc[0] if wanted.any() else None

@@ -24,17 +24,10 @@ from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.options import NOT_YOURS, Yours, refuse_two_steps
-from studies.kit.posing import (
-    DEFAULT_EXCITATION,
-    ONE_BLOCK,
-    Excitation,
-    Height,
-    Standing,
-    Width,
-    refuse_endless,
-)
+from studies.kit.posing import DEFAULT_EXCITATION, Excitation, refuse_endless
 from studies.kit.provenance import project_version, version_of
 from studies.kit.runner import exit_code, run_jobs
+from studies.kit.standing import ONE_BLOCK, Height, Standing, Width
 from studies.measures.again import built_by_script
 from studies.measures.words import listed
 

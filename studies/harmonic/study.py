@@ -30,7 +30,7 @@ from studies.kit.journal import Row
 from studies.kit.naming import CORE, EngineSources
 from studies.kit.options import DEFAULT_RUNNING, Running, refuse_days, refuse_excess
 from studies.kit.plan import Plan, Tables, by_label, carry_out
-from studies.kit.posing import Height, Width, posed_block
+from studies.kit.standing import Height, Width, posed_block
 from studies.kit.tables import table_in
 from studies.measures.orbits import LAST_PERIODS, SAMPLES, orbit_of, sample_times
 from studies.measures.words import out_of

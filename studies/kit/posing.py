@@ -1,30 +1,24 @@
-"""From the options of a command line to what stands on the base, how that moves, and the start."""
+"""From the options of a command line to how the base moves, and the start on it."""
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
-from analytic.block import GRAVITY, RigidBlock
-from analytic.cart import CartBlock
-from analytic.cylinder import RollingCylinder
-from analytic.frame import RockingFrame
+from analytic.block import GRAVITY
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
-from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.accelerograms import Baseline, Units, corrected, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import (
     BadInputError,
-    Count,
     Finite,
     HalfCycles,
-    NotNegative,
     Place,
     Positive,
     as_bad_input,
@@ -35,9 +29,6 @@ from studies.kit.arguments import (
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
 OF_A_RECORD = ("units", "scale", "pga", "baseline")
 
-MOST_M = 200.0
-"""Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""
-
 MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
 solver minutes and an engine hours."""
@@ -45,14 +36,7 @@ solver minutes and an engine hours."""
 MOST_DEGREES = 90.0
 """Tilt beyond which it was not meant in degrees either."""
 
-LEAST_COLUMNS = 2
-"""Of a frame."""
-
-Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
-Height = Annotated[Positive, Parameter(help="Full height H of these, or of a cylinder [m].")]
-
 Pulse = Literal["half-sine", "full-sine"]
-SceneName = Literal["block", "frame", "slide", "cart", "cylinder"]
 
 
 class Posed(NamedTuple):
@@ -244,170 +228,3 @@ def refuse_endless(
                 f"--{name} is {given:g}; it must be at least {least:.4g} for a run of "
                 f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
             )
-
-
-def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
-    """Return --width and --height, where a scene cannot do without them.
-
-    Parameters
-    ----------
-    width, height : float or None
-        Full sizes [m]; None where the option was not given.
-
-    Raises
-    ------
-    BadInputError
-        That names what is missing.
-    """
-    if width is None or height is None:
-        missing = " and ".join(
-            f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
-        )
-        raise BadInputError(f"{missing} missing; a block requires its full width and height [m]")
-    return width, height
-
-
-def posed_block(width: float, height: float) -> RigidBlock:
-    """Return the block of --width and --height.
-
-    Parameters
-    ----------
-    width, height : float
-        Full sizes [m], positive and at most MOST_M.
-
-    Raises
-    ------
-    BadInputError
-        If one is not allowed; one that was meant in millimetres is asked about.
-    """
-    for name, size in (("width", width), ("height", height)):
-        if size > MOST_M:
-            meant = f"{size:g} m? In metres: --{name} {1e-3 * size:g} for {size:g} mm"
-            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g} m; {meant}")
-    with as_bad_input():
-        return RigidBlock(width=width, height=height)
-
-
-@Parameter(name="*")
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Standing:
-    """What stands on the base.
-
-    Attributes
-    ----------
-    scene
-        block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H. cart: one block
-        on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
-        cylinder: one that rolls on its rim, of --radius, --height and --tilt, the latter in rad.
-    columns
-        Of a frame, 2 or more.
-    load
-        Of a frame: the mass of its beam over that of all columns.
-    mass_ratio
-        Of a cart: the block's mass over that of block and cart, between 0 and 1.
-    stiffness
-        Of a cart: that of its spring over the mass of both [1/s²]; 0 by default, a free cart.
-    radius
-        Of a cylinder [m].
-    """
-
-    scene: Annotated[SceneName, one_of(SceneName)] = "block"
-    columns: Count | None = None
-    load: Positive | None = None
-    mass_ratio: Positive | None = None
-    stiffness: NotNegative | None = None
-    radius: Positive | None = None
-
-    def cylinder(self, height: float | None, excitation: Excitation) -> RollingCylinder:
-        """Return the cylinder of this height [m], at the tilt of an excitation without a motion.
-
-        Raises
-        ------
-        BadInputError
-            If an option is missing, or is one of another scene, or has a value that is not allowed.
-        """
-        refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
-        replace(excitation, tilt=None, degrees=False).refuse("only where no cylinder rolls")
-        given = {"radius": self.radius, "height": height, "tilt": excitation.tilt}
-        if missing := [f"--{name}" for name, value in given.items() if value is None]:
-            words = "a cylinder that rolls requires its radius, height and tilt"
-            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
-        tilt = float(excitation.tilt or 0.0)
-        with as_bad_input():
-            return RollingCylinder(
-                radius=float(self.radius or 0.0),
-                height=float(height or 0.0),
-                tilt=math.radians(tilt) if excitation.degrees else tilt,
-            )
-
-    def system(self, width: float, height: float, friction: float | None) -> System:
-        """Return the system that the options mean.
-
-        Parameters
-        ----------
-        width, height : float
-            Full sizes of the block or of each column [m].
-        friction : float or None
-            Coefficient between base and a block that slides; other systems have none.
-
-        Raises
-        ------
-        BadInputError
-            If an option is missing, contradicts the scene, or has a value that is not allowed.
-        """
-        refuse_given({"radius": self.radius}, "only with --scene cylinder")
-        if self.scene != "frame":
-            refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
-        if self.scene != "cart":
-            given = {"mass-ratio": self.mass_ratio, "stiffness": self.stiffness}
-            refuse_given(given, "only with --scene cart")
-        block = posed_block(width, height)
-        with as_bad_input():
-            if self.scene == "frame":
-                if self.load is None:
-                    words = "a frame requires the mass of its beam, over that of all columns"
-                    raise BadInputError(f"--load missing; {words}")
-                columns = LEAST_COLUMNS if self.columns is None else self.columns
-                return RockingFrame(width=width, height=height, columns=columns, load=self.load)
-            if self.scene == "slide":
-                if friction is None:
-                    words = "a block that slides requires one below B/H"
-                    raise BadInputError(f"--friction missing; {words}")
-                return SlidingBlock(width=width, height=height, friction=friction)
-            if self.scene == "cart":
-                if self.mass_ratio is None:
-                    words = "a cart requires the block's mass over that of both"
-                    raise BadInputError(f"--mass-ratio missing; {words}")
-                cart = {"mass_ratio": self.mass_ratio, "stiffness": self.stiffness or 0.0}
-                return CartBlock(width=width, height=height, **cart)
-            return block
-
-    def refuse(self, allowed: str) -> None:
-        """Raise BadInputError if an option was given a value, which is allowed otherwise."""
-        scene = None if self.scene == ONE_BLOCK.scene else self.scene
-        refuse_given({"scene": scene, "columns": self.columns, "load": self.load}, allowed)
-
-    @property
-    def rocks(self) -> bool:
-        """Whether it is told by a rotation, and may begin with one."""
-        return self.scene != "slide"
-
-    def pose(self, system: System, excitation: Excitation) -> Posed:
-        """Return the motion and the start that options mean for the system.
-
-        Raises
-        ------
-        BadInputError
-            As of `Excitation.pose`, or if something is tilted that does not rock.
-        """
-        if not self.rocks:
-            refuse_given({"tilt": excitation.tilt, "rate": excitation.rate}, WHERE_IT_ROCKS)
-        return excitation.pose(system)
-
-
-WHERE_IT_ROCKS = "only where something rocks"
-"""Of options of a rotation."""
-
-ONE_BLOCK = Standing()
-"""One block."""

@@ -10,12 +10,13 @@ from typing import Any, cast
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Help, Preset, Stepping
+from engines.declaration import AT_REST, RECOMMENDED, Preset, Stepping
+from engines.disclosure import Help
 from engines.parts.factors import AS_BEST, BEST, DEFAULT
 from engines.registry import OWN
 from engines.troubles import TROUBLES
 from studies import contact
-from studies.contact.study import changed, frames, name_of, prices, rules
+from studies.contact.told import changed, frames, name_of, prices, rules
 from studies.measures.presets import preset_of, told
 from studies.measures.published import needed
 from studies.measures.words import capital, listed, part, right_of

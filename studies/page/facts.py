@@ -33,6 +33,7 @@ from studies.measures.words import (
     per_cent,
 )
 from studies.measures.wrongness import KINDS, WORDS
+from studies.precision import COST
 from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
 from studies.sources.registry import grouped
 from studies.sweep.study import linearized, preset_table, whole
@@ -246,7 +247,7 @@ def starts(published: Path) -> str:
 
     Over R, the time in which Python loads numba and pandas, so that it holds on any machine.
     """
-    lines = table_in(published / "cost", "starts")
+    lines = table_in(published / COST.name, "starts")
     if lines.empty:
         return ""
     heads = ("", "the first time", "later", "over R: first", "later")

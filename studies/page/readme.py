@@ -17,6 +17,7 @@ from studies.measures.published import dictionary
 from studies.measures.words import capital, meant
 from studies.page import engine_facts, facts, hero, scene_facts
 from studies.page.engine_facts import objections, slippery
+from studies.precision import COST
 from studies.scenes import STUDY as SCENES_STUDY
 from studies.sweep.study import verdict
 
@@ -41,6 +42,7 @@ def command(*, root: Path = Path()) -> int:
         raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
     for study, chapter in CHAPTERS:
         check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
+    check(root / PUBLISHED / COST.name, COST.tables, "a published folder")  # of no chapter
     folder.mkdir(exist_ok=True)
     hero.measure(folder / "hero.csv")
     made_with = {**provenance.subject("readme"), **provenance.versions()}

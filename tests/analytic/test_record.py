@@ -12,7 +12,8 @@ from independent import history_under_samples
 
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED, Miss
+from engines.declaration import UNTUNED
+from engines.disclosure import Miss
 from studies import respond
 from studies.kit.jobs import Job
 from studies.sources.registry import SOURCES

@@ -12,7 +12,8 @@ from uses import BLOCK, HERE, USES, pulse, rocked
 from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
-from engines.declaration import UNTUNED, Miss, Stepping
+from engines.declaration import UNTUNED, Stepping
+from engines.disclosure import Miss
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset

@@ -8,7 +8,8 @@ from given import BLOCK, pulse
 
 from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import UNTUNED, Miss, Stepping
+from engines.declaration import UNTUNED, Stepping
+from engines.disclosure import Miss
 from engines.run.drive import run
 from engines.world import ROUNDINGS
 from studies.cases.paper import sweep_cases

@@ -36,7 +36,8 @@ LIBRARIES = "pybullet mujoco pymunk Box2D dartpy rapier3d pydrake warp jax sapie
 EACH = (*SCIENCE.split(), *LIBRARIES.split())
 """What no answer at once may load."""
 
-ONE = "compare --width 0.5 --height 1.5 --amplitude 0.4 --omega 6.2832 --json --sources"
+CASE = "--width 0.5 --height 1.5 --amplitude 0.4 --omega 6.2832"
+ONE, EXPORT = f"compare {CASE} --json --sources", f"export {CASE} --engine mujoco --out scene"
 
 
 ANSWERING = (
@@ -62,12 +63,15 @@ def told_by(*commands):
     [
         [*ONE.split(), "exact", "housner", "modified"],
         [*ONE.split(), "exact", "mujoco:fixed"],
+        EXPORT.split(),
     ],
-    ids=["models", "engine"],
+    ids=["models", "engine", "export"],
 )
-def test_an_answer_at_once_loads_nothing_that_it_does_not_need(arguments):
+def test_an_answer_at_once_loads_nothing_that_it_does_not_need(arguments, tmp_path, monkeypatch):
     """An engine's library is loaded in a process of the engine's own."""
-    assert not told_by(arguments)["compare"] & set(EACH)
+    monkeypatch.chdir(tmp_path)
+    assert not told_by(arguments)[arguments[0]] & set(EACH)
+    assert arguments[0] == "compare" or (tmp_path / "scene" / "block.py").is_file()
 
 
 def test_no_help_loads_a_table_a_plot_or_an_engine():

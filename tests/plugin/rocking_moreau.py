@@ -10,7 +10,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engines.declaration import Engine, Help, Preset, Source, Stepping
+from engines.declaration import Engine, Preset, Stepping
+from engines.disclosure import Help, Source
 from engines.parts.factors import factor, level
 from engines.parts.settings import check, setting
 from engines.scene import Scene

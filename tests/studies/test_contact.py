@@ -30,15 +30,14 @@ from studies.contact.study import (
     job_of,
     newton_e,
     plan,
-    prices,
     recommendation,
     reduce,
     reduce_frame,
     report,
-    rules,
     unchanged,
     variant_table,
 )
+from studies.contact.told import prices, rules
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
 

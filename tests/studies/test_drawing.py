@@ -131,12 +131,14 @@ def test_names_that_are_too_near_are_moved_apart_alike():
 
 
 def test_names_keep_clear_of_each_other_of_lines_and_of_words():
-    axes = Figure(figsize=(4.0, 3.0)).subplots()
+    axes, beside, hidden = Figure(figsize=(12.0, 3.0)).subplots(1, 3)
+    hidden.set_visible(False)
     axes.plot([0.0, 1.0], [0.0, 1.0])
     words = axes.text(0.5, 0.6, "words")
     places = [(0.4, 0.4), (0.45, 0.4), (0.4, 0.45), (0.5, 0.5)]
     around(axes, [])
     around(axes, [Name(f"name {i}", *place, "k") for i, place in enumerate(places)])
+    assert (beside.get_visible(), hidden.get_visible()) == (True, False)
     boxes = [text.get_window_extent() for text in axes.texts if text is not words]
     assert len(boxes) == len(places)
     line = axes.transData.transform(np.column_stack([np.linspace(0.0, 1.0, 200)] * 2))

@@ -10,7 +10,8 @@ from given import BLOCK, FULL_SINE
 
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED, Miss
+from engines.declaration import UNTUNED
+from engines.disclosure import Miss
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.histories import study as histories
