@@ -9,7 +9,7 @@ from importlib.metadata import Distribution
 from typing import Any
 
 from analytic.motion import FloatArray
-from engines.disclosure import Help, Miss, Source
+from engines.disclosure import Citation, Help, Miss
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
@@ -75,7 +75,7 @@ class Preset:
         p dt of equal steps, unless they are the library's own.
     step_s : float
         The library's own step [s].
-    documented : tuple of Source
+    documented : tuple of Citation
         Of "naive" and "recommended": what its documentation sets, and where it says so.
     frame : str
         One of `FRAMES`, where a scene does not say.
@@ -103,7 +103,7 @@ class Preset:
     stepping: Stepping = Stepping.FIXED
     step: float = math.nan
     step_s: float = math.nan
-    documented: tuple[Source, ...] = ()
+    documented: tuple[Citation, ...] = ()
     frame: str = "base"
     contact_s: float = math.nan
     dial: tuple[str, tuple[float, ...]] | None = None
@@ -136,7 +136,7 @@ class Preset:
 
     def recommended(
         self,
-        *documented: Source,
+        *documented: Citation,
         misses: tuple[Miss, ...] = (),
         step_s: float | None = None,
         **settings: Any,

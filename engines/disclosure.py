@@ -24,7 +24,7 @@ class Miss(enum.Enum):
     RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 
-class Source(NamedTuple):
+class Citation(NamedTuple):
     """Where documentation says what a preset sets: a page, a file or a header, and the version."""
 
     setting: str

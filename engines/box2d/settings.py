@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     AS_BEST,
     ASLEEP,
@@ -108,30 +108,30 @@ TUNED = Box2DSettings(
 LANDING = replace(TUNED, reflection=True)
 
 DOCUMENTED = (
-    Source("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
-    Source("sleeping", "on, the default", "b2BodyDef.allowSleep"),
-    Source(
+    Citation("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
+    Citation("sleeping", "on, the default", "b2BodyDef.allowSleep"),
+    Citation(
         "friction",
         "0.2, of a pair the root of the product; here 1",
         "b2FixtureDef.friction, b2Contact.h",
     ),
-    Source(
+    Citation(
         "skin", "0.01 of a polygon, of which 0.005 is left alone", "b2_polygonRadius, b2_linearSlop"
     ),
-    Source("warm starting", "on, the default", "b2World.warmStarting"),
-    Source(
+    Citation("warm starting", "on, the default", "b2World.warmStarting"),
+    Citation(
         "without effect",
         "continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no damping; "
         "speeds up to b2_maxTranslation 2 a step",
         "b2World, b2BodyDef, b2Settings.h",
     ),
-    Source("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
+    Citation("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
 )
 """What its documentation sets, in pybox2d 2.3.10."""
 
 RECOMMENDED = (
-    Source("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
-    Source("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
+    Citation("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
+    Citation("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
 )
 """What it recommends for accurate contact."""
 

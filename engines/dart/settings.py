@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     BEST,
     BOTH,
@@ -125,27 +125,29 @@ UNFINISHED = "an iteration that may end before friction holds: a pivot slides in
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 
 DOCUMENTED = (
-    Source("step", "0.001 s, the default", "World.getTimeStep"),
-    Source("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
-    Source(
+    Citation("step", "0.001 s, the default", "World.getTimeStep"),
+    Citation("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
+    Citation(
         "solver",
         "where it fails PGS, 30 iterations, from the last step's impulses",
         "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
     ),
-    Source("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
-    Source(
+    Citation("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
+    Citation(
         "contact",
         "of a depth 0.01 a step is corrected, by at most 0.001 a second",
         "ContactConstraint.cpp; split impulse is off",
     ),
-    Source("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
-    Source(
+    Citation("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
+    Citation(
         "sleeping",
         "after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake",
         "DeactivationOptions.hpp, dart pull request 2920",
     ),
-    Source("friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"),
-    Source(
+    Citation(
+        "friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"
+    ),
+    Citation(
         "floor",
         "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
         "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
@@ -154,8 +156,8 @@ DOCUMENTED = (
 """What its documentation sets, in dartpy 6.20.0."""
 
 RECOMMENDED = (
-    Source("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
-    Source("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
+    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
+    Citation("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
 )
 """What it recommends: no page of it is on stiff contact."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     BEST,
     BOTH,
@@ -96,42 +96,42 @@ class DrakeSettings:
 
 
 DOCUMENTED = (
-    Source("step", "time_step = 0.001", "MultibodyPlantConfig, drake 1.51.1"),
-    Source(
+    Citation("step", "time_step = 0.001", "MultibodyPlantConfig, drake 1.51.1"),
+    Citation(
         "solver",
         "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001",
         "MultibodyPlantConfig, drake 1.51.1",
     ),
-    Source(
+    Citation(
         "contact",
         "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
         "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
         "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
     ),
-    Source(
+    Citation(
         "shapes",
         "the table is a <box> with no properties of contact",
         "tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1",
     ),
-    Source(
+    Citation(
         "friction",
         "dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used",
         "DefaultProximityProperties, drake 1.51.1",
     ),
-    Source(
+    Citation(
         "without effect",
         "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
         "contact_surface_representation = 'polygon'",
         "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
     ),
-    Source(
+    Citation(
         "floor",
         "'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains, "
         "get_desired_state_input_port",
         "RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD controlled actuators', "
         "drake 1.51.1",
     ),
-    Source(
+    Citation(
         "gains",
         "{1e4, 1} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8 times "
         "those are used, and a floor of the block's mass",
@@ -141,9 +141,9 @@ DOCUMENTED = (
 """What the preset "naive" is documented by."""
 
 RECOMMENDED = (
-    Source("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
-    Source("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
-    Source("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
+    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
+    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
+    Citation("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
 )
 """What it recommends for rigid contact; the stiffness is for 375 kg, and follows the mass."""
 

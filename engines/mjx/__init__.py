@@ -3,7 +3,7 @@
 from functools import partial
 
 from engines.declaration import BatchEngine, Precision, Preset
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.layouts import Ability
 from engines.mjx.build import MjxWorlds
 from engines.mjx.settings import FACTORS, RULES, TUNED, MjxSettings
@@ -13,7 +13,7 @@ NAIVE = Preset(
     name="naive",
     settings=MjxSettings(),
     step_s=0.002,
-    documented=(Source("step", "timestep 0.002", "XMLreference.rst of MuJoCo 4.0.0, option"),),
+    documented=(Citation("step", "timestep 0.002", "XMLreference.rst of MuJoCo 4.0.0, option"),),
     frame="world",
     contact_s=0.02,
 )

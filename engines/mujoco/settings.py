@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     BOTH,
     DEFAULT,
@@ -167,36 +167,40 @@ ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness
 REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
 
 DOCUMENTED = (
-    Source("step", "timestep 0.002", f"{REFERENCE}, option"),
-    Source("integrator", "Euler", f"{REFERENCE}, option"),
-    Source("solver", "Newton, iterations 100, tolerance 1e-8", f"{REFERENCE}, option"),
-    Source("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
-    Source("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
-    Source("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
-    Source("friction", "1 0.005 0.0001, as here, of a pair the larger", f"{REFERENCE}, body/geom"),
-    Source("friction", "condim 3: sliding alone, neither spin nor roll", f"{REFERENCE}, body/geom"),
-    Source("margin", "0", f"{REFERENCE}, body/geom"),
-    Source(
+    Citation("step", "timestep 0.002", f"{REFERENCE}, option"),
+    Citation("integrator", "Euler", f"{REFERENCE}, option"),
+    Citation("solver", "Newton, iterations 100, tolerance 1e-8", f"{REFERENCE}, option"),
+    Citation("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
+    Citation("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
+    Citation("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
+    Citation(
+        "friction", "1 0.005 0.0001, as here, of a pair the larger", f"{REFERENCE}, body/geom"
+    ),
+    Citation(
+        "friction", "condim 3: sliding alone, neither spin nor roll", f"{REFERENCE}, body/geom"
+    ),
+    Citation("margin", "0", f"{REFERENCE}, body/geom"),
+    Citation(
         "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
     ),
-    Source("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
-    Source(
+    Citation("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
+    Citation(
         "without effect",
         "refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm start's "
         "is below 1e-3",
         f"{REFERENCE}, option, option/flag",
     ),
-    Source(
+    Citation(
         "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"
     ),
 )
 """What the library's documentation says of all that its defaults decide."""
 
 RECOMMENDED = (
-    Source("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
-    Source("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
-    Source("contact", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"),
-    Source("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
+    Citation("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
+    Citation("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
+    Citation("contact", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"),
+    Citation("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
 )
 """What it recommends for rigid contact in place of its defaults, which it does not."""
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     AS_BEST,
     BEST,
@@ -93,35 +93,35 @@ DOMINOES = "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0"
 BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
 
 DOCUMENTED = (
-    Source("step", "fps = 100, sim_substeps = 10", BELT),
-    Source("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
-    Source("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
-    Source(
+    Citation("step", "fps = 100, sim_substeps = 10", BELT),
+    Citation("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
+    Citation("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
+    Citation(
         "contact",
         "rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False",
         "SolverXPBD, newton 1.8.0",
     ),
-    Source("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
-    Source(
+    Citation("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
+    Citation(
         "friction",
         "mu: float = 1.0, of a pair the mean",
         "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
     ),
-    Source("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
-    Source(
+    Citation("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
+    Citation(
         "floor",
         "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
         "eval_fk(..., body_flag_filter=BodyFlags.KINEMATIC)",
         BELT,
     ),
-    Source("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
+    Citation("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
 )
 """What the preset "naive" is documented by: the example in which a floor moves."""
 
 RECOMMENDED = (
-    Source("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
-    Source("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
-    Source("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
+    Citation("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
+    Citation("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
+    Citation("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
 )
 """What it recommends for less penetration: a smaller step, then more iterations."""
 

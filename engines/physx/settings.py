@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     BEST,
     BOTH,
@@ -120,36 +120,38 @@ SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
 
 DOCUMENTED = (
-    Source("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
-    Source("iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"),
-    Source(
+    Citation("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
+    Citation(
+        "iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"
+    ),
+    Citation(
         "solver",
         "enable_tgs = True, the default",
         f"{SHAPES}: set_scene_config",
     ),
-    Source("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
-    Source("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
-    Source("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
-    Source("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
-    Source("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
-    Source("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
-    Source("restitution", "0.1, the default", "physx.get_default_material()"),
-    Source("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
-    Source(
+    Citation("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
+    Citation("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
+    Citation("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
+    Citation("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
+    Citation("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
+    Citation("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
+    Citation("restitution", "0.1, the default", "physx.get_default_material()"),
+    Citation("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
+    Citation(
         "without effect",
         "enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100, "
         "max_depenetration_velocity 1e32",
         f"{SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent",
     ),
-    Source("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
+    Citation("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
 )
 """What its documentation sets."""
 
 RECOMMENDED = (
-    Source("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
-    Source("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
-    Source("solver", "TGS, the first candidate", TUNING),
-    Source("bounce_threshold", "0.2 m/s", TUNING),
+    Citation("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
+    Citation("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
+    Citation("solver", "TGS, the first candidate", TUNING),
+    Citation("bounce_threshold", "0.2 m/s", TUNING),
 )
 """What those who maintain PhysX recommend for contact."""
 

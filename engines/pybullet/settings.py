@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     AS_BEST,
     BEST,
@@ -172,25 +172,25 @@ SERVER = "PhysicsServerCommandProcessor.cpp"
 EXAMPLE = "pybullet_examples/constraint.py, pybullet_data/cube_small.urdf"
 
 DOCUMENTED = (
-    Source("step", "240 Hz: best to leave it to the default", f"{GUIDE}, setTimeStep"),
-    Source("iterations", "numSolverIterations 50", f"getPhysicsEngineParameters {READ}"),
-    Source("residual", "solverResidualThreshold 1e-7", f"{GUIDE}, setPhysicsEngineParameter"),
-    Source("kept gap", "contactBreakingThreshold 0.02", f"{GUIDE}, setPhysicsEngineParameter"),
-    Source("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
-    Source("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
-    Source("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
-    Source(
+    Citation("step", "240 Hz: best to leave it to the default", f"{GUIDE}, setTimeStep"),
+    Citation("iterations", "numSolverIterations 50", f"getPhysicsEngineParameters {READ}"),
+    Citation("residual", "solverResidualThreshold 1e-7", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("kept gap", "contactBreakingThreshold 0.02", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
+    Citation("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
+    Citation(
         "friction",
         "0.5, of a pair the product: 0.5 on an example's floor of 1, 0.25 on another; here 1.0",
         f"getDynamicsInfo, btManifoldResult.cpp {READ}",
     ),
-    Source("contact", "contactERP 0.08, contactSlop 1e-5", f"{SERVER} {READ}"),
-    Source("restitution", "0.0", f"getDynamicsInfo {READ}"),
-    Source("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
-    Source("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
-    Source("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
-    Source("floor", "of what it is off, erp 0.2 a step", f"btContactSolverInfo.h {READ}"),
-    Source(
+    Citation("contact", "contactERP 0.08, contactSlop 1e-5", f"{SERVER} {READ}"),
+    Citation("restitution", "0.0", f"getDynamicsInfo {READ}"),
+    Citation("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
+    Citation("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
+    Citation("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
+    Citation("floor", "of what it is off, erp 0.2 a step", f"btContactSolverInfo.h {READ}"),
+    Citation(
         "without effect",
         "frictionERP 0.2, warmStartingFactor 0.1, restitutionVelocityThreshold 0.2, "
         "collisionMargin 0.001, speeds up to 100",
@@ -200,9 +200,9 @@ DOCUMENTED = (
 """Where the library's documentation, or the library itself, says what its defaults decide."""
 
 RECOMMENDED = (
-    Source("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
-    Source("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
-    Source("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
+    Citation("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
+    Citation("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
+    Citation("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
 )
 """What it recommends for accurate contact: no text gives a number, its environments do."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     DEFAULT,
     LEFT_OUT,
@@ -98,29 +98,29 @@ TUNED = PymunkSettings(
 LANDING = replace(TUNED, positions=True, reflection=True)
 
 DOCUMENTED = (
-    Source("step", "space.step(0.02)", "README, the first example"),
-    Source("iterations", "10, the default", "Space.iterations"),
-    Source("collision_slop", "0.1, the default", "Space.collision_slop"),
-    Source("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
-    Source("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
-    Source("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
-    Source(
+    Citation("step", "space.step(0.02)", "README, the first example"),
+    Citation("iterations", "10, the default", "Space.iterations"),
+    Citation("collision_slop", "0.1, the default", "Space.collision_slop"),
+    Citation("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
+    Citation("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
+    Citation("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
+    Citation(
         "collision_persistence",
         "3 steps; with 0 nothing is left to start from, and a block slides",
         "cpSpace.c",
     ),
-    Source(
+    Citation(
         "without effect",
         "collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0",
         "cpSpace.c, cpShape.c",
     ),
-    Source("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
+    Citation("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
 )
 """What its documentation sets, in pymunk 7.3.1."""
 
 RECOMMENDED = (
-    Source("step", "ten of a tenth", "Space.step: multiple calls with a smaller dt"),
-    Source(
+    Citation("step", "ten of a tenth", "Space.step: multiple calls with a smaller dt"),
+    Citation(
         "collision_slop",
         "as high as you can without noticeable overlapping: here 1 mm",
         "Space.collision_slop",

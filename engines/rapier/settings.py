@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.parts.factors import (
     ASLEEP,
     BEST,
@@ -163,37 +163,37 @@ WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
 DOCUMENTED = (
-    Source("step", "1/60 s, the default", "IntegrationParameters.dt"),
-    Source("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
-    Source("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
-    Source("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
-    Source(
+    Citation("step", "1/60 s, the default", "IntegrationParameters.dt"),
+    Citation("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
+    Citation("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
+    Citation("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
+    Citation(
         "friction",
         "simplified, one for all points; not solved where depths are corrected",
         "IntegrationParameters.friction_model, friction_in_bias_pass",
     ),
-    Source(
+    Citation(
         "contact",
         "a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move",
         "IntegrationParameters.contact_softness, static_contact_softness",
     ),
-    Source(
+    Citation(
         "contact",
         "from 0.02 away, and kept while bodies move by less than 0.05",
         "IntegrationParameters.normalized_prediction_distance, contact_recycling",
     ),
-    Source(
+    Citation(
         "iterations",
         "1 a substep and 1 of stabilization, from all of the last impulses",
         "IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient",
     ),
-    Source(
+    Citation(
         "without effect",
         "allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400, "
         "max_ccd_substeps 1, contact_clustering; no damping",
         "IntegrationParameters, RigidBodyBuilder",
     ),
-    Source(
+    Citation(
         "floor",
         "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
         "that is velocity-based",
@@ -203,9 +203,9 @@ DOCUMENTED = (
 """What its documentation sets, in rapier3d 0.36.1."""
 
 RECOMMENDED = (
-    Source("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
-    Source("substeps", "8, for a more accurate simulation", "the same page"),
-    Source("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
+    Citation("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
+    Citation("substeps", "8, for a more accurate simulation", "the same page"),
+    Citation("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
 )
 """What it recommends for accurate contact."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 
-from engines.disclosure import Source
+from engines.disclosure import Citation
 from engines.mujoco.port import refuse_step_by_step
 from engines.mujoco.settings import TUNED as MUJOCO_TUNED
 from engines.mujoco.settings import MujocoSettings
@@ -28,8 +28,8 @@ class WarpSettings(MujocoSettings):
 
 IO = "mujoco_warp/_src/io.py, mujoco-warp 4.0.0"
 DOCUMENTED = (
-    Source("step", "timestep 0.002, MuJoCo's model", "XMLreference.rst of MuJoCo 4.0.0, option"),
-    Source("solver", "Newton; tolerance 1e-8 is raised to 1e-6", IO),
+    Citation("step", "timestep 0.002, MuJoCo's model", "XMLreference.rst of MuJoCo 4.0.0, option"),
+    Citation("solver", "Newton; tolerance 1e-8 is raised to 1e-6", IO),
 )
 """What the preset "naive" is documented by: MuJoCo's defaults, and what is made of them."""
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Help, Source
+from engines.disclosure import Citation, Help
 from engines.parts.factors import factor, level
 from engines.parts.settings import check, setting
 from engines.scene import Scene
@@ -159,7 +159,7 @@ ENGINE = Engine(
             title="gaps closed late",
             settings=MoreauSettings(),
             step_s=2e-3,
-            documented=(Source("step", "0.002 s", "a choice of its own"),),
+            documented=(Citation("step", "0.002 s", "a choice of its own"),),
         ),
         Preset(name="fixed", settings=TUNED, step=2.5e-4),
         Preset(
