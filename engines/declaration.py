@@ -9,13 +9,13 @@ from importlib.metadata import Distribution
 from typing import Any
 
 from analytic.motion import FloatArray
-from engines.disclosure import Citation, Help, Miss
+from engines.disclosure import Citation, Deviation, Help
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
-from engines.world import CALMEST, ROUNDINGS, Resolution, World, Worlds
+from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World, Worlds
 
 Builder = Callable[[Any, Any, float], Any]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
@@ -81,12 +81,12 @@ class Preset:
         One of `FRAMES`, where a scene does not say.
     contact_s : float
         Time [s] of a contact that does not follow the step; nan where it does, or has none.
-    dial : pair or None
+    accuracy_knob : pair or None
         Name and values, from cheap to dear, of the setting that trades time for accuracy where
         that is not the step.
     helped_by : mapping
         What helps -> the settings that leave it out; None where it is the preset itself.
-    misses : tuple of Miss
+    deviations : tuple of Deviation
         What the library's defaults get wrong; no tuned preset may miss anything.
     stacked : mapping or None
         Settings in place of some of these where bodies rest on others; None where it cannot be used
@@ -106,9 +106,9 @@ class Preset:
     documented: tuple[Citation, ...] = ()
     frame: str = "base"
     contact_s: float = math.nan
-    dial: tuple[str, tuple[float, ...]] | None = None
+    accuracy_knob: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
-    misses: tuple[Miss, ...] = ()
+    deviations: tuple[Deviation, ...] = ()
     stacked: Mapping[str, Any] | None = field(default_factory=dict)
     builders: Mapping[Ability, Builder] = field(default_factory=dict)
     own: Mapping[str, Any] = field(default_factory=dict)
@@ -129,19 +129,21 @@ class Preset:
         free = Ability.FREE_BASE in scene.layout.asks
         return replace(scene, frame="world" if free else self.frame)
 
-    def at_rest(self, *misses: Miss) -> "Preset":
-        """Return the same on a base at rest, of which no documentation speaks; see `misses`."""
+    def at_rest(self, *deviations: Deviation) -> "Preset":
+        """Return the same on a base at rest, of which no documentation speaks; see `deviations`."""
         title = TITLES[AT_REST]
-        return replace(self, name=AT_REST, title=title, misses=misses, frame="base", documented=())
+        return replace(
+            self, name=AT_REST, title=title, deviations=deviations, frame="base", documented=()
+        )
 
     def recommended(
         self,
         *documented: Citation,
-        misses: tuple[Miss, ...] = (),
+        deviations: tuple[Deviation, ...] = (),
         step_s: float | None = None,
         **settings: Any,
     ) -> "Preset":
-        """Return the same with what is recommended, and where it is; see `misses`."""
+        """Return the same with what is recommended, and where it is; see `deviations`."""
         return replace(
             self,
             name=RECOMMENDED,
@@ -149,7 +151,7 @@ class Preset:
             settings=replace(self.settings, **settings),
             step_s=step_s or self.step_s,
             documented=documented,
-            misses=misses,
+            deviations=deviations,
         )
 
     def chosen(self, scene: Scene) -> Any:
@@ -220,12 +222,12 @@ class Engine:
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
-    scatter : float
+    nuisance_sensitivity : float
         Part by which the peak of its best preset was seen to move when what should not matter was
         changed a little: the radius of its corners, the steps over which it corrects a depth.
     shortest_step : float
         p dt below which a step has no effect that is resolved.
-    calmest : float
+    rest_factor : float
         Up to how many ordinary steps long one of a block at rest may be; 1 where how the block
         lies depends on the step.
     script : callable or None
@@ -261,9 +263,9 @@ class Engine:
     builders: Mapping[Ability, Builder] = field(default_factory=dict)
     spatial: bool = False
     precision: Precision = Precision.DOUBLE
-    scatter: float = 0.0
+    nuisance_sensitivity: float = 0.0
     shortest_step: float = 1e-12
-    calmest: float = CALMEST
+    rest_factor: float = REST_FACTOR
     script: Callable[[Scene, Any, float], Script] | None = None
     spring: Callable[[float, float], Mapping[str, Any]] | None = None
     factors: tuple[Factor, ...] = ()
@@ -298,7 +300,7 @@ class Engine:
     def resolution(self, block: System) -> Resolution:
         """Return what its numbers tell apart about a block."""
         part = ROUNDINGS * self.precision.value
-        return Resolution(part * block.height, self.shortest_step / block.p, part, self.calmest)
+        return Resolution(part * block.height, self.shortest_step / block.p, part, self.rest_factor)
 
     @property
     def installed(self) -> bool:

@@ -15,7 +15,7 @@ class Help(enum.Enum):
     POSITIONS = "positions moved by the adapter, from the engine's velocities"
 
 
-class Miss(enum.Enum):
+class Deviation(enum.Enum):
     """What an engine gets wrong as it comes, without a word."""
 
     MIRROR = "shaken the other way, the block does not answer the other way"

@@ -28,26 +28,26 @@ ROUNDINGS = 16.0
 """Error of the height of a corner above the base, in roundings of the block's height."""
 
 
-CALMEST = 8.0
+REST_FACTOR = 8.0
 """Longest step of a block at rest that nothing can lift yet, in ordinary steps."""
 
 
 class Resolution(NamedTuple):
     """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part.
 
-    calmest is the longest step of a block at rest that nothing can lift yet, in ordinary steps.
+    rest_factor is the longest step of a block at rest that nothing can lift yet, in ordinary steps.
     """
 
     length_m: float = 0.0
     time_s: float = 0.0
     part: float = 0.0
-    calmest: float = CALMEST
+    rest_factor: float = REST_FACTOR
 
 
 UNLIMITED = Resolution()
 
 
-class Grip(enum.IntEnum):
+class ContactPhase(enum.IntEnum):
     """What a step is for, by which an adapter may choose how firmly a contact holds."""
 
     REST = 0
@@ -68,7 +68,7 @@ class Choice(NamedTuple):
     """
 
     dt_s: float
-    grip: Grip
+    phase: ContactPhase
     side: float
 
 
@@ -88,7 +88,7 @@ class Step(NamedTuple):
     base_kick, base_velocity, base_x : float
         Change of the base's velocity [m/s] in `kick_s`; its velocity, which in the mean over the
         step leads it to its place [m] at the end.
-    grip : Grip
+    phase : ContactPhase
         What the step is for.
     side : float
         About which corner the block turns: -1 or 1, or 0 where it is held by both.
@@ -102,7 +102,7 @@ class Step(NamedTuple):
     base_kick: float
     base_velocity: float
     base_x: float
-    grip: Grip
+    phase: ContactPhase
     side: float
 
 
@@ -161,7 +161,7 @@ class SteppedWorld(World, Protocol):
 
 Driver = Callable[[Any, Any, int], int]
 """``(runs, lists, most) -> taken``: takes up to so many steps of a run, in a compiled loop that
-chooses each and looks on by the functions of `engines.run.look`, as long as the run goes on."""
+chooses each and looks on by the functions of `engines.run.monitor`, as long as the run goes on."""
 
 
 class DrivenWorld(SteppedWorld, Protocol):
@@ -204,7 +204,7 @@ class Worlds(Protocol):
         Parameters
         ----------
         steps : Step of arrays (worlds, steps)
-            What each world is given in each step; grip is `Grip.SWING` and side 0 in all.
+            What each world is given in each step; phase is `ContactPhase.SWING` and side 0 in all.
         going : array (worlds,)
             Whether a world is still looked at. What another one does is not, and it is given the
             steps that it was given before.

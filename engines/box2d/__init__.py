@@ -16,7 +16,7 @@ from engines.box2d.settings import (
 from engines.box2d.stacks import Box2DStacks
 from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 
 NAIVE = Preset(
@@ -25,7 +25,7 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR, Miss.PEAK),
+    deviations=(Deviation.MIRROR, Deviation.PEAK),
     own={"friction": 0.2},
 )
 
@@ -40,9 +40,12 @@ ENGINE = Engine(
     builders={Ability.FREE_BASE: partial(CartWorld, Box2DCart)},
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD, Miss.SLEEP),
+        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD, Deviation.SLEEP),
         NAIVE.recommended(
-            *RECOMMENDED, misses=(Miss.MIRROR, Miss.PEAK), iterations=8, position_iterations=3
+            *RECOMMENDED,
+            deviations=(Deviation.MIRROR, Deviation.PEAK),
+            iterations=8,
+            position_iterations=3,
         ),
         Preset(
             name="fixed",

@@ -20,7 +20,7 @@ from engines.parts.readback import disagreement
 from engines.parts.script import Script, filled, moved, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.scene import Scene
-from engines.world import Grip, Moment, Pose, Step
+from engines.world import ContactPhase, Moment, Pose, Step
 
 MOST_REFLECTION = 2.0
 """A step that is much longer than the one before gives back no more than this part."""
@@ -166,13 +166,17 @@ class Box2DWorld:
         """Advance by a step."""
         self._world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
         back, before, self._dt = 0.0, self._dt, step.dt_s
-        if self.settings.reflection and before and step.grip in (Grip.SWING, Grip.APPROACH):
+        if (
+            self.settings.reflection
+            and before
+            and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)
+        ):
             back = min(step.dt_s / before, MOST_REFLECTION)
         led = self._way == "velocity"
         at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
         felt = step.base_velocity * self._unit if self._way == "both" else 0.0
         for side, floor in zip((-1.0, 1.0), self._floors, strict=False):
-            pivot = step.grip is Grip.REST or step.side in (side, 0.0)
+            pivot = step.phase is ContactPhase.REST or step.side in (side, 0.0)
             if led:
                 felt = (step.base_x * self._unit - floor.position.x) / step.dt_s
             else:

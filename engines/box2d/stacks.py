@@ -10,7 +10,7 @@ from engines.box2d.build import Box2DWorld
 from engines.box2d.settings import Box2DSettings
 from engines.parts.quiet import imported
 from engines.scene import Scene
-from engines.world import Grip, Step
+from engines.world import ContactPhase, Step
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""
@@ -36,9 +36,9 @@ class Box2DStacks(Box2DWorld):
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
-        strikes, reach = step.grip is Grip.STRIKE, self._reach
-        free = -DEEPER * reach if step.grip is Grip.APPROACH else -reach
+        strikes, reach = step.phase is ContactPhase.STRIKE, self._reach
+        free = -DEEPER * reach if step.phase is ContactPhase.APPROACH else -reach
         for side, shape in self._tops:
-            touches = strikes or step.grip is Grip.REST or step.side in (side, 0.0)
+            touches = strikes or step.phase is ContactPhase.REST or step.side in (side, 0.0)
             shape.radius = max(self._skin + (reach if touches else free), 0.0)
         super().step(step._replace(side=0.0) if strikes else step)

@@ -17,7 +17,7 @@ from engines.dart.settings import (
 )
 from engines.dart.stacks import DartStacks
 from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 
 NAIVE = Preset(
@@ -26,7 +26,7 @@ NAIVE = Preset(
     step_s=1e-3,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.SLEEP,),
+    deviations=(Deviation.SLEEP,),
 )
 
 ENGINE = Engine(
@@ -65,7 +65,7 @@ ENGINE = Engine(
     ),
     geometries=("box", "corners"),
     spatial=True,
-    calmest=1.0,
+    rest_factor=1.0,
     script=script,
     factors=FACTORS,
     rules=RULES,

@@ -26,7 +26,7 @@ from engines.parts.script import Script, defined, filled, moved, settings_of
 from engines.parts.shapes import fall, floor_half_size, half_size, touching_spheres
 from engines.parts.units import counted
 from engines.scene import Scene
-from engines.world import Grip, Moment, Pose, Step
+from engines.world import ContactPhase, Moment, Pose, Step
 
 
 def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:
@@ -248,7 +248,7 @@ class DartWorld:
             world.setTimeStep(step.dt_s)
         world.setGravity((step.pull_x * unit, 0.0, step.pull_z * unit))
         if self._margin:
-            self._lower(0.0 if step.grip is Grip.REST else step.side)
+            self._lower(0.0 if step.phase is ContactPhase.REST else step.side)
         if self._led:
             speed = (step.base_x * unit - self._place) / step.dt_s
             self._ground.setCommands((speed, 0.0, 0.0))

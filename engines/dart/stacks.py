@@ -11,9 +11,9 @@ from engines.dart.build import DartWorld, numbers, touching
 from engines.dart.settings import DartSettings
 from engines.parts.quiet import imported
 from engines.scene import Scene
-from engines.world import Grip, Step
+from engines.world import ContactPhase, Step
 
-FREE = {Grip.APPROACH: -1.0, Grip.STRIKE: 1.0}
+FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
 """By how many margins free corners are lowered in a step."""
 
 
@@ -46,7 +46,7 @@ class DartStacks(DartWorld):
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
-        self._free = FREE.get(step.grip, 0.0)
+        self._free = FREE.get(step.phase, 0.0)
         super().step(step)
 
     def _lower(self, pivot: float) -> None:

@@ -4,7 +4,7 @@ from functools import partial
 
 from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Miss
+from engines.disclosure import Deviation
 from engines.drake.build import DrakeWorld
 from engines.drake.cart import DrakeCart
 from engines.drake.cylinder import DrakeCylinder
@@ -43,7 +43,7 @@ ENGINE = Engine(
     },
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.PEAK),
+        NAIVE.at_rest(Deviation.PEAK),
         NAIVE.recommended(*RECOMMENDED, solver="similar", geometry="corners", stiffness=0.0133),
         Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(
@@ -51,12 +51,12 @@ ENGINE = Engine(
             title="steps of its own, by its own estimate of the error",
             settings=CONTROLLED,
             stepping=Stepping.OWN,
-            dial=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
+            accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
     geometries=("box", "corners"),
     spatial=True,
-    scatter=2e-4,
+    nuisance_sensitivity=2e-4,
     script=script,
     factors=FACTORS,
     rules=RULES,

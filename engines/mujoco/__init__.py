@@ -4,7 +4,7 @@ from functools import partial
 
 from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.cart import MujocoCart
@@ -50,7 +50,7 @@ ENGINE = Engine(
         NAIVE.at_rest(),
         NAIVE.recommended(
             *RECOMMENDED,
-            misses=(Miss.PEAK,),  # its floor lags
+            deviations=(Deviation.PEAK,),  # its floor lags
             integrator="implicitfast",
             cone="elliptic",
             impratio=10.0,

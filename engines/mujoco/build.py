@@ -5,8 +5,8 @@ from importlib import import_module
 from typing import Any
 
 from engines.mujoco.contact import notice_step, prepare_step, read_now
+from engines.mujoco.contact_state import ContactState, arrays_of, begin_contact
 from engines.mujoco.fast import drive, memory_of, obstacle
-from engines.mujoco.hold import Hold, arrays_of, begin_hold
 from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
 from engines.mujoco.models import given_back, taken
 from engines.mujoco.settings import (
@@ -42,9 +42,9 @@ class MujocoWorld:
         self._fault = self._read_back(scene, dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
-        self._holds = Hold.blank()
+        self._holds = ContactState.blank()
         self._held = self._holds[0]
-        begin_hold(self._held, scene, s, dt_s, self._model.npair)
+        begin_contact(self._held, scene, s, dt_s, self._model.npair)
         self._arrays = tuple(arrays_of(self._model, self._data, self._held, scene))
         self._memory = memory_of(self._model, self._data)
         # the library would write its warnings to a file; they are counted and read from `fault`
@@ -52,7 +52,7 @@ class MujocoWorld:
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
-        data, numbers = self._data, (*step[:-2], int(step.grip), step.side)
+        data, numbers = self._data, (*step[:-2], int(step.phase), step.side)
         prepare_step(self._holds, self._arrays, numbers)
         self._option.timestep = step.dt_s
         self._mj.mj_step(self._model, data)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from engines.layouts import LOWER
-from engines.mujoco.hold import (
+from engines.mujoco.contact_state import (
     BODY,
     DIRECT,
     FACE,
@@ -23,13 +23,13 @@ from engines.mujoco.hold import (
     WEIGHT,
     YIELDS,
     Arrays,
+    ContactState,
     Forces,
-    Hold,
 )
 from engines.mujoco.model import direct_reference
 from engines.parts.compiled import FloatArray, kernel, shared
 from engines.parts.reflection import part_of, take_in
-from engines.world import Grip, Pose, Step
+from engines.world import ContactPhase, Pose, Step
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
@@ -42,12 +42,12 @@ FREE, WELDED = 7, 6
 
 
 @kernel
-def read_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> None:
+def read_now(holds: Sequence[ContactState], arrays: tuple[FloatArray, ...]) -> None:
     """Read the state, for Python.
 
     Parameters
     ----------
-    holds : sequence of Hold (1,), from `Hold.blank`
+    holds : sequence of ContactState (1,), from `ContactState.blank`
     arrays : tuple of ndarray, in the order of `Arrays`; the last one, (bodies, 4), is written
     """
     read(holds[0], Arrays(*arrays))
@@ -55,22 +55,22 @@ def read_now(holds: Sequence[Hold], arrays: tuple[FloatArray, ...]) -> None:
 
 @kernel
 def prepare_step(
-    holds: Sequence[Hold], arrays: tuple[FloatArray, ...], step: tuple[Any, ...]
+    holds: Sequence[ContactState], arrays: tuple[FloatArray, ...], step: tuple[Any, ...]
 ) -> None:
     """Set what a step needs, but for its length; for Python.
 
     Parameters
     ----------
-    holds : sequence of Hold (1,), updated
+    holds : sequence of ContactState (1,), updated
     arrays : tuple of ndarray, in the order of `Arrays`; written as by `prepare`
-    step : tuple (10,), the step that follows, in the order of `Step`, with a number for its grip
+    step : tuple (10,), the step that follows, in the order of `Step`, with a number for its phase
     """
     prepare(holds[0], Arrays(*arrays), Step(*step))
 
 
 @kernel
 def notice_step(
-    holds: Sequence[Hold],
+    holds: Sequence[ContactState],
     arrays: tuple[FloatArray, ...],
     forces: tuple[int, int, FloatArray, FloatArray],
     step: tuple[Any, ...],
@@ -79,7 +79,7 @@ def notice_step(
 
     Parameters
     ----------
-    holds : sequence of Hold (1,), updated
+    holds : sequence of ContactState (1,), updated
     arrays : tuple of ndarray, in the order of `Arrays`; written as by `notice`
     forces : (int, int, ndarray (rows,) [1/kg], ndarray (rows,) [N]), in the order of `Forces`
     step : tuple (10,), the step that was taken, as for `prepare_step`
@@ -88,7 +88,7 @@ def notice_step(
 
 
 @shared
-def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
+def pose_of(held: ContactState, arrays: Arrays, body: int = 0) -> Pose:
     """Return the pose of a body [m, rad, rad/s] relative to the base, by its number."""
     q, v = arrays.position, arrays.velocity
     if held.planar:
@@ -101,12 +101,12 @@ def pose_of(held: Hold, arrays: Arrays, body: int = 0) -> Pose:
 
 
 @shared
-def read(held: Hold, arrays: Arrays) -> None:
+def read(held: ContactState, arrays: Arrays) -> None:
     """Read the state: write every body's `Pose` into a row of it.
 
     Parameters
     ----------
-    held : Hold, of which the place of the base is used
+    held : ContactState, of which the place of the base is used
     arrays : Arrays, of which state (bodies, 4) is written
     """
     for body in range(len(arrays.homes)):
@@ -116,12 +116,12 @@ def read(held: Hold, arrays: Arrays) -> None:
 
 
 @shared
-def prepare(held: Hold, arrays: Arrays, step: Step) -> None:
+def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set what a step needs, but for its length.
 
     Parameters
     ----------
-    held : Hold, updated
+    held : ContactState, updated
     arrays : Arrays, written: gravity, references and margins of contacts, the column `RESISTED` of
         pairs, place and velocity of a base that moves
     step : Step, that follows
@@ -135,7 +135,7 @@ def prepare(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
+def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set the contact in units of the step."""
     dt = step.dt_s
     if held.form == SCALED:
@@ -145,7 +145,7 @@ def set_reference(held: Hold, arrays: Arrays, step: Step) -> None:
         return
     back = part_of(held.reflection, step) if held.reflects else 0.0
     firm = held.stiffness
-    if held.by_phase and (step.side != 0.0 or step.grip != Grip.REST):
+    if held.by_phase and (step.side != 0.0 or step.phase != ContactPhase.REST):
         firm = FEEBLE
     held.sliding = held.sliding_damping + back
     k, b = direct_reference(held.impedance, dt, firm, held.damping + back)
@@ -164,17 +164,17 @@ def put_pair(table: FloatArray, first: float, second: float) -> None:
 
 
 @shared
-def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
+def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set from which gap [m] on each contact acts, and preload the one that carries the block."""
-    if step.grip == Grip.REST and step.side == 0.0:
+    if step.phase == ContactPhase.REST and step.side == 0.0:
         hold_at_rest(held, arrays, step)
         return
     margin, pairs = arrays.pair_margin, arrays.pairs
     for i in range(held.pairs):
         # the free corner, about to lift, is still in reach where no weight presses it
         sag = pairs[i, YIELDS] * held.ordinary_squared
-        margin[i] = sag if step.grip == Grip.REST else 0.0
-        if step.grip != Grip.REST:
+        margin[i] = sag if step.phase == ContactPhase.REST else 0.0
+        if step.phase != ContactPhase.REST:
             pairs[i, RESISTED] = 0.5 * pairs[i, YIELDS]
         if step.side == 0.0:
             continue
@@ -184,13 +184,13 @@ def set_reach(held: Hold, arrays: Arrays, step: Step) -> None:
             margin[i] = max(sag, min(held.carry, 0.5 * held.width * abs(theta)))
         elif pairs[i, PIVOT] == step.side:
             hold_pivot(held, arrays, step, i)
-        elif held.stacked and step.grip >= Grip.APPROACH:
+        elif held.stacked and step.phase >= ContactPhase.APPROACH:
             # a rounding apart, those above would close a step before those below, or after
-            margin[i] = held.carry if step.grip == Grip.STRIKE else -held.carry
+            margin[i] = held.carry if step.phase == ContactPhase.STRIKE else -held.carry
 
 
 @shared
-def hold_pivot(held: Hold, arrays: Arrays, step: Step, pair: int) -> None:
+def hold_pivot(held: ContactState, arrays: Arrays, step: Step, pair: int) -> None:
     """Keep a pivot in contact, and press it."""
     arrays.pair_margin[pair] = held.carry
     if held.preload:
@@ -199,7 +199,7 @@ def hold_pivot(held: Hold, arrays: Arrays, step: Step, pair: int) -> None:
 
 
 @shared
-def hold_at_rest(held: Hold, arrays: Arrays, step: Step) -> None:
+def hold_at_rest(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Hold each corner from the gap [m] on to which what it carries presses it to the base.
 
     Were all the same, the block would lean on the corner that carries more. A corner that is
@@ -214,7 +214,7 @@ def hold_at_rest(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def gap_of(held: Hold, arrays: Arrays, pair: int) -> float:
+def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
     """Return the gap [m] between a corner and what it touches, both about upright."""
     row = arrays.pairs[pair]
     pose = pose_of(held, arrays, int(row[BODY]))
@@ -228,7 +228,7 @@ def gap_of(held: Hold, arrays: Arrays, pair: int) -> float:
 
 
 @shared
-def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
+def move_base(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set the place from which the base sets out, and its surface velocity; or where it goes."""
     before, held.velocity = held.velocity, step.base_velocity
     # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
@@ -239,12 +239,12 @@ def move_base(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
+def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one.
 
     Parameters
     ----------
-    held : Hold, updated: the time, the place of the base, how fast the block turns
+    held : ContactState, updated: the time, the place of the base, how fast the block turns
     arrays : Arrays, of which the columns `YIELDS` and `RESISTED` of pairs are written [m/s2]
     forces : Forces, of that step
     step : Step, that was taken
@@ -260,7 +260,7 @@ def notice(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
 
 
 @shared
-def look_at_base(held: Hold, arrays: Arrays, step: Step) -> None:
+def look_at_base(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Note where a welded base is [m], whose joint is the last, and how far off."""
     at = len(arrays.position) - FREE
     held.moved = arrays.position[at]
@@ -269,7 +269,7 @@ def look_at_base(held: Hold, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> None:
+def look_at_yield(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note by how much [m/s2] the corners yield to their forces.
 
     Where all touch, or all pivots, the solver's contacts are theirs in the order of the pairs; the
@@ -280,7 +280,7 @@ def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> Non
         return
     stride, each = (forces.rows - weld) // count, held.pairs // held.touching
     whole, pivots = count == held.pairs, count == held.touching * held.corners
-    if step.grip == Grip.REST and (whole or not held.stacked):
+    if step.phase == ContactPhase.REST and (whole or not held.stacked):
         for i in range(held.pairs):
             first = weld + (i // each * each * stride if whole else 0)
             pairs[i, YIELDS] = forces.resistance[first] * pairs[i, WEIGHT]
@@ -288,7 +288,7 @@ def look_at_yield(held: Hold, arrays: Arrays, forces: Forces, step: Step) -> Non
                 row = weld + i * stride
                 yielded = forces.resistance[row] * forces.force[row]
                 pairs[i, RESISTED] = yielded * (step.dt_s / step.kick_s)
-    elif step.grip == Grip.SWING and pivots:
+    elif step.phase == ContactPhase.SWING and pivots:
         for i in range(held.pairs):
             first = weld + i // each * held.corners * stride
             yielded = forces.resistance[first] * forces.force[first]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.mujoco.contact import notice, prepare, read
-from engines.mujoco.hold import Arrays, Forces, Hold
+from engines.mujoco.contact_state import Arrays, ContactState, Forces
 from engines.parts.compiled import (
     SWITCHED_OFF,
     CFunction,
@@ -26,7 +26,7 @@ from engines.parts.compiled import (
     shared,
     switched_off,
 )
-from engines.run.look import Lists, Run, onward, undecided
+from engines.run.monitor import Lists, Run, onward, undecided
 
 mj_step = CFunction("mj_step", "void", "intp", "intp")
 
@@ -77,7 +77,7 @@ class Memory(NamedTuple):
 
 @kernel
 def drive(
-    holds: Sequence[Hold],
+    holds: Sequence[ContactState],
     lent: tuple[FloatArray, ...],
     memory: Memory,
     runs: Sequence[Run],
@@ -88,11 +88,11 @@ def drive(
 
     Parameters
     ----------
-    holds : sequence of Hold (1,), updated
+    holds : sequence of ContactState (1,), updated
     lent : tuple of ndarray, in the order of `Arrays`, written
     memory : Memory, of the same model and data
     runs, lists
-        As for `engines.run.look.onward`, updated.
+        As for `engines.run.monitor.onward`, updated.
     most : int, how many; with 0 the state is read, and nothing is taken
     """
     held, arrays = holds[0], Arrays(*lent)

@@ -208,7 +208,7 @@ def coordinates(scene: Scene, s: MujocoSettings) -> tuple[tuple[float, ...], tup
     Returns
     -------
     places, velocities : tuple of float (nq,), (nv,)
-        qpos and qvel; see `engines.mujoco.hold.Arrays`.
+        qpos and qvel; see `engines.mujoco.contact_state.Arrays`.
     """
     places: list[float] = []
     velocities: list[float] = []

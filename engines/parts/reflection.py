@@ -8,7 +8,7 @@ first step after it, nothing is given back.
 
 from engines.parts.compiled import State, fill, shared
 from engines.scene import Scene
-from engines.world import Grip, Step
+from engines.world import ContactPhase, Step
 
 MOST_REFLECTION = 25.0
 """No more than this part of the velocity with which a contact comes into a step is returned: after
@@ -39,7 +39,7 @@ def returned(step: Step, before: float) -> float:
     step : Step, that follows
     before : float, length of the step before it [s]; 0 where there was none
     """
-    if not (before and step.side and step.grip in (Grip.SWING, Grip.APPROACH)):
+    if not (before and step.side and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)):
         return 0.0
     return min(step.dt_s / before, MOST_RETURNED)
 
@@ -98,7 +98,7 @@ def part_of(state: Reflection, step: Step) -> float:
     """
     before, state.last_dt = state.last_dt, step.dt_s
     was_aloft = state.aloft
-    state.aloft = step.grip == Grip.SWING or step.grip == Grip.APPROACH
+    state.aloft = step.phase == ContactPhase.SWING or step.phase == ContactPhase.APPROACH
     state.released = state.released and state.aloft
     state.part = part_returned(state, step, before) if was_aloft and state.aloft else 0.0
     return state.part

@@ -4,7 +4,7 @@ from functools import partial
 
 from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.physx.build import PhysxWorld, script
 from engines.physx.cart import PhysxCart
@@ -25,7 +25,7 @@ NAIVE = Preset(
     step_s=0.01,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR,),
+    deviations=(Deviation.MIRROR,),
     own={"friction": 0.3},
 )
 
@@ -43,10 +43,10 @@ ENGINE = Engine(
     },
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR),
+        NAIVE.at_rest(Deviation.MIRROR),
         NAIVE.recommended(
             *RECOMMENDED,
-            misses=(Miss.MIRROR,),
+            deviations=(Deviation.MIRROR,),
             step_s=1.0 / 120.0,
             tgs=True,
             iterations=64,
@@ -68,7 +68,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     precision=Precision.SINGLE,
-    scatter=6e-3,
+    nuisance_sensitivity=6e-3,
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,

@@ -39,8 +39,8 @@ from engines.pybullet.calls import (
 from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.fast import (
     Client,
-    Hold,
-    begin_hold,
+    ContactState,
+    begin_contact,
     client_of,
     clients,
     corrected,
@@ -52,15 +52,15 @@ from engines.pybullet.settings import (
     BulletSettings,
 )
 from engines.scene import Scene
-from engines.world import Driver, Grip, Moment, Pose, Step
+from engines.world import ContactPhase, Driver, Moment, Pose, Step
 
 TRIAL = (
-    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, Grip.SWING, 1.0),
-    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, Grip.SWING, 1.0),
-    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, Grip.SWING, 1.0),
-    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, Grip.APPROACH, 1.0),
-    Step(1e-5, 4.51e-3, 5.05e-4, 0.0, -495.4, 0.006, 0.054, 1.22e-4, Grip.STRIKE, 1.0),
-    Step(1e-3, 5.51e-3, 5.05e-4, 0.0, -4.95, 0.006, 0.060, 1.82e-4, Grip.REST, 0.0),
+    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, ContactPhase.SWING, 1.0),
+    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, ContactPhase.SWING, 1.0),
+    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, ContactPhase.SWING, 1.0),
+    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, ContactPhase.APPROACH, 1.0),
+    Step(1e-5, 4.51e-3, 5.05e-4, 0.0, -495.4, 0.006, 0.054, 1.22e-4, ContactPhase.STRIKE, 1.0),
+    Step(1e-3, 5.51e-3, 5.05e-4, 0.0, -4.95, 0.006, 0.060, 1.82e-4, ContactPhase.REST, 0.0),
 )
 """Steps by which a compiled loop is held against Python."""
 
@@ -84,7 +84,7 @@ class BulletWorld:
         loops = scene.compiled and not self.obstacle
         self._client = taken(self._p)
         self._moving = scene.frame == "world"
-        self._grip: Grip | None = None
+        self._phase: ContactPhase | None = None
         self._ground = base_place(scene, settings)
         with held_for_all:
             self._set_engine(scene)
@@ -96,9 +96,9 @@ class BulletWorld:
                 self._held_by = int(self._do(hold_call(scene, settings, self._base))), most
             self._take_inertia(scene)
         self._put(scene)
-        self._holds = Hold.blank()
+        self._holds = ContactState.blank()
         self._held = self._holds[0]
-        begin_hold(self._held, scene, settings, dt_s)
+        begin_contact(self._held, scene, settings, dt_s)
         self._held.block, self._held.base = self._bodies[0], self._base
         self._state = np.zeros((len(self._bodies), len(Pose._fields)))
         self._lent = self.lent() if loops else None
@@ -106,10 +106,10 @@ class BulletWorld:
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         p, client = self._p, self._client
-        if step.dt_s != self._held.dt or step.grip is not self._grip:
+        if step.dt_s != self._held.dt or step.phase is not self._phase:
             erp = self._erp(step) if self._s.by_phase else {}
             p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
-            self._held.dt, self._grip = step.dt_s, step.grip
+            self._held.dt, self._phase = step.dt_s, step.phase
         if self._moving:
             self._move_base(step)
         p.setGravity(step.pull_x, 0.0, step.pull_z, physicsClientId=client)
@@ -132,7 +132,7 @@ class BulletWorld:
             return "the library is another build, whose clients are not known"
         return "" if loop_agrees() else "its loop does not step as Python does"
 
-    def lent(self) -> tuple[Sequence[Hold], Client]:
+    def lent(self) -> tuple[Sequence[ContactState], Client]:
         """Return what a compiled loop steps by."""
         return self._holds, client_of(self._p, self._client, self._bodies[0], self._state)
 
@@ -192,7 +192,7 @@ class BulletWorld:
     def _erp(self, step: Step) -> dict[str, float]:
         """Return what a step corrects of positions."""
         held = self._held
-        normal, across = corrected(step.grip, step.dt_s, held.ordinary)
+        normal, across = corrected(step.phase, step.dt_s, held.ordinary)
         return {
             "contactERP": normal * held.contact_erp,
             "frictionERP": across * held.friction_erp,
@@ -278,5 +278,5 @@ def _by_calls(world: BulletWorld, step: Step) -> FloatArray:
 
 def _by_loop(world: BulletWorld, step: Step) -> FloatArray:
     holds, client = world.lent()
-    once(holds, client, (*step[:-2], int(step.grip), step.side))
+    once(holds, client, (*step[:-2], int(step.phase), step.side))
     return client.state

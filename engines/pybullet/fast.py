@@ -28,9 +28,9 @@ from engines.pybullet.addresses import spans
 from engines.pybullet.calls import base_place
 from engines.pybullet.clients import given_back, taken
 from engines.pybullet.settings import BulletSettings
-from engines.run.look import Lists, Run, onward, undecided
+from engines.run.monitor import Lists, Run, onward, undecided
 from engines.scene import Scene
-from engines.world import Grip, Step
+from engines.world import ContactPhase, Step
 
 HANDLE, NUMBER, REAL = "intp", "intc", "float64"
 
@@ -63,7 +63,7 @@ WORD, VIRTUAL = 8, 16
 """Bytes of an address, and of what stands there before the part to which a client points."""
 
 
-class Hold(State):
+class ContactState(State):
     """What a step sets.
 
     Attributes
@@ -93,12 +93,12 @@ class Hold(State):
     dt: float
 
 
-def begin_hold(held: Hold, scene: Scene, s: BulletSettings, dt_s: float) -> None:
+def begin_contact(held: ContactState, scene: Scene, s: BulletSettings, dt_s: float) -> None:
     """Prepare for a scene in ordinary steps of `dt_s` [s], but for its bodies.
 
     Parameters
     ----------
-    held : Hold, blank, to be filled; the numbers of body and base are left to the caller
+    held : ContactState, blank, to be filled; the numbers of body and base are left to the caller
     scene : Scene
     s : BulletSettings
     dt_s : float, ordinary step [s]
@@ -144,16 +144,16 @@ class Client(NamedTuple):
 
 @exclusive
 def drive(
-    holds: Sequence[Hold], client: Client, runs: Sequence[Run], lists: Lists, most: int
+    holds: Sequence[ContactState], client: Client, runs: Sequence[Run], lists: Lists, most: int
 ) -> int:
     """Take up to so many steps while the run goes on; return how many were taken.
 
     Parameters
     ----------
-    holds : sequence of Hold (1,), updated
+    holds : sequence of ContactState (1,), updated
     client : Client, of which state (bodies, 4) is written
     runs, lists
-        As for `engines.run.look.onward`, updated.
+        As for `engines.run.monitor.onward`, updated.
     most : int, how many; with 0 the state is read, and nothing is taken
 
     Raises
@@ -172,13 +172,13 @@ def drive(
 
 
 @shared
-def take(held: Hold, client: Client, step: Step) -> None:
+def take(held: ContactState, client: Client, step: Step) -> None:
     """Set what a step needs, and take it; held and the client are updated."""
     command = parameters(client.handle)
     put_time_step(command, step.dt_s)
     put_gravity(command, step.pull_x, 0.0, step.pull_z)
     if held.by_phase:
-        normal, across = corrected(step.grip, step.dt_s, held.ordinary)
+        normal, across = corrected(step.phase, step.dt_s, held.ordinary)
         put_contact_erp(command, normal * held.contact_erp)
         put_friction_erp(command, across * held.friction_erp)
     submit(client.handle, command)
@@ -189,7 +189,7 @@ def take(held: Hold, client: Client, step: Step) -> None:
 
 
 @shared
-def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> tuple[float, float]:
+def corrected(phase: ContactPhase, dt_s: float, ordinary_s: float) -> tuple[float, float]:
     """Return the parts of a position's error to correct, along a contact's normal and across it.
 
     None in a step around an impact: a short step would make a velocity of it. None across at rest,
@@ -198,7 +198,7 @@ def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> tuple[float, float]
 
     Parameters
     ----------
-    grip : Grip, of the step
+    phase : ContactPhase, of the step
     dt_s, ordinary_s : float, its length, and that of an ordinary one [s]
 
     Returns
@@ -206,14 +206,14 @@ def corrected(grip: Grip, dt_s: float, ordinary_s: float) -> tuple[float, float]
     (float, float)
         Each from 0 to 1.
     """
-    if grip == Grip.APPROACH or grip == Grip.STRIKE:
+    if phase == ContactPhase.APPROACH or phase == ContactPhase.STRIKE:
         return 0.0, 0.0
     part = min(1.0, dt_s / ordinary_s)
-    return part * part, 0.0 if grip == Grip.REST else part * part
+    return part * part, 0.0 if phase == ContactPhase.REST else part * part
 
 
 @shared
-def move_base(held: Hold, client: Client, step: Step) -> None:
+def move_base(held: ContactState, client: Client, step: Step) -> None:
     """Give the base its velocity, or its place."""
     command = pose(client.handle, held.base)
     if held.base_velocity:
@@ -226,7 +226,7 @@ def move_base(held: Hold, client: Client, step: Step) -> None:
 
 
 @shared
-def read(held: Hold, client: Client) -> None:
+def read(held: ContactState, client: Client) -> None:
     """Read the bodies' poses."""
     moved, q = 0.0, client.place
     if held.moving:
@@ -266,14 +266,14 @@ def located(handle: int, body: int, answer: NDArray[np.int64]) -> None:
 
 
 @exclusive
-def once(holds: Sequence[Hold], client: Client, step: tuple[Any, ...]) -> None:
+def once(holds: Sequence[ContactState], client: Client, step: tuple[Any, ...]) -> None:
     """Take a step, and read the poses after it; for Python.
 
     Parameters
     ----------
     holds, client
         As for `drive`.
-    step : tuple (10,), in the order of `Step`, with a number for its grip
+    step : tuple (10,), in the order of `Step`, with a number for its phase
 
     Raises
     ------

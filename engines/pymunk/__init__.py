@@ -4,7 +4,7 @@ from functools import partial
 
 from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
 from engines.pymunk.cart import PymunkCart
@@ -24,7 +24,7 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR,),
+    deviations=(Deviation.MIRROR,),
     own={"friction": 0.0},
 )
 
@@ -39,9 +39,9 @@ ENGINE = Engine(
     builders={Ability.FREE_BASE: partial(CartWorld, PymunkCart)},
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.PEAK, Miss.RECORD),
+        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD),
         NAIVE.recommended(
-            *RECOMMENDED, misses=(Miss.MIRROR,), step_s=LIBRARY_STEP_S / 10.0, slop=1e-3
+            *RECOMMENDED, deviations=(Deviation.MIRROR,), step_s=LIBRARY_STEP_S / 10.0, slop=1e-3
         ),
         Preset(
             name="fixed",

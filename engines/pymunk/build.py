@@ -20,7 +20,7 @@ from engines.parts.script import Script, defined, filled, moved, settings_of
 from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.pymunk.settings import LEVEL, PymunkSettings
 from engines.scene import Scene
-from engines.world import Grip, Moment, Pose, Step
+from engines.world import ContactPhase, Moment, Pose, Step
 
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""
@@ -118,13 +118,13 @@ def hold(floors: Any, about: float, s: Any) -> None:
         floor.unsafe_set_radius(s.margin if side * about >= s.level else 0.0)
 
 
-TOGETHER = {Grip.APPROACH: 0.0, Grip.STRIKE: 2.0}
+TOGETHER = {ContactPhase.APPROACH: 0.0, ContactPhase.STRIKE: 2.0}
 """By how many margins the floors of free corners reach out where those must meet together."""
 
 
-def hold_together(floors: Any, about: float, grip: Grip, s: Any) -> None:
+def hold_together(floors: Any, about: float, phase: ContactPhase, s: Any) -> None:
     """Hold as `hold` does floors that lie a margin deeper, and free corners alike in an impact."""
-    free = TOGETHER.get(grip, 1.0)
+    free = TOGETHER.get(phase, 1.0)
     for side, floor in zip(s.pivots, floors, strict=True):
         floor.unsafe_set_radius(s.margin * (2.0 if side * about >= s.level else free))
 
@@ -235,14 +235,14 @@ class PymunkWorld:
     def _hold(self, step: Step) -> None:
         """Keep the pivot in contact, and give its velocity back while the block turns about it."""
         back, before, self._dt = 0.0, self._dt, step.dt_s
-        turning = step.grip in (Grip.SWING, Grip.APPROACH)
+        turning = step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)
         if self.settings.reflection and before and turning:
             back = min(step.dt_s / before, MOST_REFLECTION)
         bounce = self.settings.restitution * self.settings.base_restitution
         # equal steps do not say about which corner
-        about = 0.0 if step.grip is Grip.REST else step.side or -self._bodies[0].angle
+        about = 0.0 if step.phase is ContactPhase.REST else step.side or -self._bodies[0].angle
         if self._values.together:
-            hold_together(self._floors, about, step.grip, self._values)
+            hold_together(self._floors, about, step.phase, self._values)
         else:
             hold(self._floors, about, self._values)
         pairs = zip(self._values.pivots, self._at, self._corners, self._floors, strict=True)

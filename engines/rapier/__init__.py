@@ -4,7 +4,7 @@ from functools import partial
 
 from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Help, Miss
+from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.cart import RapierCart
@@ -25,7 +25,7 @@ NAIVE = Preset(
     step_s=1.0 / 60.0,
     documented=DOCUMENTED,
     frame="world",
-    misses=(Miss.MIRROR, Miss.PEAK),
+    deviations=(Deviation.MIRROR, Deviation.PEAK),
     own={"friction": 0.5},
 )
 
@@ -43,10 +43,10 @@ ENGINE = Engine(
     },
     presets=(
         NAIVE,
-        NAIVE.at_rest(Miss.MIRROR, Miss.RECORD, Miss.SLEEP),
+        NAIVE.at_rest(Deviation.MIRROR, Deviation.RECORD, Deviation.SLEEP),
         NAIVE.recommended(
             *RECOMMENDED,
-            misses=(Miss.MIRROR,),
+            deviations=(Deviation.MIRROR,),
             step_s=1.0 / 120.0,
             substeps=8,
             coulomb=True,
@@ -66,7 +66,7 @@ ENGINE = Engine(
     geometries=("box", "corners"),
     spatial=True,
     precision=Precision.SINGLE,
-    scatter=6e-3,
+    nuisance_sensitivity=6e-3,
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,

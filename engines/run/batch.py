@@ -16,7 +16,7 @@ from engines.declaration import BatchEngine, Engine, Stepping
 from engines.parts.compiled import FloatArray, kernel
 from engines.registry import find
 from engines.run.drive import LAG, LOOK_AROUND
-from engines.run.look import Lists, Look, Run, onward, put_step, undecided
+from engines.run.monitor import Lists, Monitor, Run, onward, put_step, undecided
 from engines.scene import Scene
 from engines.world import Moment, Pose, Step, Worlds
 
@@ -66,7 +66,9 @@ def run_together(name: str, scenes: Sequence[Scene]) -> list[Response]:
         seen = [
             _Seen(
                 scene,
-                Look(scene, dt_s, preset.stepping, worlds.moment, engine.resolution(scene.system)),
+                Monitor(
+                    scene, dt_s, preset.stepping, worlds.moment, engine.resolution(scene.system)
+                ),
             )
             for scene, dt_s in zip(scenes, steps_s, strict=True)
         ]
@@ -85,20 +87,20 @@ class _Seen:
     """What was seen of one of the scenes."""
 
     scene: Scene
-    look: Look
+    monitor: Monitor
     steps: int = 0
     lag_m: float | None = None
     problem: Problem | None = None
 
     @property
     def goes_on(self) -> bool:
-        return self.look.goes_on and self.problem is None
+        return self.monitor.goes_on and self.problem is None
 
     def response(self, wall_s: float) -> Response:
         if self.problem:
             reason, message = self.problem
             return Response.failure(message, reason=reason, steps=self.steps, wall_s=wall_s)
-        found = self.look.response(steps=self.steps, wall_s=wall_s)
+        found = self.monitor.response(steps=self.steps, wall_s=wall_s)
         if self.lag_m is None:
             return found
         return replace(found, observables={**found.observables, LAG: self.lag_m})
@@ -107,7 +109,7 @@ class _Seen:
 def _take_all(worlds: Worlds, seen: Sequence[_Seen]) -> float:
     """Take steps until every response is decided; return the time [s] for each that was seen."""
     steps = np.zeros((len(seen), LOOK_AROUND, len(Step._fields)))
-    first = seen[0].look
+    first = seen[0].monitor
     first.make_room(0)
     plan(first.runs, first.lists, steps[0, :0])  # both are compiled before the clock runs
     watch(first.runs, first.lists, steps[0, :0], np.zeros((0, len(first.runs), len(Pose._fields))))
@@ -118,8 +120,8 @@ def _take_all(worlds: Worlds, seen: Sequence[_Seen]) -> float:
         chunk = steps[:, : min(LOOK_AROUND, left)]
         for each, own in zip(seen, chunk, strict=True):
             if each.goes_on:
-                each.look.make_room(len(own))
-                plan(each.look.runs, each.look.lists, own)
+                each.monitor.make_room(len(own))
+                plan(each.monitor.runs, each.monitor.lists, own)
         states = worlds.advance(Step(*np.moveaxis(chunk, -1, 0)), going)
         states = _checked(states, seen[0].scene, chunk)
         for number, each in enumerate(seen):
@@ -132,19 +134,19 @@ def _take_all(worlds: Worlds, seen: Sequence[_Seen]) -> float:
 def _look_at(
     each: _Seen, worlds: Worlds, number: int, steps: FloatArray, states: FloatArray
 ) -> None:
-    taken = watch(each.look.runs, each.look.lists, steps, states)
+    taken = watch(each.monitor.runs, each.monitor.lists, steps, states)
     each.steps += taken
     lags = getattr(worlds, "lag_m", None)
     if lags is not None:
         each.lag_m = max(each.lag_m or 0.0, float(np.max(lags[number][:taken])))
     fault = worlds.fault(number)
-    seen = each.look.problem
+    seen = each.monitor.problem
     # what went wrong after a response was decided is not its own
-    if fault and (each.look.goes_on or (seen and seen.reason is Reason.DIVERGED)):
+    if fault and (each.monitor.goes_on or (seen and seen.reason is Reason.DIVERGED)):
         each.problem = Problem(Reason.FAULT, fault)
     elif seen:
         each.problem = seen
-    elif each.look.goes_on and each.steps >= each.scene.max_steps:
+    elif each.monitor.goes_on and each.steps >= each.scene.max_steps:
         each.problem = Problem(Reason.UNDECIDED, f"not decided within {each.steps} steps")
 
 
@@ -163,7 +165,7 @@ def plan(runs: Sequence[Run], lists: Lists, steps: FloatArray) -> None:
     Parameters
     ----------
     runs, lists
-        As for `engines.run.look.onward`; the runs are moved on.
+        As for `engines.run.monitor.onward`; the runs are moved on.
     steps : ndarray (steps, 10), to be written in the order of the fields of `Step`
     """
     nowhere = np.zeros((1, 4))
@@ -178,7 +180,7 @@ def watch(runs: Sequence[Run], lists: Lists, steps: FloatArray, states: FloatArr
     Parameters
     ----------
     runs, lists
-        As for `engines.run.look.undecided`, updated.
+        As for `engines.run.monitor.undecided`, updated.
     steps : ndarray (steps, 10), from `plan`
     states : ndarray (steps, bodies, 4), a `Pose` a row, at the end of each
     """

@@ -9,7 +9,7 @@ from typing import cast
 from analytic.response import Problem, Reason, Response
 from engines.declaration import Engine, Stepping
 from engines.registry import find
-from engines.run.look import Look
+from engines.run.monitor import Monitor
 from engines.scene import Scene
 from engines.world import (
     UNLIMITED,
@@ -131,27 +131,27 @@ def simulate_world(
     """
     watched: Callable[[Scene], Scene] | None = getattr(world, "observed", None)
     scene = watched(scene) if watched else scene
-    look = Look(scene, dt_s, stepping, world.moment, resolution)
-    go = driven(look, world) if scene.compiled else None
-    go = go or Walk(look, world, stepping).go
+    monitor = Monitor(scene, dt_s, stepping, world.moment, resolution)
+    go = driven(monitor, world) if scene.compiled else None
+    go = go or Stepper(monitor, world, stepping).go
     limit = math.inf if scene.time_limit_s is None else scene.time_limit_s
     steps, problem = 0, None
     started = perf_counter()
-    while look.goes_on and not problem:
-        look.make_room(LOOK_AROUND)
+    while monitor.goes_on and not problem:
+        monitor.make_room(LOOK_AROUND)
         steps += go(min(LOOK_AROUND, scene.max_steps - steps))
-        if look.goes_on:
+        if monitor.goes_on:
             late = perf_counter() - started > limit
             problem = _fault(world) or (_undecided(f"{limit:g} s") if late else None)
             if steps >= scene.max_steps:
                 problem = problem or _undecided(f"{steps} steps")
     wall_s = perf_counter() - started
-    problem = _fault(world) or look.problem or problem
+    problem = _fault(world) or monitor.problem or problem
     if problem:
         reason, message = problem
         found = Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
     else:
-        found = _with_lag(look.response(steps=steps, wall_s=wall_s), world)
+        found = _with_lag(monitor.response(steps=steps, wall_s=wall_s), world)
     told: Callable[[Response], Response] | None = getattr(world, "told", None)
     return told(found) if told else found
 
@@ -163,7 +163,7 @@ def _with_lag(response: Response, world: World) -> Response:
     return replace(response, observables={**response.observables, LAG: float(lag)})
 
 
-def driven(look: Look, world: World) -> Callable[[int], int] | None:
+def driven(monitor: Monitor, world: World) -> Callable[[int], int] | None:
     """Return how a world takes up to so many steps at once; None where it cannot.
 
     What is returned takes how many at most, and returns how many it took.
@@ -171,9 +171,9 @@ def driven(look: Look, world: World) -> Callable[[int], int] | None:
     drive: Driver | None = getattr(world, "drive", None)
     if drive is None:
         return None
-    look.make_room(0)
-    drive(look.runs, look.lists, 0)  # what is not compiled yet is so before the clock runs
-    return lambda most: drive(look.runs, look.lists, most)
+    monitor.make_room(0)
+    drive(monitor.runs, monitor.lists, 0)  # what is not compiled yet is so before the clock runs
+    return lambda most: drive(monitor.runs, monitor.lists, most)
 
 
 def driver_of(world: World, scene: Scene) -> str:
@@ -186,12 +186,12 @@ def driver_of(world: World, scene: Scene) -> str:
     return "compiled" if hasattr(world, "drive") else "python"
 
 
-class Walk:
+class Stepper:
     """Takes the steps of a run one by one, looking after each.
 
     Parameters
     ----------
-    look : Look
+    monitor : Monitor
         Looks on, and chooses the steps.
     world : World
         Takes them, or goes to their ends by itself.
@@ -199,11 +199,11 @@ class Walk:
         Which of both.
     """
 
-    def __init__(self, look: Look, world: World, stepping: Stepping) -> None:
-        self._look, self._world = look, world
+    def __init__(self, monitor: Monitor, world: World, stepping: Stepping) -> None:
+        self._monitor, self._world = monitor, world
         self._take = _taker(world, stepping)
-        look.make_room(LOOK_AROUND)
-        self._step = look.next(world.state())
+        monitor.make_room(LOOK_AROUND)
+        self._step = monitor.next(world.state())
 
     def go(self, most: int) -> int:
         """Take up to so many steps while the run goes on; return how many were taken."""
@@ -212,7 +212,7 @@ class Walk:
             if self._step is None or taken >= most:
                 break
             taken += self._take(self._step)
-            self._step = self._look.next(self._world.state())
+            self._step = self._monitor.next(self._world.state())
         return taken
 
 

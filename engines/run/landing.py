@@ -13,7 +13,7 @@ import math
 from engines.parts.compiled import State, fill, shared
 from engines.run.timetable import SAME_TIME, Times, even
 from engines.scene import Scene
-from engines.world import Choice, Grip, Moment, Pose, Resolution
+from engines.world import Choice, ContactPhase, Moment, Pose, Resolution
 
 SWING_PART = 8.0
 """A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps."""
@@ -43,7 +43,7 @@ MOST_ACCELERATION = 3e9
 """An impact is near when this angular acceleration [rad/s2] would stop the block in a step; engines
 take what is much larger for a failure."""
 
-CALM_PART = 1.0 / 32.0
+UPLIFT_PART = 1.0 / 32.0
 """A block at rest takes steps of this part of the time until the base can lift it. Each is longer
 than the one before by this part at most: a sudden change would let go of a corner, or leave it as
 low as a long step presses it."""
@@ -74,7 +74,7 @@ class Landing(State):
 
     Attributes
     ----------
-    dt, least, calmest, shortest : float
+    dt, least, rest_factor, shortest : float
         The ordinary step, the shortest one, the longest one of a block at rest, and the shortest
         swing that is followed [s].
     width, half_height, touching : float
@@ -104,7 +104,7 @@ class Landing(State):
 
     dt: float
     least: float
-    calmest: float
+    rest_factor: float
     shortest: float
     width: float
     half_height: float
@@ -152,7 +152,7 @@ def begin_landing(
         to,
         dt=dt_s,
         least=max(NEAR * dt_s, resolution.time_s),
-        calmest=resolution.calmest * dt_s,
+        rest_factor=resolution.rest_factor * dt_s,
         shortest=max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen),
         width=block.width,
         half_height=0.5 * block.height,
@@ -185,7 +185,7 @@ def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     else:
         choice = aloft(to, times, pose, lifted)
     to.between = to.part * choice.dt_s + (1.0 - to.part) * to.last_dt
-    to.last_dt, to.last_approach = choice.dt_s, choice.grip == Grip.APPROACH
+    to.last_dt, to.last_approach = choice.dt_s, choice.phase == ContactPhase.APPROACH
     to.last_rate = pose.rate
     return choice
 
@@ -199,16 +199,16 @@ def at_rest(to: Landing, times: Times) -> Choice:
     """
     if times.loaded:
         to.side = times.load_side
-        return Choice(even(times.left, resolving(to, times)), Grip.REST, to.side)
+        return Choice(even(times.left, resolving(to, times)), ContactPhase.REST, to.side)
     to.side = 0.0
-    if CALM_PART * times.calm > to.dt:
-        longest = max(min((1.0 + CALM_PART) * to.last_dt, to.calmest), to.dt)
-        return Choice(min(CALM_PART * times.calm, longest), Grip.REST, 0.0)
-    if not times.lifts_next or times.calm * (1.0 - SAME_TIME) > to.dt:
-        return Choice(even(times.calm, to.dt), Grip.REST, 0.0)
+    if UPLIFT_PART * times.time_to_uplift > to.dt:
+        longest = max(min((1.0 + UPLIFT_PART) * to.last_dt, to.rest_factor), to.dt)
+        return Choice(min(UPLIFT_PART * times.time_to_uplift, longest), ContactPhase.REST, 0.0)
+    if not times.lifts_next or times.time_to_uplift * (1.0 - SAME_TIME) > to.dt:
+        return Choice(even(times.time_to_uplift, to.dt), ContactPhase.REST, 0.0)
     # a short last step, or the first one aloft would feel forces of the time before
-    part = 1.0 if times.calm <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER
-    return Choice(part * times.calm, Grip.REST, times.load_side)
+    part = 1.0 if times.time_to_uplift <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER
+    return Choice(part * times.time_to_uplift, ContactPhase.REST, times.load_side)
 
 
 @shared
@@ -229,7 +229,7 @@ def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
     to.approaching = to.approaching and ahead < math.inf
     if to.approaching or ahead < min(2.0 * longest, times.left):
         return towards_impact(to, ahead, longest, pose)
-    return Choice(even(times.left, longest), Grip.SWING, to.side)
+    return Choice(even(times.left, longest), ContactPhase.SWING, to.side)
 
 
 @shared
@@ -239,14 +239,14 @@ def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Cho
     The impact is `ahead` [s] away; no step is longer than `longest` [s].
     """
     if not to.approaching and ahead > longest:
-        return Choice(0.5 * ahead, Grip.SWING, to.side)
+        return Choice(0.5 * ahead, ContactPhase.SWING, to.side)
     to.approaching = True
     least = max(to.least, abs(pose.rate) / MOST_ACCELERATION)
     if ahead > least and not stands(to, ahead, pose):
-        return Choice((1.0 - REMAINDER) * ahead, Grip.APPROACH, to.side)
+        return Choice((1.0 - REMAINDER) * ahead, ContactPhase.APPROACH, to.side)
     to.approaching = False
     to.strikes, to.strike_s = 1, least
-    return Choice(least, Grip.STRIKE, to.side)
+    return Choice(least, ContactPhase.STRIKE, to.side)
 
 
 @shared
@@ -266,13 +266,13 @@ def through(to: Landing, times: Times, pose: Pose) -> Choice:
     settled = abs(pose.rate - to.last_rate) <= to.settled * abs(pose.rate)
     over = to.strikes > STRIKES and settled and gap(to, pose) < to.touching
     if not over and to.strikes <= MOST_STRIKES:
-        return Choice(to.strike_s, Grip.STRIKE, to.side)
+        return Choice(to.strike_s, ContactPhase.STRIKE, to.side)
     to.strikes, to.bouncing = 0, True
     if swing_s(to, pose) < to.shortest:
         return settle(to, times)
     to.side = math.copysign(1.0, pose.rate)
     longest = resolving_swing(to, pose, resolving(to, times))
-    return Choice(even(times.left, FIRST_PART * longest), Grip.SWING, to.side)
+    return Choice(even(times.left, FIRST_PART * longest), ContactPhase.SWING, to.side)
 
 
 @shared

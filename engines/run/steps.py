@@ -9,7 +9,7 @@ from engines.run.ground import Ground, mean_velocity_over
 from engines.run.landing import Landing, begin_landing, choose
 from engines.run.timetable import Times, begin_times, even, pass_to
 from engines.scene import Scene
-from engines.world import UNLIMITED, Choice, Grip, Moment, Pose, Resolution, Step
+from engines.world import UNLIMITED, Choice, ContactPhase, Moment, Pose, Resolution, Step
 
 for function in (
     plain.one_minus_sinc,
@@ -123,7 +123,7 @@ def next_step(
     pose : Pose, of the block after the last step
     lifted : bool, whether it is aloft
     """
-    dt, grip, side = chosen(pace, stops, loads, pose, lifted)
+    dt, phase, side = chosen(pace, stops, loads, pose, lifted)
     begin, end = pace.time, pace.time + dt
     # from the moment of the last velocity to that of this one
     kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
@@ -134,7 +134,7 @@ def next_step(
     pace.time, pace.last_dt = end, dt
     pull_x = -base_kick / dt if pace.felt else 0.0
     pull_z = -pace.gravity * kick_s / dt
-    purpose: Any = grip.value  # in compiled code a name has no number of its own
+    purpose: Any = phase.value  # in compiled code a name has no number of its own
     return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
 
 
@@ -154,8 +154,8 @@ def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted:
     What it takes is said at `next_step`.
     """
     if pace.policy == FIXED:
-        return Choice(pace.dt, Grip.SWING, 0.0)
+        return Choice(pace.dt, ContactPhase.SWING, 0.0)
     pass_to(pace.times, stops, loads, pace.time)
     if pace.policy == LANDING:
         return choose(pace.landing, pace.times, pose, lifted)
-    return Choice(even(pace.times.left, pace.dt), Grip.SWING, 0.0)
+    return Choice(even(pace.times.left, pace.dt), ContactPhase.SWING, 0.0)

@@ -49,7 +49,7 @@ class Times(State):
         Stops and loads that have passed.
     left : float
         Time [s] left until the next stop.
-    calm : float
+    time_to_uplift : float
         Time [s] left until a block at rest may lift, or the motion or the observation ends.
     loaded : bool
         Whether the first load that has not ended has begun.
@@ -65,7 +65,7 @@ class Times(State):
     stops: int
     loads: int
     left: float
-    calm: float
+    time_to_uplift: float
     loaded: bool
     lifts_next: bool
     load_s: float
@@ -139,7 +139,7 @@ def pass_to(times: Times, stops: FloatArray, loads: FloatArray, time: float) -> 
     elif times.end > reached:
         over = times.end
     times.left = stops[times.stops] - time
-    times.calm = min(begin, over) - time
+    times.time_to_uplift = min(begin, over) - time
     times.loaded = begin <= reached
     times.lifts_next = begin == min(begin, over)
 

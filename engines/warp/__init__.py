@@ -37,7 +37,7 @@ ENGINE = BatchEngine(
     # sizes and shaking changed by a rounding, 6e-8, in 8 histories: the peaks moved by up to 2.0e-3
     # (frame "base") and 2.2e-3 ("world"), and by 4e-4 where the impact stayed in its step; in the
     # next step it makes a peak 2.0e-3 larger in double precision, too, where a change of 1e-5 does
-    scatter=2.2e-3,
+    nuisance_sensitivity=2.2e-3,
     shortest_step=3e-6,
     factors=FACTORS,
     rules=RULES,

@@ -86,9 +86,9 @@ def _found(
     Extreme cases are counted where they were run with the very setting that is advised.
     """
     engine, value = str(best["engine"]), float(best["value"])
-    own = math.nan if preset.dial else preset.step_s
+    own = math.nan if preset.accuracy_knob else preset.step_s
     found = {name: best[name] for name in NONE_FOUND if name in best}
-    found["dt_s"] = own if preset.dial or math.isnan(value) else value / block.p
+    found["dt_s"] = own if preset.accuracy_knob or math.isnan(value) else value / block.p
     if np.array_equal(value, declared_value(preset), equal_nan=True):
         source = engine if preset is ENGINES[engine].best else f"{engine}:{preset.name}"
         found |= extremes(published, source, target)

@@ -54,10 +54,11 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        engine, preset; value: p dt, or the dial of an engine with steps of its own, nan for a step
-        that the library has in seconds; wall_s: mean time of a case [s]; runs: how often each was
-        timed at least; driver: who took the steps; cases; max_error: the largest error of the peak,
-        inf where an outcome is wrong or a case failed. Those of a preset from coarse to fine.
+        engine, preset; value: p dt, or the accuracy knob of an engine with steps of its own, nan
+        for a step that the library has in seconds; wall_s: mean time of a case [s]; runs: how
+        often each was timed at least; driver: who took the steps; cases; max_error: the largest
+        error of the peak, inf where an outcome is wrong or a case failed. Those of a preset from
+        coarse to fine.
     """
     found = pd.concat([along_steps(published, engines), of_paper(published, engines)])
     # where both tables know a setting, the ladder's time is the best of several
@@ -133,7 +134,7 @@ def options_at(preset: Preset, value: float) -> dict[str, Any]:
     ----------
     preset : Preset
     value : float
-        p dt, or that of the preset's dial; nan for its own step, which needs no option.
+        p dt, or that of the preset's accuracy knob; nan for its own step, which needs no option.
 
     Returns
     -------
@@ -142,18 +143,20 @@ def options_at(preset: Preset, value: float) -> dict[str, Any]:
     """
     if math.isnan(value):
         return {}
-    return {"settings": {preset.dial[0]: value}} if preset.dial else {"step": value}
+    return (
+        {"settings": {preset.accuracy_knob[0]: value}} if preset.accuracy_knob else {"step": value}
+    )
 
 
 def declared_value(preset: Preset) -> float:
-    """Return p dt, or the dial, of a preset as it is declared; nan where its step is in seconds."""
-    if preset.dial is not None:
-        return float(getattr(preset.settings, preset.dial[0]))
+    """Return p dt, or the accuracy knob, as a preset is declared; nan for a step in seconds."""
+    if preset.accuracy_knob is not None:
+        return float(getattr(preset.settings, preset.accuracy_knob[0]))
     return preset.ordinary_step()
 
 
 def in_words(preset: Preset, value: float) -> str:
-    """Return a setting of a preset: its p dt, its dial, or the library's own step.
+    """Return a setting of a preset: its p dt, its accuracy knob, or the library's own step.
 
     Parameters
     ----------
@@ -162,7 +165,7 @@ def in_words(preset: Preset, value: float) -> str:
     """
     if math.isnan(value):
         return "its own step"
-    return f"{'p dt' if preset.dial is None else preset.dial[0]} = {value:g}"
+    return f"{'p dt' if preset.accuracy_knob is None else preset.accuracy_knob[0]} = {value:g}"
 
 
 def declared_step(preset: Preset) -> float:

@@ -51,7 +51,7 @@ def literal(
     engine, preset : Engine, Preset
     block : RigidBlock
     value : float
-        p dt, or the preset's dial; nan for its own step.
+        p dt, or the preset's accuracy knob; nan for its own step.
     friction : float, optional
         By default the preset's.
 

@@ -109,5 +109,5 @@ def judged(source: Source, response: Response) -> Line:
 def should_keep(source: Source) -> float:
     """Return the relative error of its peak that an engine's preset should keep."""
     if source.lands:
-        return max(LANDING, source.declared.scatter)
+        return max(LANDING, source.declared.nuisance_sensitivity)
     return LOOSE if source.preset in UNTUNED else EQUAL

@@ -20,7 +20,7 @@ from engines import ENGINES
 from engines.declaration import BatchEngine
 from engines.parts.compiled import PACKAGE
 from engines.run.batch import alike, run_together
-from engines.run.look import compile_look
+from engines.run.monitor import compile_monitor
 from engines.scene import Scene
 from studies.kit.jobs import Job, ask, short
 from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
@@ -106,7 +106,7 @@ def compile_ahead(
         if source.engine not in ENGINES or not source.declared.installed:
             continue
         if not tasks:
-            tasks.append(pool.schedule(compile_look, (), COMPILING_S))
+            tasks.append(pool.schedule(compile_monitor, (), COMPILING_S))
         if source.declared.compiles:
             tasks.append(pool.schedule(ask_apart, (ask_, short(job), source, True), COMPILING_S))
     for task in tasks:

@@ -60,8 +60,8 @@ def _along_step(source: str, event_tolerance: float) -> Method:
 
 
 def _of_preset(engine: str, preset: Preset) -> Method:
-    setting, values = preset.dial or ("step", ENGINE_STEPS)
-    source, own = f"{engine}:{preset.name}", preset.dial is not None
+    setting, values = preset.accuracy_knob or ("step", ENGINE_STEPS)
+    source, own = f"{engine}:{preset.name}", preset.accuracy_knob is not None
     return Method(source=source, setting=setting, values=values, of_engine=own)
 
 

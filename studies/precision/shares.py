@@ -20,7 +20,7 @@ from analytic.response import Outcome, Response
 from engines import ENGINES, Scene
 from engines.declaration import Stepping
 from engines.run.drive import build, run
-from engines.run.look import Look
+from engines.run.monitor import Monitor
 from engines.world import World
 from studies.cases.paper import HISTORIES
 from studies.precision.repeats import best_of, enough
@@ -135,7 +135,7 @@ def clocks(engine: str) -> Iterator[dict[str, float]]:
     places: dict[str, tuple[Any, str]] = {
         "step": (world, "advance" if stepping is Stepping.OWN else "step"),
         "pose": (world, "state"),
-        "look": (Look, "next"),
+        "look": (Monitor, "next"),
     }
     if ENGINES[engine].own_step:
         places["engine"] = own_step(engine)

@@ -21,7 +21,7 @@ from analytic.motion import SinePulse
 from engines.declaration import Engine
 from engines.run.drive import build
 from engines.scene import Scene
-from engines.world import Grip, Pose, Step, SteppedWorld
+from engines.world import ContactPhase, Pose, Step, SteppedWorld
 from studies.restitution.ways import Way
 
 AHEAD = 20
@@ -180,7 +180,7 @@ def _watched(world: SteppedWorld, asked: Strike, scene: Scene) -> Struck:
     for number in range(AHEAD + 1 + PATIENCE):
         (x, z), end = corner(pose), (number + 1) * dt
         pull = -scene.system.gravity * kick / dt
-        world.step(Step(dt, end, kick, 0.0, pull, 0.0, 0.0, 0.0, Grip.SWING, 0.0))
+        world.step(Step(dt, end, kick, 0.0, pull, 0.0, 0.0, 0.0, ContactPhase.SWING, 0.0))
         pose, kick = Pose(*world.state()[0]), dt
         new_x, new_z = corner(pose)
         rise, slide = (new_z - z) / dt / approach, (new_x - x) / dt / approach

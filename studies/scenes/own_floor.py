@@ -6,8 +6,8 @@ from analytic import Record, RigidBlock, simulate
 from analytic.motion import Motion
 from analytic.response import Response
 from engines import ENGINES, Scene
-from engines.run.drive import Walk, build
-from engines.run.look import Look
+from engines.run.drive import Stepper, build
+from engines.run.monitor import Monitor
 
 
 def exact_on_its_floor(engine: str, preset: str, block: RigidBlock, motion: Motion) -> Response:
@@ -33,8 +33,8 @@ def exact_on_its_floor(engine: str, preset: str, block: RigidBlock, motion: Moti
     try:
         if not hasattr(world, "base_x_m"):
             return simulate(block, motion)
-        look = Look(scene, dt_s, used.stepping, world.moment, declared.resolution(block))
-        walk, places = Walk(look, world, used.stepping), [0.0, 0.0]
+        monitor = Monitor(scene, dt_s, used.stepping, world.moment, declared.resolution(block))
+        walk, places = Stepper(monitor, world, used.stepping), [0.0, 0.0]
         while walk.go(1):
             places.append(float(world.base_x_m))
     finally:

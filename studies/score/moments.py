@@ -19,7 +19,7 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from engines.declaration import Stepping
 from engines.run.drive import NotAvailableError, build
-from engines.world import Grip, Moment, Step, SteppedWorld
+from engines.world import ContactPhase, Moment, Step, SteppedWorld
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.refusing import brief, one_line
@@ -93,7 +93,9 @@ def flown(world: SteppedWorld, dt_s: float, gravity: float) -> FloatArray:
     pulls = np.array([*[PULL] * THROWN, *[0.0] * ALONE, -PULL, *[0.0] * AFTER]) * gravity
     heights = [float(world.state()[0][1])]
     for number, pull in enumerate(pulls.tolist(), start=1):
-        world.step(Step(dt_s, number * dt_s, dt_s, 0.0, pull, 0.0, 0.0, 0.0, Grip.SWING, 0.0))
+        world.step(
+            Step(dt_s, number * dt_s, dt_s, 0.0, pull, 0.0, 0.0, 0.0, ContactPhase.SWING, 0.0)
+        )
         heights.append(float(world.state()[0][1]))
     return np.array(heights)
 

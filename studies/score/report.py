@@ -133,6 +133,6 @@ def helps(engine: Engine) -> pd.DataFrame:
     return pd.DataFrame(
         {"preset": preset.name, "is": word, "what": what.value}
         for preset in engine.presets
-        for word, named in (("helped by", preset.helped_by), ("misses", preset.misses))
+        for word, named in (("helped by", preset.helped_by), ("misses", preset.deviations))
         for what in named
     )

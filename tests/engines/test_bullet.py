@@ -20,7 +20,7 @@ from engines.pybullet import fast as bullet_loop
 from engines.pybullet.addresses import spans
 from engines.pybullet.settings import FACTORS, LANDING, TUNED
 from engines.run.drive import build, run, simulate_world
-from engines.world import Grip
+from engines.world import ContactPhase
 
 p = pytest.importorskip("pybullet")
 
@@ -93,7 +93,7 @@ def test_where_functions_stand():
 def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
-    begin = bullet.begin_hold
+    begin = bullet.begin_contact
     looped = iter((True, False))
 
     def otherwise(held, *rest):
@@ -102,35 +102,35 @@ def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
             setattr(held, name, other)
 
     with monkeypatch.context() as patch:
-        patch.setattr(bullet, "begin_hold", otherwise)
+        patch.setattr(bullet, "begin_contact", otherwise)
         assert not bullet.loop_agrees()
     assert run("pybullet", ROCKS).driver == "python: its loop does not step as Python does"
 
 
-@pytest.mark.parametrize("grip", Grip)
-def test_both_drivers_correct_alike_whatever_a_step_is_for(grip, monkeypatch):
-    monkeypatch.setattr(bullet, "TRIAL", [step._replace(grip=grip) for step in bullet.TRIAL])
+@pytest.mark.parametrize("phase", ContactPhase)
+def test_both_drivers_correct_alike_whatever_a_step_is_for(phase, monkeypatch):
+    monkeypatch.setattr(bullet, "TRIAL", [step._replace(phase=phase) for step in bullet.TRIAL])
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
     monkeypatch.setattr(
-        bullet, "corrected", lambda *_: (0.0, 0.0) if grip < Grip.APPROACH else (1.0, 1.0)
+        bullet, "corrected", lambda *_: (0.0, 0.0) if phase < ContactPhase.APPROACH else (1.0, 1.0)
     )
     assert not bullet.loop_agrees()  # what is corrected is seen in the trial
 
 
 @pytest.mark.parametrize(
-    ("grip", "dt_s", "normal", "across"),
+    ("phase", "dt_s", "normal", "across"),
     [
-        (Grip.SWING, 1e-3, 1.0, 1.0),
-        (Grip.SWING, 2e-3, 1.0, 1.0),  # no more than there is
-        (Grip.SWING, 5e-4, 0.25, 0.25),
-        (Grip.REST, 5e-4, 0.25, 0.0),
-        (Grip.APPROACH, 1e-3, 0.0, 0.0),
-        (Grip.STRIKE, 1e-3, 0.0, 0.0),
+        (ContactPhase.SWING, 1e-3, 1.0, 1.0),
+        (ContactPhase.SWING, 2e-3, 1.0, 1.0),  # no more than there is
+        (ContactPhase.SWING, 5e-4, 0.25, 0.25),
+        (ContactPhase.REST, 5e-4, 0.25, 0.0),
+        (ContactPhase.APPROACH, 1e-3, 0.0, 0.0),
+        (ContactPhase.STRIKE, 1e-3, 0.0, 0.0),
     ],
 )
-def test_what_is_corrected_of_a_position(grip, dt_s, normal, across):
-    assert bullet_loop.corrected(grip, dt_s, 1e-3) == (normal, across)
+def test_what_is_corrected_of_a_position(phase, dt_s, normal, across):
+    assert bullet_loop.corrected(phase, dt_s, 1e-3) == (normal, across)
 
 
 def apart(number):

@@ -75,7 +75,7 @@ def test_a_declaration_is_whole(name):
     assert replace(bare, **{name: getattr(naive.settings, name) for name in naive.own}) == (
         naive.settings
     )
-    assert not any(use.misses for use in engine.presets if use.name not in UNTUNED)
+    assert not any(use.deviations for use in engine.presets if use.name not in UNTUNED)
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)
         for left_out in filter(None, preset.helped_by.values()):

@@ -85,21 +85,23 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
     asked = Scene(system=block, motion=pulse(1.2, 2.0, 1, block), preset=preset)
     dt_s, resolved = declared.preset(preset).ordinary_step_s(asked), declared.resolution(block)
     peaks = []
-    for calmest in (1.0, resolved.calmest):
+    for rest_factor in (1.0, resolved.rest_factor):
         world = build(declared, asked)
         try:
-            within = resolved._replace(calmest=calmest)
+            within = resolved._replace(rest_factor=rest_factor)
             peaks.append(simulate_world(world, asked, dt_s, Stepping.LANDING, within).peak_ratio)
         finally:
             world.close()
-    assert peaks[0] == pytest.approx(peaks[1], rel=max(equal_to(engine, 1e-6), declared.scatter))
+    assert peaks[0] == pytest.approx(
+        peaks[1], rel=max(equal_to(engine, 1e-6), declared.nuisance_sensitivity)
+    )
 
 
 @pytest.mark.parametrize(("engine", "preset"), in_both_frames(TUNED))
 def test_frames_agree(engine, preset):
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
     base, world = (rocked(engine, preset=preset, frame=frame) for frame in FRAMES)
-    within = max(equal_to(engine, 1e-6), HERE[engine].scatter)
+    within = max(equal_to(engine, 1e-6), HERE[engine].nuisance_sensitivity)
     assert base.peak_ratio == pytest.approx(world.peak_ratio, rel=within)
     assert base.peak_ratio > 0.1
     assert world.observables.get(LAG, 0.0) < 1e-6

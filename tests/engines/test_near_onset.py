@@ -13,7 +13,7 @@ from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
 from engines.declaration import UNTUNED, Stepping
-from engines.disclosure import Miss
+from engines.disclosure import Deviation
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
@@ -23,7 +23,9 @@ MISSED = {
     "physx": (1e-3, 1e-3),  # of a small swing single precision tells less apart
 }
 """By how much of alpha, or of itself, a peak near the onset may be missed; most are small."""
-AWAKE = [(name, use) for name, use in USES if Miss.SLEEP not in HERE[name].preset(use).misses]
+AWAKE = [
+    (name, use) for name, use in USES if Deviation.SLEEP not in HERE[name].preset(use).deviations
+]
 MOST = 40_000
 """Steps, of some thousands that are needed."""
 
@@ -57,7 +59,7 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
 
 
 @pytest.mark.parametrize(
-    ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
+    ("engine", "preset"), [pytest.param(*use, marks=held_to(Deviation.SLEEP, *use)) for use in USES]
 )
 @pytest.mark.parametrize("quiet_s", [0.7, 2.0])
 def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):

@@ -15,7 +15,7 @@ from engines.declaration import AT_REST, Stepping
 from engines.newton import models as newton_models
 from engines.registry import VARIANTS
 from engines.run.drive import build, run
-from engines.run.look import Look
+from engines.run.monitor import Monitor
 from studies.cases.variants import variants
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
@@ -58,9 +58,9 @@ def test_a_recorded_step_has_its_length_for_good():
     """Another one would be taken as if it were as long as the one that was recorded."""
     motion = scene()
     world = build(HERE["newton"], motion)
-    look = Look(motion, world._dt, Stepping.FIXED)
-    look.make_room(1)
-    step = look.next(world.state())
+    monitor = Monitor(motion, world._dt, Stepping.FIXED)
+    monitor.make_room(1)
+    step = monitor.next(world.state())
     world.step(step)
     assert not world.fault()
     world.step(step._replace(dt_s=2.0 * step.dt_s))
@@ -98,9 +98,9 @@ def test_a_model_is_as_good_as_new_for_the_next_run(solver):
 def test_two_runs_at_once_have_a_model_each():
     first, second = (build(HERE["newton"], scene()) for _ in range(2))
     before = second.state()
-    look = Look(scene(), HERE["newton"].best.ordinary_step_s(scene()), Stepping.FIXED)
-    look.make_room(1)
-    first.step(look.next(first.state()))
+    monitor = Monitor(scene(), HERE["newton"].best.ordinary_step_s(scene()), Stepping.FIXED)
+    monitor.make_room(1)
+    first.step(monitor.next(first.state()))
     assert first.state() != before
     assert second.state() == before
     for world in (first, second):

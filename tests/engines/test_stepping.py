@@ -13,7 +13,7 @@ from uses import BLOCK, pulse, scene
 from analytic import simulate
 from analytic.response import Outcome
 from engines.declaration import Stepping
-from engines.world import Grip, Moment
+from engines.world import ContactPhase, Moment
 
 MOTION = pulse(1.3, 3.0, 2)
 SEEN_S = 2.0
@@ -35,13 +35,13 @@ def test_steps_end_on_what_the_motion_does_and_on_the_uplift(steps):
     for corner in corners:
         assert min(abs(end - corner) for end in ends) < 1e-12
     assert ends == sorted(ends)
-    aloft = [step for step in steps if step.grip is not Grip.REST]
+    aloft = [step for step in steps if step.phase is not ContactPhase.REST]
     assert all(step.dt_s <= LOOSE * (1.0 + 1e-9) for step in aloft)
 
 
 def test_steps_end_on_impacts(steps):
     for impact in EXACT.impacts:
-        nearest = min((abs(step.end_s - impact.time), step.grip.name) for step in steps)
+        nearest = min((abs(step.end_s - impact.time), step.phase.name) for step in steps)
         # what is left when an impact is near, of which the next step covers all
         assert nearest[0] < 1e-6 * LOOSE
 
@@ -49,8 +49,8 @@ def test_steps_end_on_impacts(steps):
 def test_an_approach_halves_what_is_left(steps):
     approaches = [
         list(group)
-        for grip, group in itertools.groupby(steps, key=lambda step: step.grip)
-        if grip is Grip.APPROACH
+        for phase, group in itertools.groupby(steps, key=lambda step: step.phase)
+        if phase is ContactPhase.APPROACH
     ]
     assert len(approaches) == len(EXACT.impacts)
     for approach, impact in zip(approaches, EXACT.impacts, strict=True):
@@ -61,7 +61,7 @@ def test_an_approach_halves_what_is_left(steps):
 
 
 def test_through_an_impact_the_contact_alone_acts(steps):
-    strikes = [step for step in steps if step.grip is Grip.STRIKE]
+    strikes = [step for step in steps if step.phase is ContactPhase.STRIKE]
     # four at least, and an exact velocity is settled by then
     assert len(strikes) == 4 * len(EXACT.impacts)
     # gravity turns the block by less than a millionth of what the impact does
@@ -70,12 +70,14 @@ def test_through_an_impact_the_contact_alone_acts(steps):
 
 def test_each_step_knows_the_corner(steps):
     """The block turns about the corner on the side of its lean, whichever comes to strike."""
-    times = sorted({step.end_s - 0.5 * step.dt_s for step in steps if step.grip is Grip.SWING})
+    times = sorted(
+        {step.end_s - 0.5 * step.dt_s for step in steps if step.phase is ContactPhase.SWING}
+    )
     history = simulate(BLOCK, MOTION, duration=SEEN_S, times=times).history
     assert history is not None
     theta = dict(zip(times, history.theta.tolist(), strict=True))
     for step in steps:
-        if step.grip is Grip.SWING:
+        if step.phase is ContactPhase.SWING:
             assert step.side == math.copysign(1.0, theta[step.end_s - 0.5 * step.dt_s])
 
 
@@ -109,7 +111,7 @@ def test_a_block_that_does_not_lift_is_not_lifted():
     world = StandsStill(asked)
     response = watched(world, asked, Stepping.LANDING)
     assert response.outcome is Outcome.AT_REST
-    assert {step.grip for step in world.steps} == {Grip.REST}
+    assert {step.phase for step in world.steps} == {ContactPhase.REST}
     # it comes slowly to where the block may lift, and is told which corner carries it then
     sides = [side for side, _ in itertools.groupby(step.side for step in world.steps)]
     assert sides[:2] == [0.0, -1.0]
@@ -152,7 +154,7 @@ def test_nothing_strikes_that_does_not_come_down():
     world = HangsInTheAir(asked)
     response = watched(world, asked, Stepping.LANDING)
     assert response.impacts == ()
-    assert {step.grip for step in world.steps[1:]} <= {Grip.REST, Grip.SWING}
+    assert {step.phase for step in world.steps[1:]} <= {ContactPhase.REST, ContactPhase.SWING}
 
 
 def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
@@ -161,5 +163,5 @@ def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
     world = Bounces(asked)
     response = watched(world, asked, Stepping.LANDING)
     assert response.impacts == ()
-    assert Grip.STRIKE not in {step.grip for step in world.steps}
+    assert ContactPhase.STRIKE not in {step.phase for step in world.steps}
     assert len(world.steps) < 4 * 3.0 / LOOSE

@@ -9,7 +9,7 @@ from given import BLOCK, pulse
 from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import UNTUNED, Stepping
-from engines.disclosure import Miss
+from engines.disclosure import Deviation
 from engines.run.drive import run
 from engines.world import ROUNDINGS
 from studies.cases.paper import sweep_cases
@@ -37,7 +37,7 @@ def held_frames(engine, preset):
 
 
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in held_frames(*use)]
-MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]
+MIRRORED = [pytest.param(*use, marks=held_to(Deviation.MIRROR, *use)) for use in USES]
 
 every_use = pytest.mark.parametrize(("engine", "preset"), USES)
 every_tuned_use = pytest.mark.parametrize(("engine", "preset"), TUNED)
@@ -63,7 +63,7 @@ def speed_band(engine):
 
     It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
     """
-    return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].scatter))
+    return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].nuisance_sensitivity))
 
 
 def band(engine):
@@ -71,9 +71,9 @@ def band(engine):
 
     Core engines are of second order, (p dt)^2 = 2.5e-5 times a factor of a few; of others it is
     asked that no impact falls inside an ordinary step, which would cost some p dt, or what an
-    engine declares to scatter.
+    engine declares as its sensitivity.
     """
-    return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].scatter)
+    return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].nuisance_sensitivity)
 
 
 def rocked(engine, motion=SHAKEN, **options):

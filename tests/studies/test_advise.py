@@ -83,7 +83,7 @@ def test_what_is_advised_keeps_the_error_with_every_finer_step_and_nothing_cheap
             continue
         assert row.max_error <= target
         assert row.wall_s == kept["wall_s"].min()
-        own = math.nan if preset.dial else preset.step_s if math.isnan(row.value) else None
+        own = math.nan if preset.accuracy_knob else preset.step_s if math.isnan(row.value) else None
         assert row.dt_s == pytest.approx(own or row.value / BLOCK.p, nan_ok=True)
 
 
@@ -276,7 +276,7 @@ def test_a_dial_is_no_step(capsys):
     lines = advice(PUBLISHED, ["drake"], [0.1, 1e-2], BLOCK).set_index(["target", "preset"])
     loose, close = (lines.loc[(target, "error-controlled")] for target in (0.1, 1e-2))
     drake = ENGINES["drake"].preset("error-controlled")
-    assert {loose["value"], close["value"]} <= set(drake.dial[1])
+    assert {loose["value"], close["value"]} <= set(drake.accuracy_knob[1])
     assert loose["value"] > close["value"]
     assert math.isnan(loose["dt_s"])
     assert loose["cheapest"]

@@ -21,7 +21,7 @@ from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.registry import VARIANTS as OTHERS
 from engines.run.drive import build, run
-from engines.run.look import Look
+from engines.run.monitor import Monitor
 from studies.contact.study import (
     QUICK_ASPECTS,
     all_variants,
@@ -143,9 +143,9 @@ def test_solref_and_margin_reach_the_library():
     settings = of("mujoco", BEST, "reference: 2 dt 1").settings
     asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
     world = build(ENGINES["mujoco"], asked)
-    look = Look(asked, dt_s, Stepping.FIXED)
-    look.make_room(1)
-    world.step(look.next(world.state()))
+    monitor = Monitor(asked, dt_s, Stepping.FIXED)
+    monitor.make_room(1)
+    world.step(monitor.next(world.state()))
     assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
     assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()
@@ -302,8 +302,8 @@ def reported(chosen, rows, tmp_path):
     landing = table[table["preset"] == "landing"]
     # steps that land on impacts come within 1e-3, or what the engine scatters by; the naive
     # presets are off by more
-    scatter = landing["engine"].map(lambda name: ENGINES[name].scatter)
-    assert (landing["max_error"] < scatter.clip(lower=1e-3)).all()
+    nuisance_sensitivity = landing["engine"].map(lambda name: ENGINES[name].nuisance_sensitivity)
+    assert (landing["max_error"] < nuisance_sensitivity.clip(lower=1e-3)).all()
     assert (table[table["preset"] == DEFAULT]["max_error"] > 1e-3).all()
     assert "one zero makes it the default" in text
     exact = simulate(CASE.block, CASE.motion).peak_ratio

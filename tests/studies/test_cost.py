@@ -48,7 +48,7 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
     costs = {"full box instead of corners": ONE_CONTACT.get(engine, 1e-1), "steps all equal": 1e-2}
     lands = ENGINES[engine].best.stepping is Stepping.LANDING
     # equal steps, or those of an estimated error, add it up otherwise in other coordinates
-    least = max(2.0 * equal_to(engine), ENGINES[engine].scatter)
+    least = max(2.0 * equal_to(engine), ENGINES[engine].nuisance_sensitivity)
     allowed = max(costs.get(omission.name, 1e-4 if lands else 1e-3), least)
     whole = 0.385157 if lands else run(engine, SCENE).peak_ratio
     assert whole == pytest.approx(0.385157, rel=1e-2)

@@ -20,7 +20,7 @@ from engines.declaration import Stepping
 from engines.parts.quiet import imported
 from engines.registry import FURTHER
 from engines.run.drive import build, simulate_world
-from engines.run.look import compile_look
+from engines.run.monitor import compile_monitor
 from engines.scene import Scene
 from studies.__main__ import run
 from studies.kit.executors import Local
@@ -86,7 +86,7 @@ def rows(tmp_path_factory):
     note = tmp_path_factory.mktemp("hostile") / "note"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(hostile.NOTE, str(note))
-        compile_look()
+        compile_monitor()
         found = []
         # on a busy machine it takes a second to start processes, and to note them
         for limit_s, endless in ((3.0, True), (PATIENCE_S, False)):

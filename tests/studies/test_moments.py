@@ -11,7 +11,7 @@ from given import BLOCK
 from engines import installed_engines
 from engines.declaration import Stepping
 from engines.run.drive import build
-from engines.run.look import Look
+from engines.run.monitor import Monitor
 from engines.world import Moment
 from studies.__main__ import run
 from studies.score import study as score
@@ -116,11 +116,11 @@ def test_it_is_the_moment_by_which_the_angle_follows_the_rate(source, alone):
     asked = resolve(source)
     scene = scene_of(BLOCK, UNFELT, asked.preset, start=(0.5 * BLOCK.alpha, 0.0), frame="base")
     world = build(asked.declared, scene)
-    look = Look(scene, asked.used.ordinary_step_s(scene), asked.used.stepping, world.moment)
-    look.make_room(64)
+    monitor = Monitor(scene, asked.used.ordinary_step_s(scene), asked.used.stepping, world.moment)
+    monitor.make_room(64)
     angles, rates, ends = [], [], []
     for _ in range(60):
-        step = look.next(world.state())
+        step = monitor.next(world.state())
         world.step(step)
         ends.append(step.end_s)
         angles.append(world.state()[0][2])

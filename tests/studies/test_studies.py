@@ -11,7 +11,7 @@ from given import BLOCK, FULL_SINE
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
-from engines.disclosure import Miss
+from engines.disclosure import Deviation
 from studies import respond
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.histories import study as histories
@@ -28,7 +28,7 @@ HERE = installed_engines()
 EVERY_NAME = [
     *(name for name in SOURCES if name not in ENGINES or name in HERE),
     *(
-        pytest.param(f"{engine}:{use.name}", marks=held_to(Miss.PEAK, engine, use.name))
+        pytest.param(f"{engine}:{use.name}", marks=held_to(Deviation.PEAK, engine, use.name))
         for engine in HERE
         for use in ENGINES[engine].presets
     ),
@@ -55,7 +55,7 @@ def within(name):
     if source.kind == "model":
         return 1e-5 if name in MISSED else 1e-11
     if source.lands:
-        return max(1e-4, ENGINES[source.engine].scatter)
+        return max(1e-4, ENGINES[source.engine].nuisance_sensitivity)
     # out of the box an engine is wrong by a quarter; an impact inside an equal step costs 1e-2
     return 0.3 if source.preset in UNTUNED else 2e-2
 

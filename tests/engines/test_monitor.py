@@ -20,7 +20,7 @@ from engines.parts import compiled as parts
 from engines.parts.compiled import INTERPRETED, PACKAGE
 from engines.pybullet import clients as bullet_clients
 from engines.run.drive import LOOK_AROUND, build
-from engines.run.look import roomy
+from engines.run.monitor import roomy
 from studies.ensemble.study import noise
 
 TIMES = [0.02 * i for i in range(80)]

@@ -16,7 +16,7 @@ UNSET, SCALED, DIRECT = range(3)
 """Forms of the contact's reference: the library's own, its time constant in steps, b and k."""
 
 
-class Hold(State):
+class ContactState(State):
     """What holds a block, and what was seen of it.
 
     Attributes
@@ -160,12 +160,14 @@ class Forces(NamedTuple):
     force: FloatArray
 
 
-def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> None:
+def begin_contact(
+    held: ContactState, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int
+) -> None:
     """Prepare for a scene in ordinary steps of `dt_s` [s], of which so many pairs touch.
 
     Parameters
     ----------
-    held : Hold, blank, to be filled
+    held : ContactState, blank, to be filled
     scene : Scene
     s : MujocoSettings
     dt_s : float, ordinary step [s]
@@ -206,7 +208,7 @@ def begin_hold(held: Hold, scene: Scene, s: MujocoSettings, dt_s: float, pairs: 
     begin_reflection(held.reflection, scene, dt_s)
 
 
-def pairs_of(held: Hold, scene: Scene) -> FloatArray:
+def pairs_of(held: ContactState, scene: Scene) -> FloatArray:
     """Return what is known of each pair, in the library's order: by contacts, those at -x first."""
     rows, yields = [], (1.0 - held.impedance) * scene.system.gravity
     for contact in scene.layout.contacts if held.pairs else ():
@@ -218,13 +220,13 @@ def pairs_of(held: Hold, scene: Scene) -> FloatArray:
     return np.array(rows).reshape(-1, 8)
 
 
-def arrays_of(model: Any, data: Any, held: Hold, scene: Scene) -> Arrays:
+def arrays_of(model: Any, data: Any, held: ContactState, scene: Scene) -> Arrays:
     """Return the library's arrays, which share its memory.
 
     Parameters
     ----------
     model, data : MjModel, MjData, of the scene
-    held : Hold, from `begin_hold`
+    held : ContactState, from `begin_contact`
     scene : Scene
     """
     homes = np.array([(*body.home, 0.5 * body.height) for body in scene.bodies])

@@ -27,14 +27,14 @@ from engines.watching.observe import see
 from engines.watching.sliding import Slide, begin_slide, see_slide
 from engines.watching.swing import Row
 from engines.watching.watch import EVENTS_A_LOOK, Watch, begin_watch
-from engines.world import UNLIMITED, Grip, Moment, Pose, Resolution, Step
+from engines.world import UNLIMITED, ContactPhase, Moment, Pose, Resolution, Step
 
 Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]
 """The ground, the stops and the loads, as for `engines.run.steps.next_step`; and of each body that
 rocks the rows of a history (bodies, k, 4), a `Row` each, and the events (bodies, k, 4), their
 columns as in `engines.watching.watch`."""
 
-GRIP, GRIPS = Step._fields.index("grip"), tuple(Grip)
+PHASE, PHASES = Step._fields.index("phase"), tuple(ContactPhase)
 
 
 class Run(State):
@@ -110,7 +110,7 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
 
 
 @kernel
-def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
+def monitor(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
     """See a state, and choose the next step unless the run is over; return whether it goes on.
 
     Parameters
@@ -143,10 +143,10 @@ def put_step(numbers: FloatArray, step: Step) -> None:
     numbers[0], numbers[1], numbers[2] = step.dt_s, step.end_s, step.kick_s
     numbers[3], numbers[4] = step.pull_x, step.pull_z
     numbers[5], numbers[6], numbers[7] = step.base_kick, step.base_velocity, step.base_x
-    numbers[8], numbers[9] = step.grip, step.side
+    numbers[8], numbers[9] = step.phase, step.side
 
 
-class Look:
+class Monitor:
     """Looks at a run from Python.
 
     Parameters
@@ -199,7 +199,7 @@ class Look:
         self._numbers = np.zeros(len(Step._fields))
         self._shape = len(scene.bodies), len(Pose._fields)
         self._plain, self._last = interpreted(), np.empty(0)
-        self._look: Any = look
+        self._monitor: Any = monitor
 
     @property
     def watches(self) -> Sequence[Watch]:
@@ -242,12 +242,12 @@ class Look:
         where = self._last if state is self._last else self._checked(state)
         # plain numbers are the faster ones for Python
         seen: Any = where.tolist() if self._plain else where
-        if not self._look(self.runs, self.lists, self._numbers, seen):
+        if not self._monitor(self.runs, self.lists, self._numbers, seen):
             return None
-        if self._look is look and not self._plain:
-            self._look = look.compiled  # it is, by now
+        if self._monitor is monitor and not self._plain:
+            self._monitor = monitor.compiled  # it is, by now
         numbers: list[Any] = self._numbers.tolist()
-        numbers[GRIP] = GRIPS[int(numbers[GRIP])]
+        numbers[PHASE] = PHASES[int(numbers[PHASE])]
         return Step(*numbers)
 
     def _checked(self, state: ArrayLike) -> FloatArray:
@@ -283,14 +283,14 @@ class Look:
         return None if self._times is None else sample(rows, self._times)
 
 
-def compile_look() -> None:
+def compile_monitor() -> None:
     """Compile what looks at a run, if that has not been done on this machine."""
     scene = Scene(
         system=RigidBlock(width=0.5, height=1.5), motion=SinePulse(amplitude=1.0, omega=1.0)
     )
-    look = Look(scene, dt_s=1e-3)
-    look.make_room(1)
-    look.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
+    monitor = Monitor(scene, dt_s=1e-3)
+    monitor.make_room(1)
+    monitor.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
 
 
 def roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
