@@ -113,13 +113,17 @@ def doubts(rows: pd.DataFrame) -> list[str]:
     """Say how many blocks slide or lift off the pivot, and how many answers hang on a hundredth."""
     cases = rows.drop_duplicates(["name", "record", "scale"])
     near = (cases["scale"] / cases["margin"] - 1.0).abs() < NEAR
+    unknown, needed = cases["friction"].isna(), cases["friction_needed"]
     words = {
-        "slide, for they need more friction than they have": cases["friction"]
-        < cases["friction_needed"],
+        "slide, for they need more friction than they have": cases["friction"] < needed,
+        "have no friction given: they slide if it is less than they need, up to "
+        f"{needed[unknown].max():.3g}": unknown,
         "would lift their pivot off, where no answer holds": cases["min_normal"] < 0.0,
         f"are within {100.0 * NEAR:g} % of the factor that first overturns them": near,
     }
-    said = [f"{where.sum()} of {len(cases)} {what}" for what, where in words.items() if where.any()]
+    said = [
+        f"{out_of(where.sum(), len(cases))} {what}" for what, where in words.items() if where.any()
+    ]
     return said or ["none slides, lifts off its pivot or is near the factor that overturns it"]
 
 

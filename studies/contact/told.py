@@ -65,7 +65,9 @@ def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
 
 
 def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
-    """Return an engine's rules, each with the errors without it and with it.
+    """Return those of an engine's rules that help, each with the errors without it and with it.
+
+    One helps if fewer outcomes are wrong with it, or as many and the median error is smaller.
 
     Parameters
     ----------
@@ -85,8 +87,10 @@ def rules(lines: pd.DataFrame, engine: str) -> list[tuple[Rule, str, str]]:
         other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
         if plain is not None and other is not None:
             pair = (plain, other) if rule.kept else (other, plain)
-            without, with_it = (error_words(one, ("median_error", "max_error")) for one in pair)
-            found.append((rule, without, with_it))
+            wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
+            if kept < wrong:
+                words = [error_words(one, ("median_error", "max_error")) for one in pair]
+                found.append((rule, words[0], words[1]))
     return found
 
 

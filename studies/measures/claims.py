@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TypeAlias
@@ -11,10 +11,13 @@ from typing import TypeAlias
 import pandas as pd
 
 from studies.kit.tables import read_table, write_table
-from studies.measures.words import out_of
+from studies.measures.words import listed, out_of
 
 TABLE = "findings.csv"
 """Where a study keeps its findings."""
+
+NAMED = 6
+"""Sources that are named in a sentence at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +31,14 @@ class Finding:
         None where a source that it needs was not asked.
     numbers : str
         The numbers that decide it, with their units; or what was missing.
+    source : str
+        Whom it is about, where it is said of several in turn.
     """
 
     statement: str
     holds: bool | None
     numbers: str
+    source: str = ""
 
     @property
     def verdict(self) -> str:
@@ -101,7 +107,7 @@ def write_findings(folder: Path, items: Sequence[Finding]) -> None:
     folder : Path
         One that is there; a table of that name is replaced.
     items : sequence of Finding
-        One at least: each is a row with the columns statement, holds and numbers.
+        One at least: each is a row with the columns statement, holds, numbers and source.
     """
     table = pd.DataFrame([asdict(item) for item in items])
     write_table(folder / TABLE, table)
@@ -111,9 +117,29 @@ def read_findings(folder: Path) -> list[Finding]:
     """Read a folder's findings back."""
     table = read_table(folder / TABLE)
     return [
-        Finding(str(statement), None if _unknown(holds) else str(holds) == "True", str(numbers))
-        for statement, holds, numbers in table.to_numpy(object)
+        Finding(str(statement), None if _unknown(holds) else str(holds) == "True", *map(str, more))
+        for statement, holds, *more in table.to_numpy(object)
     ]
+
+
+def said_once(items: Iterable[Finding]) -> list[Finding]:
+    """Return findings in which what was found of several sources is one, and names them.
+
+    Parameters
+    ----------
+    items : iterable of Finding
+        Of more sources than NAMED it is said how many they are; the table has their numbers.
+    """
+    groups: dict[tuple[str, bool | None], list[Finding]] = {}
+    for item in items:
+        groups.setdefault((item.statement, item.holds), []).append(item)
+    found = []
+    for (statement, holds), group in groups.items():
+        sources, shown = [item.source for item in group if item.source], group[:NAMED] == group
+        whom = listed(sources) if shown else f"{len(sources)} sources"
+        numbers = "; ".join(item.numbers for item in group) if shown else ""
+        found.append(Finding(f"{statement}: {whom}" if sources else statement, holds, numbers))
+    return found
 
 
 def _unknown(holds: object) -> bool:

@@ -135,10 +135,11 @@ def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
     others = compared[~compared["source"].isin(MODELS)]
     return [
         Finding(
-            f"every outcome of {source} is that of the exact solution",
+            "every outcome is that of the exact solution",
             bool(rows["agrees"].all()),
             f"{int((~rows['agrees']).sum())} of {len(rows)} cases differ"
             f"{_where(rows[~rows['agrees']])}",
+            str(source),
         )
         for source, rows in others.groupby("source", sort=False)
     ]
@@ -155,10 +156,11 @@ def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
         differing = int(outcomes.ne(outcomes.iloc[:, 0], axis=0).any(axis=1).sum())
         result.append(
             Finding(
-                f"the left and right panels coincide for {source} (within 1e-6)",
+                "the left and right panels coincide within 10⁻⁶",
                 bool(spread < 1e-6 and differing == 0),
                 f"largest relative difference of the peaks {spread:.1e}, "
                 f"{differing} of {len(outcomes)} outcomes differ",
+                str(source),
             )
         )
     return result

@@ -7,8 +7,8 @@ REPORT = Study(
     module="studies.page.report",
     help="""Every study, and one self-contained page (report.html) about them.
 
-The quick studies take some five minutes on two cores, the full ones an hour. A report that
-was interrupted goes on where it stopped when the same command is given again.""",
+The quick studies take some six minutes on two cores, the full ones two and a half hours. A report
+that was interrupted goes on where it stopped when the same command is given again.""",
 )
 README = Study(
     name="readme",

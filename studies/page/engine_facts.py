@@ -166,7 +166,7 @@ def objections(published: Path, presets: pd.DataFrame) -> str:
         ]
         title = ENGINES[engine].title
         rows += [(title if not place else "", *tried) for place, tried in enumerate(found)]
-    heads = ("engine", "what its users would try", "on", "as documented", "with it")
+    heads = ("engine", "what its users would try", "on", "without it", "with it")
     return table(heads, rows)
 
 

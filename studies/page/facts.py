@@ -18,7 +18,7 @@ from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
-from studies.measures.claims import TABLE, Finding, read_findings
+from studies.measures.claims import TABLE, Finding, read_findings, said_once
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
@@ -44,9 +44,6 @@ PRESETS_FROM = ("presets", "sweep")
 
 MOVING = "0.2.0"
 """Version from which on an engine as documented stands on a floor that moves."""
-
-MANY = 15
-"""Statements of a chapter up to which they are shown; more are folded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +102,8 @@ def told_of(folder: Path) -> tuple[Finding, ...]:
     """Return the statements that a study tested; what it could not test is no finding."""
     if not (folder / TABLE).is_file():
         return ()
-    return tuple(item for item in read_findings(folder) if item.holds is not None)
+    tested = [item for item in read_findings(folder) if item.holds is not None]
+    return tuple(said_once(tested))
 
 
 def chapters(published: Path) -> list[Told]:
@@ -180,8 +178,8 @@ def by_preset(lines: pd.DataFrame, say: Callable[[float], str] = part) -> str:
         cells = {row["preset"]: _short(row, say) for _, row in mine.iterrows()}
         alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
         shown = [cells.get(name, "–") for name in names]
-        if alone and shown[-1] == "–":
-            shown[-1] = "<br>".join(alone)
+        if alone:
+            shown[-1] = "<br>".join([*({shown[-1]} - {"–"}), *alone])
         rows.append((f"**{ENGINES[str(engine)].title}**", *shown))
     return table(("", *heads), rows)
 

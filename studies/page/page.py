@@ -27,7 +27,7 @@ from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import capital, in_kinds, meant, part
 from studies.measures.wrongness import KINDS
-from studies.page.facts import MANY, asked, presets, shared, told_of
+from studies.page.facts import asked, presets, shared, told_of
 from studies.sweep.study import verdict
 
 GOOD, BAD = 1e-3, 0.1
@@ -64,7 +64,6 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
         made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
-        many=MANY,
         cases=engine_cases(folder),
         **first_sight(folder),
     )

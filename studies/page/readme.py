@@ -73,7 +73,6 @@ def pages(root: Path) -> dict[Path, str]:
     lines = facts.presets(published)
     steps = pd.read_csv(published / "precision" / "work-precision.csv")
     known = {
-        "many": facts.MANY,
         "chapters": facts.chapters(published),
         "verdict": verdict(lines),
         "wrong": meant(),

@@ -17,7 +17,16 @@ from studies.measures.presets import engine_of, in_order, is_engine, preset_of
 from studies.measures.words import capital, duration, listed, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import by_preset, presets, table
-from studies.scenes.told import SCENES, again, by_scene, floor_sentence, found_in, sentence
+from studies.scenes.told import (
+    SCENES,
+    again,
+    best_of,
+    by_scene,
+    cases_of,
+    floor_sentence,
+    found_in,
+    sentence,
+)
 
 
 def scenes(published: Path) -> str:
@@ -29,7 +38,7 @@ def scenes(published: Path) -> str:
     block = presets(published).rename(columns={"median": "median_error"})
     held: list[tuple[str, pd.DataFrame, Callable[[pd.Series[Any]], str]]] = [
         (_posed("a block", block), block, partial(_outcome, say=part)),
-        ("its time of a case", block, lambda row: duration(1e-3 * row["ms"])),
+        ("run time of a case", block, lambda row: duration(1e-3 * row["ms"])),
     ]
     held += [
         (_posed(SCENES[name].title, lines), lines, partial(_outcome, say=SCENES[name].words))
@@ -44,7 +53,7 @@ def scenes(published: Path) -> str:
 
 
 def _posed(title: str, lines: pd.DataFrame) -> str:
-    return f"{title}, {lines['cases'].max()} cases"
+    return f"{title}, {cases_of(lines)} cases"
 
 
 def scenes_told(published: Path) -> list[dict[str, str]]:
@@ -62,7 +71,7 @@ def scenes_told(published: Path) -> list[dict[str, str]]:
                 "title": capital(told.title),
                 "claim": sentence(name, lines),
                 "asked": told.asked,
-                "cases": f"{lines['cases'].max()}",
+                "cases": cases_of(lines),
                 "table": by_preset(posed, told.words),
                 "worst": "\n".join(commands),
             }
@@ -84,9 +93,7 @@ def extreme_frames(published: Path) -> dict[str, str]:
         if name in ENGINES
     ]
     heaviest = lines[(lines["load"] == lines["load"].max()) & lines["source"].map(is_engine)]
-    order = in_order(heaviest["source"].map(preset_of))
-    place = heaviest["source"].map(lambda source: order.index(preset_of(source)))
-    best = heaviest.loc[place.groupby(heaviest["source"].map(engine_of)).idxmax()]
+    best = best_of(heaviest)
     ranked = best.dropna(subset="median_error").sort_values("median_error")
     found = [
         f"{part(ranked['median_error'].iloc[end])} ({engine_title(ranked['source'].iloc[end])})"

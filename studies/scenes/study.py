@@ -239,5 +239,5 @@ def finding(folder: Path) -> str:
     floors = floor_sentence(found_in(folder / "floor-summary.csv"))
     if not said:
         return floors or "No engine that was asked is built for these scenes."
-    words = f"Off by up to, as documented → with the best preset asked: {listed(said)}."
+    words = f"Off by up to, as documented → with each engine's best preset: {listed(said)}."
     return " ".join(filter(None, (words, floors)))

@@ -15,7 +15,7 @@ from engines import ENGINES
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.rolling import TURNS
 from studies.measures.words import listed, out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of, outcomes_of
@@ -262,7 +262,7 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
 
 
 def ends(name: str, lines: pd.DataFrame) -> str:
-    """Say by how much a scene is off at most: with the first preset asked, and with the best.
+    """Say by how much a scene is off at most: with the first preset asked, and each engine's best.
 
     Parameters
     ----------
@@ -274,13 +274,25 @@ def ends(name: str, lines: pd.DataFrame) -> str:
     Returns
     -------
     str
-        Largest errors in the scene's unit, "50 % → 10⁻⁵", over all engines with that preset; one
-        number where one preset was asked.
+        Largest errors in the scene's unit, "50 % → 10⁻⁵", over all engines; one number where one
+        preset was asked.
     """
     presets = lines["source"].map(preset_of)
     known = in_order(presets)
-    sizes = [lines.loc[presets == each, "largest_error"].max() for each in (known[0], known[-1])]
+    sizes = [it["largest_error"].max() for it in (lines[presets == known[0]], best_of(lines))]
     return " → ".join(map(SCENES[name].words, sizes[: len(known)]))
+
+
+def best_of(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the last, which is the best, of each engine's presets."""
+    presets = lines["source"].map(preset_of)
+    places = presets.map(in_order(presets).index)
+    return lines.loc[places.groupby(lines["source"].map(engine_of), sort=False).idxmax()]
+
+
+def cases_of(lines: pd.DataFrame) -> str:
+    """Return how many cases presets were asked, in words: "72 or 18"."""
+    return listed([f"{count}" for count in sorted(set(lines["cases"]), reverse=True)], "or")
 
 
 def floor_sentence(lines: pd.DataFrame) -> str:

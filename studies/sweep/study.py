@@ -19,7 +19,7 @@ from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Runn
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import table_in, write_table
 from studies.measures.again import WORST_AGAIN, asked_again, worst_again
-from studies.measures.claims import write_findings
+from studies.measures.claims import said_once, write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
 from studies.measures.posed import posed
@@ -120,8 +120,8 @@ def report(folder: Path) -> str:
         WORST_AGAIN: worst_again(again(folder)),
         "The paper's conclusions": pd.DataFrame(
             {
-                "holds": [item.verdict for item in found],
-                "statement": [item.statement for item in found],
+                "holds": [item.verdict for item in said_once(found)],
+                "statement": [item.statement for item in said_once(found)],
             }
         ),
     }
@@ -188,7 +188,7 @@ def _wrong_by_up_to(preset: str, errors: pd.Series[float], lines: pd.DataFrame) 
     """Say of a preset what is wrong, source by source or between which counts, and how far."""
     cases = alike([f"{count:.0f}" for count in lines["cases"]])
     said = between(lines, lines["source"].map(engine_title))
-    engines = f"{len(lines)} engines have" if len(lines) > 1 else "one engine has"
+    engines = f"{len(lines)} engines get" if len(lines) > 1 else "one engine gets"
     return (
         f"{in_words(preset)}, {engines} {said} of {cases} cases{' each' * (len(lines) > 1)}, and "
         f"peaks off by up to {part(errors.max())}"

@@ -16,7 +16,7 @@ from studies.measures.presets import told
 from studies.measures.words import capital
 
 STAGES: dict[str, tuple[str, dict[str, Any]]] = {
-    "before": ("as documented", {"marker": "o", "color": told("naive").colour}),
+    "before": ("the library's defaults", {"marker": "o", "color": told("naive").colour}),
     "after": (
         "with the one setting that helps most",
         {"marker": "D", "color": "#000000", "fillstyle": "none", "markersize": 9.0},

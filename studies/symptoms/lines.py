@@ -189,6 +189,9 @@ p dt of all and at the library's own step."""
 NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
 """Columns of sizes: by default, with one setting, and with all; the first two at the own step."""
 
+MENDING = ("setting", "formula", "dt_s", "literal", "after", "after_own")
+"""Columns of the setting that helps."""
+
 COLUMNS = (
     *("symptom", "engine", "measure", "shown_by", "before", "setting", "formula", "dt_s"),
     *("literal", *NUMBERS[1:], "asked_in", "command"),
@@ -246,6 +249,10 @@ def lines_of(
 
 
 def _row(symptom: Symptom, engine: str, values: Row) -> Row:
+    """Return the line of a symptom; of a setting that does not help it says nothing."""
+    before, after = (abs(values.get(name, math.nan)) for name in ("before", "after"))
+    if not (math.isfinite(after) and after <= HELPS * before):
+        values = {name: it for name, it in values.items() if name not in MENDING}
     return {
         "symptom": symptom.name,
         "engine": engine,

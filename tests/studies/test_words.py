@@ -74,8 +74,8 @@ def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
         ]
     )
     text = sweep.finding_of(lines)
-    assert "2 engines have the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
-    assert "with steps that land on impacts, one engine has none wrong of 10 cases" in text
+    assert "2 engines get the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
+    assert "with steps that land on impacts, one engine gets none wrong of 10 cases" in text
     assert "by linearization: housner the fall wrong in 2." in text
     table = sweep.preset_table(lines)
     assert list(table["source"]) == ["pybullet:naive", "mujoco:naive", "pybullet"]
@@ -91,7 +91,7 @@ def test_of_many_engines_a_sweep_tells_the_range_and_who_is_at_its_ends():
         ]
     )
     said = (
-        "As their documentation shows them, 3 engines have the fall wrong in up to 3 (pymunk) of "
+        "As their documentation shows them, 3 engines get the fall wrong in up to 3 (pymunk) of "
         "10 cases each, and peaks off by up to 90 %."
     )
     assert sweep.finding_of(lines) == said

@@ -99,12 +99,12 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
     rows = drake_like()
     lines = summarize(with_reference(rows))
     words = "the fall wrong in 2, at rest for rocked in 2 and no answer in 1"
-    assert f"one engine has {words} of 6 cases, and peaks" in sweep.finding_of(lines)
+    assert f"one engine gets {words} of 6 cases, and peaks" in sweep.finding_of(lines)
     many = pd.concat([lines, lines.assign(source="dart:naive", rest_wrong=0, no_answer=0)])
     many = pd.concat([many, lines.assign(source="pymunk:naive")], ignore_index=True)
     table = sweep.preset_table(many)
     said = (
-        "3 engines have the fall wrong in 2 each, at rest for rocked in up to 2 (Drake) and no "
+        "3 engines get the fall wrong in 2 each, at rest for rocked in up to 2 (Drake) and no "
         "answer in up to 1 (Drake) of 6 cases each, and peaks off by up to "
     )
     assert sweep.verdict(table).startswith(f"As their documentation shows them, {said}")
