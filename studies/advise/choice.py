@@ -123,7 +123,7 @@ def _message(known: pd.DataFrame, preset: Preset, target: float) -> str:
     best = known.sort_values("max_error").iloc[0]
     if not math.isfinite(best["max_error"]):
         return f"{NOTHING}: outcomes are wrong at every step"
-    return f"{NOTHING}: at best {_missed(best, preset, target)}"
+    return f"{NOTHING}; the closest: {_missed(best, preset, target)}"
 
 
 def _missed(line: pd.Series[Any], preset: Preset, target: float) -> str:

@@ -123,4 +123,5 @@ def _versions(published: Path) -> str:
         versions = provenance.engines_of(provenance.record_of(folder))
     except (KeyError, TypeError):
         return "unknown versions"
-    return listed([f"{name} {version}" for name, version in versions.items()])
+    asked = {name: kept for name, kept in versions.items() if kept != provenance.NOT_INSTALLED}
+    return listed([f"{name} {version}" for name, version in asked.items()])

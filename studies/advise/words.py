@@ -126,7 +126,17 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None
 
 
 def finding(lines: pd.DataFrame) -> str:
-    """Say what each error costs at the least, with whom, and where nothing keeps it."""
+    """Say what each error costs at the least, with whom, and where nothing keeps it.
+
+    Then what it costs where no adapter helps, by what a user of the library can set.
+    """
+    unhelped = [not preset_of(line).helped_by for _, line in lines.iterrows()]
+    cheapest, alone = _costs(lines), _costs(lines[unhelped])
+    own = f" By a library's own settings alone, {alone}." if alone != cheapest else ""
+    return f"An error of {cheapest}.{own}"
+
+
+def _costs(lines: pd.DataFrame) -> str:
     said = []
     for target, group in lines.groupby("target", sort=False):
         cheapest = group[group["message"] == ""].nsmallest(1, "wall_s")
@@ -135,7 +145,7 @@ def finding(lines: pd.DataFrame) -> str:
             cost = cost_text(line["wall_s"], line["runs"], " a case")
             words = f"costs {cost} ({line['engine']} {line['preset']})"
         said.append((per_cent(float(str(target))), words))
-    return f"An error of {gathered(said)}."
+    return gathered(said)
 
 
 def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:

@@ -14,6 +14,7 @@ import pandas as pd
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.motion import Delayed
 from engines import ENGINES
+from engines.disclosure import Deviation
 from studies.cases.paper import PULSES
 from studies.defaults import STUDY
 from studies.drawing.kept import tell
@@ -247,7 +248,8 @@ def rest_claim(table: pd.DataFrame) -> str:
         close = (found["close"] / found["cases"]).groupby(found["rest_s"] > 0.0).mean()
         if len(close) == 2 and close[False] - close[True] > CLOSE:
             ends = f"from {_whole(close[False])} to {_whole(close[True])}"
-            said.append(f"{engine_title(str(source))} falls {ends}")
+            asleep = Deviation.SLEEP in resolve(str(source)).used.deviations
+            said.append(f"{engine_title(str(source))} falls {ends}{', asleep' * asleep}")
     return f"After 1 s of rest {listed(said)}." if said else ""
 
 

@@ -54,11 +54,12 @@ def report(folder: Path) -> str:
 
 
 def finding(folder: Path) -> str:
-    """Say how many outcomes the engine's best preset gets right, and how far peaks are off."""
-    best = swept(folder).iloc[-1]
+    """Say how many outcomes are right with the best of its presets, and how far off peaks are."""
+    order = ["agree", "max_error"]
+    best = swept(folder).sort_values(order, ascending=[True, False], kind="stable").iloc[-1]
     return (
         f"{best['source']} gets {right_but(best, best['cases'])} outcomes right, "
-        f"and peaks to {part(best['max_error'])}."
+        f"and peaks within {part(best['max_error'])}."
     )
 
 

@@ -163,8 +163,10 @@ def test_an_engine_that_sleeps_through_a_rest_is_named(exact):
     asleep = exact["rest_s"] > 0.0
     lost = made_up(exact)
     lost.loc[asleep, ["outcome", "peak_ratio"]] = ["failed", math.nan]
+    sleepy = lost.assign(source="dart:naive")
     for engine, said in (
         (lost, "After 1 s of rest MuJoCo falls from all to 0 %."),
+        (sleepy, "After 1 s of rest DART falls from all to 0 %, asleep."),
         (made_up(exact), ""),
     ):
         rows = with_verdicts(pd.concat([exact, engine], ignore_index=True))

@@ -132,7 +132,7 @@ def test_the_page(alone, few, tmp_path, capsys):
     assert run(["score", MINE, "--quick", "--out", str(tmp_path), *required]) == 1
     page, _, said = capsys.readouterr().out.partition("holds: ")
     assert page.strip() == (tmp_path / "score.txt").read_text().strip()
-    for words in ("my_engine:landing gets", "wall_s", "extreme cases", "helped by  steps that"):
+    for words in ("my_engine:fixed gets", "wall_s", "extreme cases", "helped by  steps that"):
         assert words in page
     assert "falls short: fixed:max" in said
     rows = pd.read_csv(tmp_path / "score-sweep.csv")
