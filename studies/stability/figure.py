@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from studies.drawing.facets import key
-from studies.drawing.styles import name_of
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.drawing.styles import engine_title
+from studies.measures.presets import in_order, in_words, is_engine, preset_of, told
 from studies.measures.verdicts import ACCEPTED, Verdict
 
 
@@ -64,29 +65,25 @@ WORDS = {
     "contact of 1e-5/p": "stiff contact, time 1e-5/p",
 }
 """Name of a case -> what stands beside its row, where the name needs words."""
+ACROSS = 22
+"""Methods side by side at most; more stand in a panel below."""
+
 MANY = 14
 """More methods than this leave no room for the size of errors in the cells."""
 
 
 def draw_matrix(rows: pd.DataFrame) -> Figure:
-    """Draw the cases as rows and the methods as columns."""
-    cases, sources = rows.drop_duplicates("case"), list(rows["source"].unique())
-    names = list(cases["case"])
-    many = len(sources) > MANY
-    width, height = 5.2 + (0.3 if many else 0.5) * len(sources), 0.235 * len(names) + 3.6
-    drawing = Figure(figsize=(max(width, 7.5), height), layout="constrained")
-    axes = drawing.subplots()
-    for row in rows.itertuples():
-        place = (sources.index(str(row.source)), names.index(str(row.case)))
-        _cell(axes, place, Verdict(row.verdict), math.nan if many else float(str(row.error)))
-    _label_methods(axes, rows, sources, len(names))
-    _label_cases(axes, cases)
-    for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
-        if before != after:
-            axes.plot([-0.2, len(sources) + 0.2], [j, j], color="#666666", lw=0.8, clip_on=False)
-    axes.set(xlim=(0, len(sources)), ylim=(len(names) + 1, 0))
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+    """Draw the cases as rows and the methods as columns, those of a preset side by side."""
+    many = rows["source"].nunique() > MANY
+    groups = _groups(rows["source"].unique())
+    cases = rows.drop_duplicates("case")
+    most = max(sum(map(len, panel.values())) for panel in groups)
+    width, height = 4.2 + (0.3 if many else 0.5) * most, 0.235 * len(cases) + 1.2
+    size = max(width, 7.5), height * len(groups) + 2.0
+    drawing = Figure(figsize=size, layout="constrained")
+    for axes, panel in zip(drawing.subplots(len(groups), squeeze=False).flat, groups, strict=True):
+        _panel(axes, rows, cases, panel, sized=not many)
+        axes.set_xlim(0, most)
     drawing.suptitle(_message(rows), fontsize=12)
     handles = [
         Patch(fc=mark.colour, ec="#888888", hatch=mark.hatch,
@@ -99,6 +96,49 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
         handles.append(Patch(alpha=0.0, label="1e-3  error of the peak below"))
     key(drawing, handles, 3, fontsize=8)
     return drawing
+
+
+def _groups(sources: Iterable[str]) -> list[dict[str, list[str]]]:
+    """Return for each panel its presets, empty for what is no engine, and who has each."""
+    found: dict[str, list[str]] = {}
+    for source in sources:
+        found.setdefault(preset_of(source), []).append(source)
+    panels: list[dict[str, list[str]]] = []
+    for preset, members in found.items():
+        if not panels or sum(map(len, panels[-1].values())) + len(members) > ACROSS:
+            panels.append({})
+        panels[-1][preset] = members
+    return panels
+
+
+def _panel(
+    axes: Axes,
+    rows: pd.DataFrame,
+    cases: pd.DataFrame,
+    groups: Mapping[str, Sequence[str]],
+    *,
+    sized: bool,
+) -> None:
+    sources, names = [*itertools.chain(*groups.values())], list(cases["case"])
+    for row in rows[rows["source"].isin(sources)].itertuples():
+        place = (sources.index(str(row.source)), names.index(str(row.case)))
+        _cell(axes, place, Verdict(row.verdict), float(str(row.error)) if sized else math.nan)
+    _label_methods(axes, rows, sources, len(names), sized=sized)
+    _label_cases(axes, cases, len(sources))
+    ends = list(itertools.accumulate(map(len, groups.values())))
+    for preset, end in zip(groups, ends, strict=True):
+        heading = told(preset).short if preset else "models and SciPy"
+        middle = end - 0.5 * len(groups[preset])
+        axes.text(middle, -4.3, heading, ha="center", va="bottom", fontsize=9.5, weight="bold",
+                  color=told(preset).colour if preset else "#000000")  # fmt: skip
+    for end in ends[:-1]:
+        axes.plot([end, end], [-4.2, len(names) + 1], color="#666666", lw=0.8, clip_on=False)
+    for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
+        if before != after:
+            axes.plot([-0.2, len(sources) + 0.2], [j, j], color="#666666", lw=0.8, clip_on=False)
+    axes.set(ylim=(len(names) + 1, 0))
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
 
 
 def _cell(axes: Axes, place: tuple[int, int], verdict: Verdict, error: float) -> None:
@@ -114,36 +154,34 @@ def _cell(axes: Axes, place: tuple[int, int], verdict: Verdict, error: float) ->
                   color=mark.ink)  # fmt: skip
 
 
-def _label_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
+def _label_methods(
+    axes: Axes, rows: pd.DataFrame, sources: list[str], level: int, *, sized: bool
+) -> None:
     """Name each method above its cases; write below how many are right, of those valid."""
     axes.xaxis.tick_top()
-    labels = [name_of(source).replace("average-acc", "average-\nacc") for source in sources]
-    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8, ha="left",
-                    rotation=70 if len(sources) > MANY else 40, rotation_mode="anchor",
-                    linespacing=0.9)  # fmt: skip
+    labels = [engine_title(source).replace("average-acc", "average-\nacc") for source in sources]
+    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8.5, ha="left",
+                    rotation=70, rotation_mode="anchor", linespacing=0.9)  # fmt: skip
     valid = rows["verdict"] != Verdict.INVALID.value
     right = rows["verdict"].isin([verdict.value for verdict in ACCEPTED]) & valid
     score: dict[str, Any] = {"va": "center", "fontsize": 8, "color": "#333333", "linespacing": 0.9}
     axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **score)
-    between = "\n" if len(sources) > MANY else "/"
+    between = "/" if sized else "\n"
     for i, source in enumerate(sources):
         mine = rows["source"] == source
         text = f"{(right & mine).sum()}{between}{(valid & mine).sum()}"
         axes.text(i + 0.5, level + 0.6, text, ha="center", **score)
 
 
-def _label_cases(axes: Axes, cases: pd.DataFrame) -> None:
+def _label_cases(axes: Axes, cases: pd.DataFrame, across: int) -> None:
     places = [j + 0.5 for j in range(len(cases))]
     axes.set_yticks(places, [WORDS.get(name, name) for name in cases["case"]], fontsize=8.5)
-    exact = [
-        f"{peak:.3g} θcr" if outcome == "rocked" else outcome
-        for outcome, peak in zip(cases["exact_outcome"], cases["exact_peak"], strict=True)
-    ]
-    right = axes.secondary_yaxis("right")
-    right.set_yticks(places, exact, fontsize=7.5, color="#555555")
-    right.tick_params(length=0)
-    right.spines["right"].set_visible(False)
-    axes.text(1.02, 1.005, "exact peak", transform=axes.transAxes, fontsize=7.5, color="#555555")
+    for place, outcome, peak in zip(
+        places, cases["exact_outcome"], cases["exact_peak"], strict=True
+    ):
+        text = f"{peak:.3g} θcr" if outcome == "rocked" else outcome
+        axes.text(across + 0.2, place, text, va="center", fontsize=7.5, color="#555555")
+    axes.text(across + 0.2, -0.4, "exact peak", fontsize=7.5, color="#555555")
 
 
 def _message(rows: pd.DataFrame) -> str:
@@ -158,4 +196,4 @@ def _message(rows: pd.DataFrame) -> str:
         f"{in_words(name)} {good[name]:.0f} of {total[name]}"
         for name in dict.fromkeys((names[0], names[-1]))
     ]
-    return f"Of engines' answers to extreme cases are right: {', '.join(words)}"
+    return f"Right answers of engines to extreme cases:\n{', '.join(words)}"

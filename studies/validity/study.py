@@ -181,7 +181,8 @@ def finding(table: pd.DataFrame) -> str:
         f"{f'from {ends:.2g} onsets' if math.isfinite(ends) else 'never'} at H/B {aspect:g}"
         for aspect, ends in needs(table).set_index("aspect")["from_onsets"].items()
     ]
-    return f"An engine is right to differ where the pivot of a block that survives lifts off: {listed(words)}."
+    what = "where the pivot of a block that survives lifts off"
+    return f"An engine is right to differ {what}: {listed(words)}."
 
 
 def needs(table: pd.DataFrame) -> pd.DataFrame:
