@@ -226,7 +226,7 @@ def _verdict(line: pd.Series[Any]) -> str:
     if line["outcome"] != "rocked":
         return str(line["outcome"])
     error = float(line["error"])
-    return f"peak {'to ' * (abs(error) < 1e-3)}{signed(error)}"
+    return f"peak {'within ' * (abs(error) < 1e-3)}{signed(error)}"
 
 
 def _outlines(axes: Axes, block: RigidBlock, exact: float, found: float, colour: str) -> None:

@@ -1,4 +1,4 @@
-"""A ninth engine for `rocking score my_engine:World`: here a box on the ground in pymunk."""
+"""An engine for `rocking score my_engine:World`: here a box on the ground in pymunk."""
 
 import pymunk
 
