@@ -12,6 +12,7 @@ from independent import peak_and_impacts
 from analytic import (
     MODELS,
     Delayed,
+    Impact,
     Outcome,
     Record,
     RigidBlock,
@@ -43,28 +44,23 @@ def drawn(seed):
 def test_every_model_against_scipy(model, seed):
     block, motion, start = drawn(seed)
     peak, impacts = peak_and_impacts(model, block, motion, start=start)
-    response = simulate(block, motion, model, start, duration=motion.duration + 15.0 / block.p)
+    end = motion.duration + 15.0 / block.p
+    response = simulate(block, motion, model, start, duration=end)
     # as without a start: DOP853 at rtol 1e-12 with a dense output of order 7 for the events
     if peak is not None:
         assert response.peak_ratio == pytest.approx(peak, rel=2e-9)
         assert simulate(block, motion, model, start).peak_ratio == pytest.approx(peak, rel=2e-9)
     times = [i.time for i in response.impacts][: len(impacts)]
     assert times == pytest.approx(impacts, rel=2e-9, abs=1e-10)
+    other_way = replace(motion, amplitude=-motion.amplitude), model, (-start[0], -start[1])
+    assert simulate(block, *other_way, duration=end).impacts == tuple(
+        Impact(time, -before, -after) for time, before, after in response.impacts
+    )
 
 
-@pytest.mark.parametrize(
-    ("source", "bound"),
-    [
-        ("rk4", 2e-5),
-        ("average-acceleration", 2e-4),
-        ("rk45", 1e-6),
-        ("dop853", 1e-6),
-        ("radau", 1e-6),
-        ("lsoda", 1e-6),
-    ],
-)
+@pytest.mark.parametrize("source", SOURCES[1:])
 @pytest.mark.parametrize("seed", range(12))
-def test_solvers_and_peers_take_the_start(source, bound, seed):
+def test_solvers_and_peers_take_the_start(source, seed):
     """To what their default settings leave, times the condition number of the peak."""
     block, motion, start = drawn(seed)
     exact = simulate(block, motion, start=start)
@@ -72,6 +68,7 @@ def test_solvers_and_peers_take_the_start(source, bound, seed):
     assert response.outcome is exact.outcome
     if exact.outcome is Outcome.ROCKED:
         worst = max(10.0, *map(abs, conditioning(block, motion, start=start)))
+        bound = {"rk4": 2e-5, "average-acceleration": 2e-4}.get(source, 1e-6)
         assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=bound * worst)
 
 
@@ -106,6 +103,8 @@ def test_free_rocking_is_followed_for_the_duration(source):
     # the paper's contact tolerance ends each swing 1e-6 rad early or late
     assert np.abs(response.history.theta - exact.history.theta).max() < 2e-3 * BLOCK.alpha
     assert respond(source, BLOCK, Still(), start=start).peak_ratio == pytest.approx(0.6, rel=1e-9)
+    none = respond(source, BLOCK, Still(), duration=2.0)
+    assert (none.outcome, none.peak_ratio) == (Outcome.AT_REST, 0.0)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -175,13 +174,6 @@ def test_the_unstable_equilibrium_is_answered_where_the_ground_disturbs_it():
         assert simulate(BLOCK, push, start=(BLOCK.alpha, 0.0)).outcome is outcome
 
 
-def test_no_motion_and_no_start_is_rest():
-    for source in SOURCES:
-        response = respond(source, BLOCK, Still(), duration=2.0)
-        assert response.outcome is Outcome.AT_REST
-        assert response.peak_ratio == 0.0
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_a_motion_without_length_is_sampled_from_its_start_to_the_last_of_the_times(model):
     asked = {"start": (-0.1, 0.2), "times": [0.0, 0.0, 1.0]}
@@ -236,16 +228,6 @@ def test_condition_numbers_are_the_slopes_of_the_peaks(model, start):
             # a difference of fourth order, and the rounding of peaks over its nudge
             slope = (8.0 * near - far) / (12.0 * nudge)
             assert number == pytest.approx(slope, rel=1e-7, abs=1e-9)
-
-
-def test_mirrored_starts_and_motions_mirror_the_response():
-    for seed in range(12):
-        block, motion, (theta, rate) = drawn(seed)
-        mirrored = replace(motion, amplitude=-motion.amplitude)
-        one = simulate(block, motion, start=(theta, rate))
-        other = simulate(block, mirrored, start=(-theta, -rate))
-        assert one.peak_ratio == other.peak_ratio
-        assert [i.time for i in one.impacts] == [i.time for i in other.impacts]
 
 
 @pytest.mark.parametrize("source", SOURCES)

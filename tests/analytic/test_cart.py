@@ -6,75 +6,48 @@ import math
 import numpy as np
 import pytest
 from given import BLOCK, FULL_SINE, G
-from scipy.integrate import solve_ivp
+from independent import Bodies
 
 from analytic import CartBlock, Outcome, Record, SinePulse, Still, cart_demands, simulate
 from analytic.response import Reason
 
 
-def foot(cart, theta, side):
-    """Return the foot of a side from the centre, clockwise positive, and what it bends by."""
-    u, w = side * 0.5 * cart.width, -0.5 * cart.height
-    c, s = math.cos(theta), math.sin(theta)
-    return c * u + s * w, -s * u + c * w
+class Cart(Bodies):
+    """A block (x, z, angle) and its cart's place, whole mass 1, in the frame of the shaken base."""
 
+    def __init__(self, cart, motion=None):
+        self.cart, self.motion, m = cart, motion or Still(), cart.mass_ratio
+        inertia = m * (cart.width**2 + cart.height**2) / 12.0
+        self.masses = np.array([m, m, inertia, 1.0 - m])
 
-def matrix_of(cart, theta, side):
-    """Return mass matrix of (x, z, theta, cart), whole mass 1, and the foot's Jacobian."""
-    m = cart.mass_ratio
-    inertia = m * (cart.width**2 + cart.height**2) / 12.0
-    arm = foot(cart, theta, side)
-    jacobian = np.array([[1.0, 0.0, arm[1], -1.0], [0.0, 1.0, -arm[0], 0.0]])
-    return np.diag([m, m, inertia, 1.0 - m]), jacobian
+    def loads(self, q, time):
+        push = float(self.motion.acceleration(time)) - self.cart.stiffness * q[3]
+        return np.array([0.0, -self.cart.mass_ratio * G, 0.0, push])
 
+    def contacts(self, q, side):
+        jacobian, bent = self.held(q, (0, self.foot(side), 1.0))
+        jacobian[0, 3] = -1.0
+        return jacobian, bent
 
-def rates(cart, q, v, side, push):
-    """Return the accelerations, the contact's force being solved for."""
-    mass, jacobian = matrix_of(cart, q[2], side)
-    arm = np.array(foot(cart, q[2], side))
-    whole = np.block([[mass, -jacobian.T], [jacobian, np.zeros((2, 2))]])
-    m = cart.mass_ratio
-    load = [0.0, -m * G, 0.0, push - cart.stiffness * q[3]]
-    return np.linalg.solve(whole, np.concatenate((load, arm * v[2] ** 2)))[:4]
-
-
-def struck(cart, v, side):
-    """Return the rates after an ideally inelastic impact of the foot of a side."""
-    mass, jacobian = matrix_of(cart, 0.0, side)
-    whole = np.block([[mass, -jacobian.T], [jacobian, np.zeros((2, 2))]])
-    return np.linalg.solve(whole, np.concatenate((mass @ v, np.zeros(2))))[:4]
+    def foot(self, side):
+        return side * 0.5 * self.cart.width, -0.5 * self.cart.height
 
 
 def solve(cart, motion, begin, end, times):
     """Return impacts (time, theta' before, after) and samples (theta, theta', cart, its rate)."""
     theta, rate = begin
-    side = math.copysign(1.0, theta if theta else rate)
-    arm = foot(cart, theta, side)
-    q = np.array([side * 0.5 * cart.width - arm[0], -arm[1], theta, 0.0])
-    v = np.array([-arm[1] * rate, arm[0] * rate, rate, 0.0])
-    t, impacts, samples = 0.0, [], []
-
-    def flow(t, state, side):
-        push = float(motion.acceleration(t))
-        return np.concatenate((state[4:], rates(cart, state[:4], state[4:], side, push)))
-
-    def lands(t, state, side):
-        return side * state[2]
-
-    lands.terminal, lands.direction = True, -1
-    while t < end:
-        until = min([b for b in (*motion.breakpoints, end) if b > t * (1.0 + 1e-14)])
-        at = times[(times > t) & (times <= until)]
-        part = solve_ivp(
-            flow, (t, until), np.concatenate((q, v)), "DOP853",
-            events=lands, args=(side,), dense_output=True, rtol=1e-13, atol=1e-14,
-        )  # fmt: skip
-        t, q, v = part.t[-1], part.y[:4, -1], part.y[4:, -1]
-        samples += [part.sol(s)[[2, 6, 3, 7]] for s in at if s <= t]
-        if part.status == 1:
-            after = struck(cart, v, -side)
-            impacts.append((t, v[2], after[2]))
-            side, v = -side, after
+    side, bodies = math.copysign(1.0, theta if theta else rate), Cart(cart, motion)
+    q = np.array([0.0, 0.0, theta, 0.0])
+    forward, up = bodies.contacts(q, side)[1][:, 2]  # what turning leaves of both
+    q[:2] = side * 0.5 * cart.width + forward, up
+    v = np.array([up * rate, -forward * rate, rate, 0.0])
+    impacts, samples = [], []
+    for path, _, impact in bodies.follow(
+        q, v, side, 0.0, (*motion.breakpoints[1:], end), dense_output=True, rtol=1e-13, atol=1e-14
+    ):
+        at = times[(times > path.t[0]) & (times <= path.t[-1])]
+        samples += [path.sol(s)[[2, 6, 3, 7]] for s in at]
+        impacts += [(impact.time, impact.before[2], impact.after[2])] if impact else []
     return np.array(impacts), np.array(samples)
 
 
@@ -84,7 +57,8 @@ def test_restitution(mass_ratio, eta):
     cart = CartBlock(width=0.5, height=2.0, mass_ratio=mass_ratio)
     before = np.array([-1.0, -0.25, -1.0, 0.0])
     assert cart.restitution == pytest.approx(eta, abs=5e-7)
-    assert struck(cart, before, -1.0)[2] == pytest.approx(-cart.restitution, rel=1e-13)
+    after, _ = Cart(cart).struck(np.zeros(4), before, -1.0)
+    assert after[2] == pytest.approx(-cart.restitution, rel=1e-13)
 
 
 @pytest.mark.parametrize("stiffness", [0.0, 2.0, 40.0])

@@ -1,13 +1,12 @@
 """The rocking frame against rigid bodies: Newton-Euler with every contact as a constraint."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 from given import FULL_SINE as PULSE
 from given import G
-from scipy.integrate import solve_ivp
+from independent import Bodies
 
 from analytic import (
     MODELS,
@@ -27,107 +26,53 @@ SIZES = [(0.5, 1.5), (0.5, 2.0), (1.0, 6.0)]
 SPACING, DEPTH = 3.0, 0.3
 
 
-class Bodies(NamedTuple):
-    """N columns and a beam, bodies of (x, z, angle clockwise); the beam is the last one."""
+class Frame(Bodies):
+    """N columns and a beam, which is the last body, relative to a base that may be shaken."""
 
-    frame: RockingFrame
+    def __init__(self, frame, motion=None):
+        n, self.frame, self.motion = frame.columns, frame, motion or Still()
+        inertia = (frame.width**2 + frame.height**2) / 12.0
+        long, beam = (n - 1) * SPACING + frame.width, n * frame.load
+        columns = [1.0, 1.0, inertia] * n
+        self.masses = np.array([*columns, beam, beam, beam * (long**2 + DEPTH**2) / 12.0])
+        self.places = (np.arange(n) - 0.5 * (n - 1)) * SPACING
+        standing = [number for x in self.places for number in (x, 0.5 * frame.height, 0.0)]
+        self.upright = np.array([*standing, 0.0, frame.height + 0.5 * DEPTH, 0.0])
 
-    @property
-    def masses(self):
-        """Diagonal of the mass matrix; columns of unit mass."""
-        f, n = self.frame, self.frame.columns
-        inertia = (f.width**2 + f.height**2) / 12.0
-        long, beam = (n - 1) * SPACING + f.width, n * f.load
-        column = [1.0, 1.0, inertia]
-        return np.array(column * n + [beam, beam, beam * (long**2 + DEPTH**2) / 12.0])
-
-    def upright(self):
-        f, n = self.frame, self.frame.columns
-        places = (np.arange(n) - 0.5 * (n - 1)) * SPACING
-        columns = [number for x in places for number in (x, 0.5 * f.height, 0.0)]
-        return np.array([*columns, 0.0, f.height + 0.5 * DEPTH, 0.0])
+    def loads(self, q, time):
+        pulls = [-float(self.motion.acceleration(time)), -G, 0.0]
+        return self.masses * np.tile(pulls, self.frame.columns + 1)
 
     def contacts(self, q, side):
-        """Return the Jacobian of the contacts of a side, and the acceleration left without force.
+        """Clockwise, on side +1, a column stands on its right foot and carries with its left head.
 
-        Clockwise, on side +1, a column stands on its right foot and carries with its left head.
+        Its foot's rows come before its head's.
         """
-        f, n = self.frame, self.frame.columns
-        foot = np.array([side * 0.5 * f.width, -0.5 * f.height])
-        rows, bent = [], []
-        for i in range(n):
-            place = (i - 0.5 * (n - 1)) * SPACING - side * 0.5 * f.width
-            for points in (((i, foot, 1.0),), ((i, -foot, 1.0), (n, (place, -0.5 * DEPTH), -1.0))):
-                block, bend = np.zeros((2, 3 * n + 3)), np.zeros((2, 3 * n + 3))
-                for body, (u, w), sign in points:
-                    c, s = math.cos(q[3 * body + 2]), math.sin(q[3 * body + 2])
-                    arm = np.array([c * u + s * w, -s * u + c * w])
-                    block[:, 3 * body : 3 * body + 2] = sign * np.eye(2)
-                    block[:, 3 * body + 2] = sign * np.array([arm[1], -arm[0]])
-                    bend[:, 3 * body + 2] = -sign * arm
-                rows.append(block)
-                bent.append(bend)
-        return np.concatenate(rows), np.concatenate(bent)
-
-    def accelerations(self, q, v, side, ground):
-        """Return the accelerations relative to the base, and the contact forces (x, z) by row."""
-        jacobian, bent = self.contacts(q, side)
-        mass, count = self.masses, len(jacobian)
-        matrix = np.zeros((mass.size + count, mass.size + count))
-        matrix[: mass.size, : mass.size] = np.diag(mass)
-        matrix[: mass.size, mass.size :] = -jacobian.T
-        matrix[mass.size :, : mass.size] = jacobian
-        loads = mass * np.tile([-ground, -G, 0.0], mass.size // 3)
-        known = np.concatenate((loads, -bent @ v**2))
-        found = np.linalg.lstsq(matrix, known, rcond=1e-12)[0]
-        return found[: mass.size], found[mass.size :].reshape(-1, 2)
-
-    def struck(self, q, v, side):
-        """Return the velocities after an ideally inelastic impact of all contacts of a side."""
-        jacobian, _ = self.contacts(q, side)
-        by_mass = jacobian / self.masses
-        impulse = np.linalg.lstsq(by_mass @ jacobian.T, -jacobian @ v, rcond=1e-12)[0]
-        return v + by_mass.T @ impulse, impulse.reshape(-1, 2)
+        half, beam = side * 0.5 * self.frame.width, 3 * self.frame.columns
+        foot, rows = np.array([half, -0.5 * self.frame.height]), []
+        for i, place in enumerate(self.places):
+            carried = beam, (place - half, -0.5 * DEPTH), -1.0
+            rows += [self.held(q, (3 * i, foot, 1.0))]
+            rows += [self.held(q, (3 * i, -foot, 1.0), carried)]
+        return map(np.concatenate, zip(*rows, strict=True))
 
 
 def solve(frame, motion, end, longest=0.02):
     """Return peaks over alpha of the columns, ratios of impacts, contact forces and impulses."""
-    bodies, onset = Bodies(frame), G * math.tan(frame.alpha)
-    t = math.asin(onset / motion.amplitude) / motion.omega
-    side, q = -1.0, bodies.upright()
-    v, size = np.zeros(q.size), q.size
-    peaks, ratios, forces, impulses = [], [], [], []
-
-    def flow(t, state, side):
-        q, v = state[:size], state[size:]
-        return np.concatenate((v, bodies.accelerations(q, v, side, motion.acceleration(t))[0]))
-
-    def lands(t, state, side):
-        return side * state[2]
-
-    def turns(t, state, side):
-        return side * state[size + 2]
-
-    lands.terminal, lands.direction, turns.direction = True, -1, -1
-    while t < end:
-        until = motion.duration if t < motion.duration else end
-        part = solve_ivp(
-            flow, (t, until), np.concatenate((q, v)), "DOP853", rtol=1e-12, atol=1e-14,
-            events=(lands, turns), args=(side,), max_step=longest,
-        )  # fmt: skip
-        for time, state in zip(part.t, part.y.T, strict=True):
-            contacts = bodies.accelerations(
-                state[:size], state[size:], side, motion.acceleration(time)
-            )
-            forces.append(contacts[1])
-        peaks += [state[2 : 3 * frame.columns : 3] for state in part.y_events[1]]
-        t, q, v = part.t[-1], part.y[:size, -1], part.y[size:, -1]
-        if part.status == 1:
-            after, impulse = bodies.struck(q, v, -side)
-            ratios.append(after[2] / v[2])
-            impulses.append(impulse)
-            side, v = -side, after
-    return np.abs(peaks).max(axis=0) / frame.alpha, ratios, np.array(forces), np.array(impulses)
+    bodies, angles = Frame(frame, motion), slice(2, 3 * frame.columns, 3)
+    lifts = math.asin(G * math.tan(frame.alpha) / motion.amplitude) / motion.omega
+    peaks, struck, forces = [], [], []
+    for path, side, impact in bodies.follow(
+        bodies.upright, 0.0 * bodies.upright, -1.0, lifts, (motion.duration, end),
+        rtol=1e-12, atol=1e-14, max_step=longest,
+    ):  # fmt: skip
+        for time, state in zip(path.t, path.y.T, strict=True):
+            forces.append(bodies.accelerations(*np.split(state, 2), side, time)[1])
+        peaks += [state[angles] for state in path.y_events[1]]
+        struck += [impact] if impact else []
+    ratios = [impact.after[2] / impact.before[2] for impact in struck]
+    impulses = np.array([impact.impulses for impact in struck])
+    return np.abs(peaks).max(axis=0) / frame.alpha, ratios, np.array(forces), impulses
 
 
 @pytest.mark.parametrize("columns", [2, 3])
@@ -165,16 +110,17 @@ def test_an_inelastic_impact_of_all_contacts(width, height, columns):
     at the heads.
     """
     frame = RockingFrame(width=width, height=height, columns=columns, load=1.7)
-    bodies = Bodies(frame)
-    q = bodies.upright()
+    bodies = Frame(frame)
+    q = bodies.upright
     v = np.array([-0.5 * height, -0.5 * width, -1.0] * columns + [-height, -width, 0.0])
-    assert bodies.contacts(q, 1.0)[0] @ v == pytest.approx(0.0, abs=1e-14)
+    jacobian, _ = bodies.contacts(q, 1.0)
+    assert jacobian @ v == pytest.approx(0.0, abs=1e-14)
     after, impulse = bodies.struck(q, v, -1.0)
     assert after[2 : 3 * columns : 3] == pytest.approx(
         np.full(columns, -frame.restitution), rel=1e-12
     )
     assert np.all(impulse[::2, 1] > 0.0)
-    parting = bodies.contacts(q, 1.0)[0][1::2] @ after
+    parting = jacobian[1::2] @ after
     assert np.all(parting[::2] > 0.0)
     assert np.all(parting[1::2] < 0.0)
     leaning = (1.0 - frame.restitution) / (1.0 + frame.restitution) / math.tan(frame.alpha)
@@ -216,9 +162,8 @@ def test_demands_are_the_forces_of_the_rigid_bodies(load):
     """
     frame = RockingFrame(width=0.5, height=1.5, load=load)
     _, _, forces, impulses = solve(frame, PULSE, 2.0, longest=0.004)
-    bodies = Bodies(frame)
-    q = bodies.upright()
-    least = bodies.accelerations(q, 0.0 * q, 1.0, 0.0)[1]
+    q = Frame(frame).upright
+    least = Frame(frame).accelerations(q, 0.0 * q, 1.0, 0.0)[1]
     forces = np.concatenate((forces, [least]))
     pushes = np.concatenate((forces, impulses))
     needs = frame_demands(frame, PULSE, spacing=SPACING, depth=DEPTH)

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from given import all_but_times
 
 from analytic import (
     MODELS,
@@ -42,22 +43,19 @@ def purse(monkeypatch):
 @pytest.fixture
 def both(monkeypatch, purse):
     """Return what an action returns, interpreted and compiled."""
-    run = compiled.Kernel.run
-
-    def in_both(action):
-        purse(True)
-        with monkeypatch.context() as alone:
-            # what was compiled once is compiled from then on, but not here
-            alone.setattr(compiled.Kernel, "__call__", interpret)
-            first = action()
-        purse(False)
-        with monkeypatch.context() as alone:
-            alone.setattr(compiled.Kernel, "__call__", run)
-            return first, action()
 
     def interpret(kernel, *arguments):
         with compiled.interpreting(compiled.Purse(compiled.SOURCES, 10**9, 0)):
             return kernel.py_func(*arguments)
+
+    def in_both(action):
+        answers = []
+        for form in (interpret, compiled.Kernel.run):
+            purse(form is interpret)
+            # what was compiled once is compiled from then on, but not here
+            monkeypatch.setattr(compiled.Kernel, "__call__", form)
+            answers.append(action())
+        return answers
 
     return in_both
 
@@ -65,16 +63,6 @@ def both(monkeypatch, purse):
 def bits(numbers):
     """Return numbers as bytes: nan equals itself, and 0 differs from -0."""
     return np.asarray(numbers, dtype=np.float64).tobytes()
-
-
-def told(response):
-    """Return everything that a response says but how long it took."""
-    numbers = [response.peak_ratio, response.min_normal, response.friction_needed]
-    events = [*response.impacts, response.uplifts, response.rests]
-    history = response.history
-    sampled = [] if history is None else [bits(history.theta), bits(history.velocity)]
-    words = (response.outcome, response.steps, response.message)
-    return words, bits(numbers), [bits(event) for event in events], sampled
 
 
 def some_case(generator):
@@ -111,7 +99,7 @@ def responses(model):
     cases += [some_case(generator) for _ in range(60)]
     for number, (block, motion, start) in enumerate(cases):
         sampled = motion.duration and number % 5 == 0
-        yield told(
+        yield all_but_times(
             simulate(
                 block,
                 motion,
@@ -130,7 +118,7 @@ def solved(model):
     for method in METHODS:
         for block, motion, start in cases:
             asked = {"method": method, "step": 0.02, "times": times}
-            yield told(integrate(block, motion, model, start, **asked))
+            yield all_but_times(integrate(block, motion, model, start, **asked))
 
 
 def moved(model):

@@ -60,13 +60,10 @@ def test_a_trend_is_taken_away_by_least_squares():
     assert record.final_velocity == pytest.approx(float(record.velocity(99.0)), rel=1e-14)
 
 
-def test_scaling():
+def test_a_record_is_a_value():
     assert WANDERING.peak == 3.0
     assert WANDERING.scaled_to(1.5) == WANDERING.scaled(0.5)
     assert WANDERING.scaled(-1.0).displacement(1.7) == -WANDERING.displacement(1.7)
-
-
-def test_a_record_is_a_value():
     copy = Record(dt=0.3, samples=WANDERING.samples.copy())
     assert copy == WANDERING == pickle.loads(pickle.dumps(WANDERING))
     assert hash(copy) == hash(WANDERING)
@@ -171,6 +168,7 @@ def test_excursions_too_small_to_matter_do_not_matter(seed):
 
 
 RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
+KAPPA = 6.0
 BANDS = dict.fromkeys(UNTUNED, 0.6)
 BANDS |= {"fixed": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
 """Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
@@ -179,70 +177,62 @@ its error keeps some 4e-4 of a peak at κ = 1, landing steps of 1/200 are of sec
 the engine's roundings; the paper's solvers end an excursion up to 1e-6 rad late."""
 
 
-NAMES = [
-    *(name for name, source in SOURCES.items() if source.kind != "engine"),
-    *(
-        pytest.param(f"{name}:{use.name}", marks=held_to(Miss.RECORD, name, use.name))
-        for name in installed_engines()
-        for use in ENGINES[name].presets
-    ),
-]
+EACH = [name for name, source in SOURCES.items() if source.kind != "engine"]
+EACH += [f"{name}:{use.name}" for name in installed_engines() for use in ENGINES[name].presets]
+DEAR = "pymunk:fixed"
+"""It takes as long as all the others together; its other presets stand for it."""
+DRAGGED = "pybullet:naive"
+"""Its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s."""
+
+
+def missing(name):
+    """Return the marks of a source that is declared to miss a record."""
+    engine, _, preset = name.partition(":")
+    return held_to(Miss.RECORD, engine, preset) if preset else []
 
 
 def band(name):
     source, _, preset = name.partition(":")
-    kappa = 6.0
-    return max(BANDS[preset], kappa * equal_to(source)) if source in ENGINES else BANDS[preset]
+    return max(BANDS[preset], KAPPA * equal_to(source)) if source in ENGINES else BANDS[preset]
 
 
-DEAR = (("pymunk:fixed",),)
-"""As long as all the others together; its other presets stand for it."""
+def followed(name, record, **options):
+    """Return the exact response of a source's own model, and what the source makes of a record."""
+    exact = simulate(BLOCK, record, name if name in MODELS else "exact", **options)
+    response = respond(name, BLOCK, record, **options)
+    assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
+    return exact, response
 
 
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(*name.values, marks=pytest.mark.slow)
-        if not isinstance(name, str) and name.values in DEAR
-        else name
-        for name in NAMES
+        pytest.param(name, marks=[*missing(name), *[pytest.mark.slow] * (name == DEAR)])
+        for name in EACH
     ],
 )
 def test_every_source_takes_a_record(name):
     """Each source against the exact solution of its own model, while the ground moves and after."""
     times = np.linspace(0.0, RECORD.duration + 1.0, 120)
-    model = name if name in MODELS else "exact"
-    exact = simulate(BLOCK, RECORD, model, times=times, duration=times[-1])
-    response = respond(name, BLOCK, RECORD, times=times, duration=times[-1])
+    exact, response = followed(name, RECORD, times=times, duration=times[-1])
     assert len(exact.impacts) >= 5
-    assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
     worst = np.abs(response.history.theta - exact.history.theta).max()
     assert worst < band(name) * np.abs(exact.history.theta).max()
-
-
-DRAGGED = pytest.mark.xfail(
-    strict=True,
-    reason="its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s",
-)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(*name.values, marks=DRAGGED) if name.values == ("pybullet:naive",) else name
-        for name in (pytest.param(name) if isinstance(name, str) else name for name in NAMES)
-        if not name.marks
+        pytest.param(name, marks=[pytest.mark.xfail(strict=True)] * (name == DRAGGED))
+        for name in EACH
+        if not missing(name)
     ],
 )
 def test_a_long_record_through_every_source(name):
     """40 s at 0.005 s, 192 impacts, three times at rest and lifted again twice, κ = 9."""
-    record = noise(5, 8001, 0.005, 1.3 * ONSET)
-    model = name if name in MODELS else "exact"
-    exact = simulate(BLOCK, record, model)
-    response = respond(name, BLOCK, record)
+    exact, response = followed(name, noise(5, 8001, 0.005, 1.3 * ONSET))
     assert len(exact.rests) >= 2
-    assert response.outcome is exact.outcome is Outcome.ROCKED, response.message
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2.0 * band(name))
 
 

@@ -1,6 +1,7 @@
 """What no reference can take is refused, in one line that names it, its value and what may be."""
 
 import math
+import re
 from functools import partial
 
 import pytest
@@ -29,11 +30,13 @@ from analytic.criteria import frictionless_fall, overturning_amplitude
 from analytic.orbits import orbit_limits
 from engines import Scene
 
+INF, NAN = math.inf, math.nan
 HALF_SINE = SinePulse(amplitude=0.4 * G, omega=2.0 * math.pi)
 BOX = SlidingBlock(width=1.0, height=0.5, friction=0.2)
 ARRAYS = {"alpha": 0.3, "amplitude_g": 0.4, "omega_over_p": 1.0, "half_cycles": 1}
 SIZE = {"width": 0.5, "height": 1.5}
 SHAKEN = {"block": BLOCK, "motion": HALF_SINE}
+ROUTES = (simulate, integrate)
 RELEASED = {"motion": Still(), "start": (0.1, 0.0), "duration": 1.0}
 
 USUAL = {
@@ -59,151 +62,99 @@ USUAL = {
 }
 """What can be asked, and with what it is answered."""
 
-REFUSED = {
-    RigidBlock: [
-        *(
-            ({name: value}, f"{name} is .*; it must be")
-            for name in ("width", "height", "gravity")
-            for value in (0, -1, math.inf, math.nan, "wide", None)
-        ),
-        *(({"restitution": value}, "restitution is") for value in (-0.1, 1.1, math.inf)),
-        # what floating point does not hold
-        ({"width": 5e-324}, "width is 5e-324; it must be from 1e-150 to 1e\\+150"),
-        ({"height": 1e308}, r"height is 1e\+308"),
-        ({"gravity": 1e-310}, "gravity is 1e-310"),
-        ({"width": 1e-100, "height": 1e60}, r"width is 1e-100 and height 1e\+60; alpha"),
-        ({"width": 1e60, "height": 1e-100}, r"width is 1e\+60 and height 1e-100; alpha"),
-    ],
-    RockingFrame: [
-        ({"columns": 1}, "columns is 1; it must be a whole number of 2 or more"),
-        ({"columns": 2.5}, "columns is 2.5"),
-        ({"load": 0.0}, "load is 0.0; it must be positive"),
-        ({"load": -1.0}, "load is -1.0; it must be positive"),
-        ({"width": 0.0}, "width is 0.0"),
-        ({"restitution": 1.1}, "restitution is 1.1"),
-    ],
-    CartBlock: [
-        ({"mass_ratio": 0.0}, "mass_ratio is 0.0; it must be between 0 and 1"),
-        ({"mass_ratio": 1.0}, "mass_ratio is 1.0"),
-        ({"stiffness": -1.0}, "stiffness is -1.0; it must not be negative"),
-        ({"width": math.inf}, "width is inf"),
-    ],
-    SlidingBlock: [
-        ({"friction": 2.0}, r"friction is 2\.0; it must be below width/height, 2\.0"),
-        ({"friction": 0.0}, r"friction is 0\.0; it must be positive"),
-    ],
-    RollingCylinder: [
-        ({"tilt": 0.0}, "tilt is 0.0; it must be positive"),
-        ({"tilt": 1.6}, "tilt is 1.6; it must be below pi/2"),
-        ({"height": 2.0, "tilt": 0.6}, "tilt is 0.6; it must be below 0.46"),
-        ({"radius": -1.0}, "radius is -1.0"),
-        ({"height": math.nan}, "height is nan"),
-    ],
-    SinePulse: [
-        ({"amplitude": math.nan}, "amplitude is"),
-        ({"omega": 0}, "omega is"),
-        ({"omega": -2}, "omega is"),
-        ({"phase": math.inf}, "phase is"),
-        ({"half_cycles": 0}, "half_cycles is"),
-        ({"half_cycles": 1.5}, "half_cycles is"),
-        # what floating point does not hold
-        ({"omega": 1e-308}, "omega is 1e-308; it must be from 1e-150"),
-        ({"omega": 1e200}, r"omega is 1e\+200"),
-        ({"amplitude": 1e200, "omega": 1e-100}, r"amplitude is 1e\+200 and omega 1e-100; the disp"),
-        ({"half_cycles": 10**400}, "half_cycles is 1000"),
-        ({"half_cycles": 10**16}, r"half_cycles is 1\d*; it must be a whole number from 1 to 1e"),
-    ],
-    Record: [
-        ({"dt": 0.0}, "dt is 0.0; it must be positive"),
-        ({"dt": math.nan}, "dt is nan"),
-        ({"samples": [1.0]}, "two or more"),
-        ({"samples": [[1.0, 2.0]]}, "shape"),
-        ({"samples": [0.0, 1.0, math.nan]}, r"samples\[2\] is nan"),
-        ({"samples": [math.inf, 1.0]}, r"samples\[0\] is inf"),
-        # what floating point does not hold
-        ({"samples": [1e307, -1e307], "dt": 0.01}, "a sample 1e\\+307; .* must be finite"),
-        ({"dt": 1e308, "samples": [0.0, 0.0, 0.0]}, "dt is 1e\\+308; it must be from"),
-        ({"dt": 1e200}, "must be from"),
-        ({"dt": 1e-320}, "must be from"),
-        ({"dt": 1e100, "samples": [0.0, 1e200]}, r"dt is 1e\+100 and a sample 1e\+200; the disp"),
-        ({"dt": 1e-100, "samples": [0.0, 1e250]}, r"dt is 1e-100 and a sample 1e\+250; the slope"),
-    ],
-    Delayed: [({"rest_s": rest}, "rest_s is") for rest in (0.0, -1.0, math.inf, math.nan, "x")],
-    ricker: [
-        ({"amplitude": math.nan}, "amplitude is nan"),
-        ({"frequency": 0.0}, "frequency is 0.0; it must be positive"),
-        ({"dt": -1.0}, "dt is -1.0"),
-    ],
-    near_fault: [
-        ({"gamma": 1.0}, "gamma is 1.0; it must be more than 1"),
-        ({"phase": math.inf}, "phase is inf"),
-    ],
-    kanai_tajimi: [
-        ({"peak": 0.0}, "peak is 0.0"),
-        ({"damping": 1.0}, "damping is 1.0"),
-        ({"rise": 9.0}, "rise is 9.0 and fall 8.0; 0 < rise"),
-        ({"duration": 5.0}, "fall 8.0"),
-    ],
-    simulate: [
-        *(({"tolerance": value}, "tolerance is") for value in (0.0, 1e-17, 0.1, math.nan)),
-        ({"duration": 0.1}, r"duration is 0\.1; it must be at least"),
-        ({"times": [1.0, 0.5]}, "increasing"),
-        ({**RELEASED, "times": [-0.5, 0.5]}, r"times begin at -0\.5"),
-        ({"block": CartBlock(**SIZE, mass_ratio=0.3), "model": "housner"}, "has only 'exact'"),
-        ({"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
-        ({"block": BOX, "start": 3}, "start is 3; it must be x"),
-        ({"block": BOX, "duration": 0.1}, r"duration is 0\.1"),
-    ],
-    integrate: [
-        ({"method": "euler"}, "method is 'euler'; it must be one of rk4"),
-        ({"step": 0.0}, "step is 0.0"),
-        ({"event_tolerance": -1.0}, "event_tolerance is -1.0"),
-        ({"model": "none"}, "model is 'none'"),
-        ({**RELEASED, "times": [-0.5, 0.5]}, r"times begin at -0\.5"),
-    ],
-    peak_ratios: [
-        ({"alpha": 0.0}, "alpha is 0.0"),
-        ({"omega_over_p": [1.0, -2.0]}, "omega_over_p is -2.0"),
-        ({"amplitude_g": math.nan}, "amplitude_g is nan"),
-        ({"half_cycles": 1.5}, "half_cycles is 1.5"),
-        ({"restitution": 1.5}, "restitution is 1.5"),
-        ({"model": "linear"}, "model is 'linear'; it must be one of exact, housner"),
-    ],
-    overturning_modes: [
-        ({"alpha": 0.0}, "alpha"),
-        ({"omega_over_p": 0.0}, "omega"),
-        ({"half_cycles": 0.5}, "half"),
-    ],
-    overturning_amplitude: [({"half_cycles": 3}, "half_cycles is 3")],
-    first_mode: [
-        ({name: value}, "it must be")
-        for name, value in (("amplitude_g", math.nan), ("friction", 0.0), ("aspect", -2.0))
-    ],
-    orbit_limits: [
-        ({"restitution": 1.0}, "restitution"),
-        ({"omega_over_p": 0.0}, "omega_over_p"),
-        ({"n": 2}, "n is 2"),
-    ],
-    frictionless_fall: [({"theta": BLOCK.alpha}, "theta")],
+NO_SIZE = (0, -1, INF, NAN, "wide", None)
+WRONG = {
+    RigidBlock: {
+        "width": (*NO_SIZE, 5e-324),
+        "height": (*NO_SIZE, 1e308),
+        "gravity": (*NO_SIZE, 1e-310),
+        "restitution": (-0.1, 1.1, INF),
+    },
+    RockingFrame: {
+        "columns": (1, 2.5),
+        "load": (0.0, -1.0),
+        "width": (0.0,),
+        "restitution": (1.1,),
+    },
+    CartBlock: {"mass_ratio": (0.0, 1.0), "stiffness": (-1.0,), "width": (INF,)},
+    SlidingBlock: {"friction": (2.0, 0.0)},
+    RollingCylinder: {"tilt": (0.0, 1.6), "radius": (-1.0,), "height": (NAN,)},
+    SinePulse: {
+        "amplitude": (NAN,),
+        "omega": (0, -2, 1e-308, 1e200),
+        "phase": (INF,),
+        "half_cycles": (0, 1.5, 10**16),
+    },
+    Record: {"dt": (0.0, NAN, 1e200, 1e-320, 1e308)},
+    Delayed: {"rest_s": (0.0, -1.0, INF, NAN, "x")},
+    ricker: {"amplitude": (NAN,), "frequency": (0.0,), "dt": (-1.0,)},
+    near_fault: {"gamma": (1.0,), "phase": (INF,)},
+    kanai_tajimi: {"peak": (0.0,), "damping": (1.0,)},
+    simulate: {"tolerance": (0.0, 1e-17, 0.1, NAN), "duration": (0.1,)},
+    integrate: {
+        "method": ("euler",),
+        "model": ("none",),
+        "step": (0.0,),
+        "event_tolerance": (-1.0,),
+    },
+    peak_ratios: {
+        "alpha": (0.0,),
+        "amplitude_g": (NAN,),
+        "half_cycles": (1.5,),
+        "restitution": (1.5,),
+        "model": ("linear",),
+    },
+    overturning_modes: {"alpha": (0.0,), "omega_over_p": (0.0,), "half_cycles": (0.5,)},
+    overturning_amplitude: {"half_cycles": (3,)},
+    first_mode: {"amplitude_g": (NAN,), "friction": (0.0,), "aspect": (-2.0,)},
+    orbit_limits: {"restitution": (1.0,), "omega_over_p": (0.0,), "n": (2,)},
+    frictionless_fall: {"theta": (BLOCK.alpha,)},
 }
-"""What is asked instead, and what the refusal says."""
+"""Values, of one argument at a time, that are refused by its name and their own."""
+
+TOGETHER = [
+    (RigidBlock, {"width": 1e-100, "height": 1e60}, "width is 1e-100 and height 1e+60; alpha"),
+    (RigidBlock, {"width": 1e60, "height": 1e-100}, "width is 1e+60 and height 1e-100; alpha"),
+    (RollingCylinder, {"height": 2.0, "tilt": 0.6}, "tilt is 0.6; it must be below 0.46"),
+    (SinePulse, {"amplitude": 1e200, "omega": 1e-100}, "amplitude is 1e+200 and omega 1e-100; "),
+    (SinePulse, {"half_cycles": 10**400}, "half_cycles is 1000"),
+    (Record, {"samples": [1.0]}, "two or more"),
+    (Record, {"samples": [[1.0, 2.0]]}, "shape"),
+    (Record, {"samples": [0.0, 1.0, NAN]}, "samples[2] is nan"),
+    (Record, {"samples": [INF, 1.0]}, "samples[0] is inf"),
+    (Record, {"samples": [1e307, -1e307], "dt": 0.01}, "a sample 1e+307; "),
+    (Record, {"dt": 1e100, "samples": [0.0, 1e200]}, "dt is 1e+100 and a sample 1e+200; the disp"),
+    (Record, {"dt": 1e-100, "samples": [0.0, 1e250]}, "dt is 1e-100 and a sample 1e+250; the slop"),
+    (kanai_tajimi, {"rise": 9.0}, "rise is 9.0 and fall 8.0; 0 < rise"),
+    (kanai_tajimi, {"duration": 5.0}, "fall 8.0"),
+    (simulate, {"times": [1.0, 0.5]}, "increasing"),
+    *((ask, {**RELEASED, "times": [-0.5, 0.5]}, "times begin at -0.5") for ask in ROUTES),
+    (simulate, {"block": CartBlock(**SIZE, mass_ratio=0.3), "model": "housner"}, "only 'exact'"),
+    (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
+    (simulate, {"block": BOX, "start": 3}, "start is 3; it must be x"),
+    (simulate, {"block": BOX, "duration": 0.1}, "duration is 0.1"),
+    (peak_ratios, {"omega_over_p": [1.0, -2.0]}, "omega_over_p is -2.0"),
+]
+"""What is refused of several, or of what is in an argument, and what the refusal says."""
 
 
 def refuses(ask, named):
-    with pytest.raises(ValueError, match=named) as raised:
+    with pytest.raises(ValueError, match=re.escape(named)) as raised:
         ask()
     assert "\n" not in str(raised.value)
 
 
-@pytest.mark.parametrize(
-    ("ask", "change", "named"),
-    [
-        pytest.param(ask, *row, id=f"{ask.__name__}-{row[1]}-{number}")
-        for ask, rows in REFUSED.items()
-        for number, row in enumerate(rows)
-    ],
-)
-def test_what_cannot_be_is_refused_in_one_line(ask, change, named):
+@pytest.mark.parametrize(("ask", "name"), [(ask, name) for ask in WRONG for name in WRONG[ask]])
+def test_what_cannot_be_is_refused_in_one_line(ask, name):
+    for value in WRONG[ask][name]:
+        with pytest.raises(ValueError, match=rf"\b{name} is ") as raised:
+            ask(**{**USUAL[ask], name: value})
+        said = str(raised.value)
+        assert (repr(value) in said, " must " in said, "\n" in said) == (True, True, False), said
+
+
+@pytest.mark.parametrize(("ask", "change", "named"), TOGETHER)
+def test_what_cannot_be_together_is_refused_in_one_line(ask, change, named):
     refuses(partial(ask, **{**USUAL[ask], **change}), named)
 
 
@@ -215,7 +166,7 @@ def test_what_cannot_be_is_refused_in_one_line(ask, change, named):
         ((-2.0, 1.0), "theta of the start is -2.0; it must be between -pi/2 and pi/2 rad"),
         ((math.nan, 0.0), "theta of the start is nan; it must be a finite number"),
         ((0.0, math.inf), "rate of the start is inf"),
-        ((BLOCK.alpha, 0.0), "start is .*; it must not be the unstable equilibrium"),
+        ((BLOCK.alpha, 0.0), "; it must not be the unstable equilibrium"),
         ((-BLOCK.alpha, 0.0), "unstable equilibrium"),
         (0.1, "start is 0.1; it must be theta"),
         ((0.1, 0.2, 0.3), "it must be theta"),

@@ -145,15 +145,3 @@ def test_the_spectrum_is_kanais_and_tajimis():
     bands = np.array_split(np.flatnonzero((frequency > 0.2) & (frequency < 12.5)), 12)
     ratio = [power[band].mean() / (2 * dt * expected[band].mean()) for band in bands]
     assert ratio == pytest.approx(np.ones(12), abs=0.12)
-
-
-@pytest.mark.parametrize(
-    "make",
-    [lambda dt: ricker(5.0, 2.0, dt=dt), lambda dt: near_fault(0.5, 1.6, 1.8, 0.5, dt=dt)],
-    ids=["ricker", "near-fault"],
-)
-def test_a_finer_step_changes_a_peak_by_the_square_of_the_step(make):
-    peaks = [simulate(BLOCK, make(0.02 / 2**k)).peak_ratio for k in range(6)]
-    assert 0.01 < peaks[0] < 1
-    errors = np.abs(np.array(peaks[:3]) - peaks[5])
-    assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2.0, abs=0.35)

@@ -1,6 +1,7 @@
 """An engine that knows the answer: its poses are exact, so that all error is the onlooker's."""
 
 import math
+from dataclasses import replace
 
 from analytic import simulate
 from engines import ENGINES
@@ -35,31 +36,37 @@ def standing(scene, theta, rate):
 
 
 class ScriptedWorld(Bare):
-    """Has the rotation and rate that `script` says, and keeps the steps that it was given."""
+    """Has the rotation and rate that `script` says, and keeps the steps that it was given.
 
-    def __init__(self, scene):
-        self.scene = scene
-        self.steps = []
-        self._pose = standing(scene, *scene.start)
+    It is raised by `raised_m(time, theta)`.
+    """
+
+    def __init__(self, scene, raised_m=lambda time, theta: 0.0):
+        self.scene, self.steps, self._raised_m = scene, [], raised_m
+        self._pose, self._time = standing(scene, *scene.start), 0.0
 
     def script(self, time, rate_s):
-        """Return the rotation at a time, and the rate at the moment of its step [s]."""
-        raise NotImplementedError
+        """Return the rotation at a time, and the rate at the moment of its step [s]: none."""
+        return 0.0, 0.0
 
     def step(self, step):
         self.steps.append(step)
-        rate_s = step.end_s - (1.0 - self.moment.value) * step.dt_s
-        self._pose = standing(self.scene, *self.script(step.end_s, rate_s))
+        self._go(step.end_s, step.end_s - (1.0 - self.moment.value) * step.dt_s)
 
     def state(self):
-        return [self._pose]
+        raised = self._raised_m(self._time, self._pose.theta)
+        return [self._pose._replace(z=self._pose.z + raised)]
+
+    def _go(self, time, rate_s):
+        self._time = time
+        self._pose = standing(self.scene, *self.script(time, rate_s))
 
 
 class KnownWorld(ScriptedWorld):
     """The exact solution, its velocity at some moment of the step."""
 
-    def __init__(self, scene, moment, stepping):
-        super().__init__(scene)
+    def __init__(self, scene, moment=Moment.END, stepping=Stepping.FIXED, **options):
+        super().__init__(scene, **options)
         self.moment = moment
         self._ahead = {}
         if stepping is Stepping.FIXED and scene.step and scene.duration:
@@ -86,22 +93,22 @@ class KnownWorld(ScriptedWorld):
         return thetas[time > rate_s], rates[rate_s > time]
 
 
-class ElsewhereWorld(KnownWorld):
-    """The exact solution on a base that is not where it should be, by `raised_m` of the time."""
+class SelfSteppingWorld(KnownWorld):
+    """The exact solution, at the times to which it is told to go by steps of its own."""
 
-    def __init__(self, scene, dt_s, raised_m):
-        super().__init__(scene, Moment.END, Stepping.FIXED)
-        self._dt_s, self._raised_m = dt_s, raised_m
+    def __init__(self, scene):
+        super().__init__(scene, Moment.END, Stepping.OWN)
 
-    def state(self):
-        (at,) = super().state()
-        return [at._replace(z=at.z + self._raised_m(self._dt_s * len(self.steps)))]
+    def advance(self, end_s):
+        self.steps.append(end_s)
+        self._go(end_s, end_s)
+        return 3
 
 
-def watched(world, posed, stepping):
-    """Return what is seen of a world, in the equal steps of a scene or in steps that land."""
+def watched(world, posed, stepping, **declared):
+    """Return what is seen of a world, in steps that a scene is given, land or are its own."""
     dt_s = (posed.step or 1.0 / ACCURACIES[posed.accuracy]) / posed.system.p
-    resolution = ENGINES["mujoco"].resolution(posed.system)
+    resolution = replace(ENGINES["mujoco"], **declared).resolution(posed.system)
     return simulate_world(world, posed, dt_s, stepping, resolution)
 
 

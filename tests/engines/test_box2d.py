@@ -3,7 +3,7 @@
 import pytest
 from uses import BLOCK, HERE, error, pulse, rocked
 
-from analytic import Outcome, RigidBlock, SinePulse, simulate
+from analytic import RigidBlock, SinePulse, simulate
 from engines.parts.quiet import imported
 
 pytestmark = pytest.mark.skipif("box2d" not in HERE, reason="Box2D is not installed")
@@ -65,17 +65,6 @@ def test_a_box_acts_from_its_skin_on():
     box = {"geometry": "box", "units": 20.0}
     assert error("box2d", settings={**box, "skins_below": True}) < 3e-2
     assert error("box2d", settings={**box, "skins_below": False}) > 0.2
-
-
-def test_a_world_that_does_not_sleep_still_puts_a_body_to_sleep():
-    """`doSleep` is taken and read back, and does nothing; `sleepingAllowed` of the body does."""
-    motion = pulse(1.3, 0.1, 2)
-    outcomes = [
-        rocked("box2d", motion, preset="naive", frame="base", settings={"sleeping": s}).outcome
-        for s in (True, False)
-    ]
-    assert simulate(BLOCK, motion).outcome is Outcome.OVERTURNED
-    assert outcomes == [Outcome.AT_REST, Outcome.OVERTURNED]
 
 
 def test_a_block_that_its_skins_hold_leaning_is_at_rest():

@@ -8,17 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from uses import BLOCK, all_but_times, pulse, rocked, scene
+from given import BLOCK, all_but_times, pulse
+from uses import rocked, scene
 
 from analytic.block import RigidBlock
-from analytic.motion import SinePulse
-from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.pybullet import build as bullet
 from engines.pybullet import clients as bullet_clients
 from engines.pybullet import fast as bullet_loop
 from engines.pybullet.addresses import spans
-from engines.pybullet.settings import FACTORS, LANDING, TUNED
+from engines.pybullet.settings import FACTORS
 from engines.run.drive import build, run, simulate_world
 from engines.world import ContactPhase
 
@@ -27,13 +26,16 @@ p = pytest.importorskip("pybullet")
 ROCKS = scene(accuracy="loose")
 
 
+def forget():
+    bullet_loop.clients.cache_clear()
+    bullet.loop_agrees.cache_clear()
+
+
 @pytest.fixture(autouse=True)
 def asked_anew():
-    for known in (bullet_loop.clients, bullet.loop_agrees):
-        known.cache_clear()
+    forget()
     yield
-    for known in (bullet_loop.clients, bullet.loop_agrees):
-        known.cache_clear()
+    forget()
 
 
 def driven(asked):
@@ -54,8 +56,7 @@ def driven(asked):
 def test_another_build_is_stepped_from_python(name, other, monkeypatch):
     compiled = all_but_times(run("pybullet", ROCKS))
     assert driven(ROCKS)
-    bullet_loop.clients.cache_clear()
-    bullet.loop_agrees.cache_clear()
+    forget()
     monkeypatch.setattr(bullet_loop, name, other)
     assert not driven(ROCKS)
     stepped = run("pybullet", ROCKS)
@@ -79,18 +80,12 @@ def test_where_functions_stand():
     assert 0 < size < 1000
 
 
-@pytest.mark.parametrize(
-    ("name", "other"),
-    [
-        ("contact_erp", 0.5),
-        ("friction_erp", 0.5),
-        ("by_phase", False),
-        ("moving", False),
-        ("base_velocity", False),
-        ("ordinary", 1.0),
-    ],
-)
-def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
+OTHERWISE = {"contact_erp": 0.5, "friction_erp": 0.5, "ordinary": 1.0}
+OTHERWISE |= dict.fromkeys(("by_phase", "moving", "base_velocity"), False)
+
+
+@pytest.mark.parametrize("name", OTHERWISE)
+def test_a_loop_that_steps_otherwise_is_not_used(name, monkeypatch):
     assert bullet.loop_agrees()
     bullet.loop_agrees.cache_clear()
     begin = bullet.begin_contact
@@ -99,7 +94,7 @@ def test_a_loop_that_steps_otherwise_is_not_used(name, other, monkeypatch):
     def otherwise(held, *rest):
         begin(held, *rest)
         if next(looped):
-            setattr(held, name, other)
+            setattr(held, name, OTHERWISE[name])
 
     with monkeypatch.context() as patch:
         patch.setattr(bullet, "begin_contact", otherwise)
@@ -147,10 +142,8 @@ def answer(number):
 def test_worlds_at_once_keep_their_own_gaps(compiled):
     """The library holds that up to which contacts are kept for the whole process, and looks at it
     when two bodies meet first: on a plane, while a scene is built."""
-    alone, asked = answer(1), replace(apart(1), compiled=compiled)
-    world = build(ENGINES["pybullet"], asked)
-    other = build(ENGINES["pybullet"], replace(asked, preset="naive"))
-    engine = ENGINES["pybullet"]
+    engine, alone, asked = ENGINES["pybullet"], answer(1), replace(apart(1), compiled=compiled)
+    world, other = build(engine, asked), build(engine, replace(asked, preset="naive"))
     dt_s, resolution = engine.best.ordinary_step_s(asked), engine.resolution(asked.system)
     response = simulate_world(world, asked, dt_s, resolution=resolution)
     world.close()
@@ -171,17 +164,6 @@ def test_processes_answer_alike(method):
         assert pool.submit(answer, 1).result() == here
 
 
-ENDLESS = {"preset": "fixed", "duration": 1e5}
-
-
-def test_a_time_limit_ends_a_loop():
-    asked = scene(pulse(0.5, 1.0), time_limit_s=0.05, **ENDLESS)
-    assert driven(asked)
-    response = run("pybullet", asked)
-    assert response.reason is Reason.UNDECIDED
-    assert "0.05 s" in response.message  # and not by its steps
-
-
 def test_a_signal_ends_a_loop():
     def stop(number, frame):
         raise InterruptedError
@@ -190,7 +172,7 @@ def test_a_signal_ends_a_loop():
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(InterruptedError):
-            rocked("pybullet", pulse(0.5, 1.0), **ENDLESS)
+            rocked("pybullet", pulse(0.5, 1.0), preset="fixed", duration=1e5)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -226,18 +208,3 @@ def test_nothing_stays_of_any_setting(wanted, monkeypatch):
             rocked("pybullet", pulse(1.35, 4.0), **few, **level.scene)
         assert len(bullet_clients.idle) == 1
         assert answered() == first, level.name
-
-
-def test_two_worlds_at_once_have_a_client_each(monkeypatch):
-    monkeypatch.setattr(bullet_clients, "idle", [])
-    worlds = [bullet.BulletWorld(scene(), settings, 1e-3) for settings in (TUNED, LANDING)]
-    for world in worlds:
-        world.close()
-    assert len(set(bullet_clients.idle)) == 2
-
-
-def test_a_run_that_was_lost_spoils_none_after_it():
-    first = all_but_times(rocked("pybullet"))
-    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="naive")
-    assert lost.outcome is Outcome.FAILED
-    assert all_but_times(rocked("pybullet")) == first

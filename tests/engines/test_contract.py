@@ -1,66 +1,33 @@
-"""What the contract promises: what is missing, what is coarse, and who chooses the steps."""
+"""What the contract promises: what is declared, what is missing or refused, and what is a fault."""
 
 import importlib
 import math
-from dataclasses import dataclass, replace
+import os
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from functools import partial
 
-import numpy as np
 import pytest
-from known import Bare
-from scipy.integrate import solve_ivp
-from uses import (
-    BLOCK,
-    HERE,
-    SHAKEN,
-    WITH_BULLET,
-    error,
-    every_use,
-    held_frames,
-    pulse,
-    rocked,
-    scene,
-)
+from known import Bare, ScriptedWorld
+from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
-from analytic import RigidBlock, SinePulse, simulate
-from analytic.response import Outcome, Reason
+from analytic import CartBlock, RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
+from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
-from engines.declaration import UNTUNED, Precision, Preset, Stepping
+from engines.declaration import UNTUNED, Stepping
+from engines.layouts import Ability, SideBySide
 from engines.parts.quiet import imported
-from engines.pybullet.build import BulletWorld
-from engines.run.drive import build, run
+from engines.registry import OWN, VARIANTS
+from engines.run.drive import build, run, simulate_world
 from engines.world import Pose
 from studies.cases.variants import variants
+from studies.kit.executors import Local
+from studies.kit.jobs import Job
+from studies.sources.registry import SOURCES
 
-
-def use(monkeypatch, engine):
-    """Let `run` find an engine under any name."""
-    monkeypatch.setattr("engines.run.drive.find", lambda name: engine)
-
-
-def test_a_library_that_is_missing_is_a_row_that_says_so(monkeypatch):
-    def missing(*_):
-        raise ModuleNotFoundError("No module named 'nothing'")
-
-    use(monkeypatch, replace(ENGINES["pybullet"], build=missing, install="rocking[nothing]"))
-    response = rocked("any")
-    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
-    assert "'nothing'; pip install 'rocking[nothing]'" in response.message
-
-
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        ({"frames": ("base",)}, "'world'"),
-        ({"geometries": ("box",)}, "'hull'"),
-        ({"spatial": False}, "plane"),
-    ],
-)
-def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, named, monkeypatch):
-    use(monkeypatch, replace(ENGINES["pybullet"], **change))
-    settings = {"planar": False, "geometry": "hull"}
-    response = rocked("any", frame="world", settings=settings)
-    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
-    assert named in response.message
+SIZE = {"width": 0.5, "height": 1.5}
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -84,6 +51,100 @@ def test_a_declaration_is_whole(name):
         assert all(hasattr(engine.best.settings, setting) for setting in item.settings)
     tried = {(it.preset, it.factor, it.level) for it in variants(name)}
     assert {(rule.preset, rule.factor, rule.level) for rule in engine.rules} <= tried
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
+    def missing(*_):
+        raise ModuleNotFoundError("No module named 'nothing'")
+
+    response = run(replace(ENGINES[name], build=missing), scene())
+    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+    assert f"'nothing'; pip install '{ENGINES[name].install}'" in response.message
+
+
+ABLE = {
+    Ability.SEVERAL: (SideBySide(block=BLOCK), {*OWN}),
+    Ability.STACKED: (RockingFrame(**SIZE, load=1.0), {*OWN} - {"warp", "mjx"}),
+    Ability.FREE_BASE: (CartBlock(**SIZE, mass_ratio=0.5), {*OWN} - {"newton", "warp", "mjx"}),
+}
+"""Ability -> a system that asks for it, and which of the project's own engines have it."""
+
+
+@pytest.mark.parametrize("ability", ABLE)
+def test_who_can_hold_more_than_a_block_and_what_others_say(ability):
+    system, able = ABLE[ability]
+    assert {name for name in OWN if ability in ENGINES[name].holds} == able
+    for name, engine in ENGINES.items():
+        for preset in engine.presets:
+            unequal = preset.stepping is not Stepping.FIXED
+            if ability not in engine.holds or (ability is Ability.FREE_BASE and unequal):
+                found = rocked(name, system=system, preset=preset.name)
+                assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+                assert "is not built here for" in found.message
+
+
+@pytest.mark.parametrize(
+    ("change", "asked", "named"),
+    [
+        ({"frames": ("base",)}, {"frame": "world"}, "'world'"),
+        ({"geometries": ("box",)}, {"settings": {"geometry": "hull"}}, "'hull'"),
+        ({"spatial": False}, {"settings": {"planar": False}}, "plane"),
+        ({}, {"system": ABLE[Ability.FREE_BASE][0], "preset": "fixed", "frame": "base"}, "'base'"),
+        (
+            {},
+            {"system": SlidingBlock(**SIZE, friction=0.2), "preset": "landing"},
+            "nothing rocks here",
+        ),
+    ],
+)
+def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, asked, named):
+    response = run(replace(ENGINES["pybullet"], **change), scene(**asked))
+    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
+    assert named in response.message
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"frame": "moon"}, "frame is 'moon'; it must be one of base, world"),
+        ({"density": -1.0}, r"density is -1\.0; it must be positive"),
+        ({"step": 0.0}, r"step is 0\.0; it must be positive"),
+        ({"duration": 0.1}, r"duration is 0\.1; it must be at least the motion's"),
+        ({"times": [1.0, 0.5]}, "they must increase"),
+        ({"friction": -0.1}, r"friction is -0\.1; it must not be negative"),
+    ],
+)
+def test_a_scene_refuses_what_is_not_allowed(options, message):
+    with pytest.raises(ValueError, match=message):
+        scene(pulse(1.3, 1.0), **options)
+
+
+@pytest.mark.parametrize("engine", HERE)
+def test_what_an_engine_does_not_have_is_refused(engine):
+    with pytest.raises(ValueError, match=f"preset of {engine} is 'best'; it must be one of"):
+        rocked(engine, preset="best")
+    for preset in HERE[engine].presets:
+        with pytest.raises(ValueError, match="setting is 'bounce'; it must be one of"):
+            rocked(engine, preset=preset.name, settings={"bounce": 1})
+    if HERE[engine].preset("naive").takes(floor="position"):
+        with pytest.raises(ValueError, match="floor is None; it must be one of"):
+            rocked(engine, preset="naive", settings={"floor": None})
+    if engine in CORE:
+        with pytest.raises(ValueError, match="geometry is 'ball'; it must be one of box, corners"):
+            rocked(engine, settings={"geometry": "ball"})
+
+
+def test_an_engine_that_there_is_not_is_refused():
+    with pytest.raises(ValueError, match="engine is 'ode'; it must be one of pybullet, mujoco"):
+        rocked("ode")
+
+
+def test_the_other_solvers_are_variants_and_no_engines_of_a_list():
+    asked = {each.source.partition(":")[0] for each in variants("newton")}
+    assert asked == {"newton", *VARIANTS}
+    assert not {*ENGINES} & {*VARIANTS}
+    assert {*VARIANTS} <= {*SOURCES}
 
 
 def takes(engine, **options):
@@ -161,113 +222,77 @@ def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
     assert response.reason is Reason.SLID
 
 
-@WITH_BULLET
-def test_faults_are_asked_while_a_run_goes_on(monkeypatch):
+@pytest.mark.parametrize("engine", HERE)
+def test_an_engine_is_imported_when_named_and_says_nothing(engine):
+    own = {HERE[engine].library, "numpy", *HERE[engine].packages}  # it may be built on another
+    libraries = {other.library for other in ENGINES.values()} - {"numpy"}
+    script = (
+        "import sys\n"
+        "from analytic import RigidBlock, SinePulse\n"
+        "from engines import ENGINES, Scene\n"
+        "from engines.run.drive import run\n"
+        "assert all(engine.presets for engine in ENGINES.values())\n"
+        f"assert not {libraries!r} & set(sys.modules)\n"
+        f"block, pulse = {BLOCK!r}, {SHAKEN!r}\n"
+        f"run({engine!r}, Scene(system=block, motion=pulse))\n"
+        f"assert not {libraries - own!r} & set(sys.modules)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, env=environment)
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+
+
+def test_faults_are_asked_while_a_run_goes_on():
     """A setting that was not taken ends a run long before its hour of rest is over."""
-    monkeypatch.setattr(BulletWorld, "fault", lambda self: "the moon is full")
-    response = rocked("pybullet", pulse(0.5, 1.0), preset="fixed", duration=3600.0)
-    assert response.message == "the moon is full"
+
+    class Faulty(ScriptedWorld):
+        def fault(self):
+            return "the moon is full"
+
+    response = simulate_world(Faulty(scene()), scene(pulse(0.5, 1.0), duration=3600.0), 1e-3)
+    assert (response.reason, response.message) == (Reason.FAULT, "the moon is full")
     assert response.steps < 1000
 
 
-class RoundedWorld(BulletWorld):
-    """PyBullet, told in the numbers of single precision."""
+class Lost(Bare):
+    """A world that hands out what a broken engine might."""
 
-    drive = None
-
-    def state(self):
-        return np.array(super().state(), dtype=np.float32).astype(np.float64)
-
-
-class TremblingWorld(BulletWorld):
-    """PyBullet, with a height that single precision rounds otherwise at every look."""
-
-    drive, looks = None, 0
+    def __init__(self, pose):
+        self.pose = pose
 
     def state(self):
-        ((x, z, theta, rate),) = super().state().tolist()
-        self.looks += 1
-        return [Pose(x, z * (1.0 + 6e-8 * math.sin(self.looks)), theta, rate)]
+        return [self.pose]
 
 
-SINGLE = {"precision": Precision.SINGLE, "shortest_step": 1e-6}
-DOUBLE = {"precision": Precision.DOUBLE, "shortest_step": 1e-12}
+@pytest.mark.parametrize(
+    ("pose", "amount", "reason"),
+    [
+        (Pose(0.0, 0.75, math.nan, 0.0), "", Reason.DIVERGED),
+        (Pose(0.0, math.inf, 0.0, 0.0), "", Reason.DIVERGED),
+        (Pose(0.0, 0.75, math.inf, 0.0), "", Reason.DIVERGED),
+        (Pose(0.0, -0.25, 0.0, 0.0), " 1 m", Reason.SANK),
+        (Pose(0.0, 2.75, 0.0, 0.0), " 2 m", Reason.THROWN),
+        (Pose(0.2, 0.75, 0.0, 0.0), " 0.2 m", Reason.SLID),
+    ],
+)
+def test_poses_that_are_no_rocking_block(pose, amount, reason):
+    response = simulate_world(Lost(pose), scene(pulse(1.3, 1.0)), 1e-3)
+    assert (response.outcome, response.reason) == (Outcome.FAILED, reason)
+    assert amount in response.message
 
 
-@WITH_BULLET
-def test_single_precision_is_judged_by_what_it_tells_apart(monkeypatch):
-    """A block at rest, whose corners are 6e-8 of its height off in single precision."""
-    at_rest = []
-    for precision in (DOUBLE, SINGLE):
-        use(monkeypatch, replace(HERE["pybullet"], build=TremblingWorld, **precision))
-        at_rest.append(rocked("any", pulse(0.9, 1.0), duration=5.0).outcome is Outcome.AT_REST)
-    assert at_rest == [False, True]
+def slow_at_first(marker, job, source):
+    """Take longer than the time limit where nothing was compiled yet."""
+    if not marker.exists():
+        time.sleep(4.0)
+        marker.touch()
+    return Response.failure("compiled")
 
 
-@WITH_BULLET
-def test_single_precision_rocks(monkeypatch):
-    """Rotations rounded to 6e-8 of themselves, heights to 6e-8 of the block's: an impact is seen
-    1e-7 of a width too early or late."""
-    use(monkeypatch, replace(HERE["pybullet"], build=RoundedWorld, **SINGLE))
-    assert error("any") < 1e-4
-
-
-@dataclass(frozen=True)
-class SpringSettings:
-    friction: float = 1.0
-    tolerance: float = 1e-7
-
-
-class SpringWorld(Bare):
-    """Two corners on springs whose damping goes with their depth, in steps chosen by RK23."""
-
-    def __init__(self, scene, settings, dt_s):
-        (body,), block = scene.bodies, scene.system
-        self._mass, self._inertia, at = body.mass, body.inertia[1], body.at
-        self._scene, self._tolerance, self._time = scene, settings.tolerance, 0.0
-        self._at = [at.x, at.z, at.theta, at.velocity_x, at.velocity_z, at.rate]
-        self._half = (0.5 * block.width, 0.5 * block.height)
-        self._spring = 1e6 * body.mass * block.p**2
-        self._damping = 300.0 / (block.p * block.width)
-
-    def _rates(self, time, state):
-        _, z, theta, vx, vz, rate = state
-        scene, sine, cosine = self._scene, math.sin(theta), math.cos(theta)
-        along = -self._mass * float(scene.motion.acceleration(time))
-        up = -self._mass * scene.system.gravity
-        moment = 0.0
-        for side in (-self._half[0], self._half[0]):
-            arm, level = side * cosine - self._half[1] * sine, -side * sine - self._half[1] * cosine
-            depth = -(z + level)
-            if depth > 0.0:
-                force = self._spring * depth
-                push = force * max(1.0 - self._damping * (vz - rate * arm), 0.0)
-                drag = -force * self._damping * (vx + rate * level)
-                along, up = along + drag, up + push
-                moment += drag * level - push * arm
-        return [vx, vz, rate, along / self._mass, up / self._mass, moment / self._inertia]
-
-    def advance(self, end_s):
-        path = solve_ivp(
-            self._rates, (self._time, end_s), self._at, "RK23",
-            rtol=self._tolerance, atol=self._tolerance,
-        )  # fmt: skip
-        self._at, self._time = path.y[:, -1].tolist(), end_s
-        return len(path.t) - 1
-
-    def state(self):
-        x, z, theta, _, _, rate = self._at
-        return [Pose(x, z, theta, rate)]
-
-
-def test_an_engine_may_choose_its_own_steps(monkeypatch):
-    """It is told times to go to, on the corners of the motion among them; contact is yielding."""
-    own = Preset(name="own", title="", settings=SpringSettings(), stepping=Stepping.OWN)
-    use(monkeypatch, replace(ENGINES["pybullet"], build=SpringWorld, presets=(own,)))
-    response = rocked("any", accuracy="loose")
-    assert response.outcome is Outcome.ROCKED, response.message
-    assert len(response.impacts) == 1
-    # an impact on a spring of 1e6 m p^2 takes some 1e-3/p
-    assert response.impacts[0].ratio == pytest.approx(BLOCK.restitution, rel=1e-2)
-    assert response.peak_ratio == pytest.approx(simulate(BLOCK, SHAKEN).peak_ratio, rel=1e-2)
-    assert response.steps > 40.0 * BLOCK.p * SHAKEN.duration
+def test_what_compiles_itself_does_so_outside_the_time_limit(tmp_path, monkeypatch):
+    job = Job(labels={}, block=BLOCK, motion=SHAKEN, source="newton")
+    ask = partial(slow_at_first, tmp_path / "compiled")
+    engine = replace(ENGINES["newton"], library="numpy")
+    monkeypatch.setattr("engines.registry._declared", lambda name, place: engine)
+    assert [r.message for _, r in Local(1, 3.0, ask)([job])] == ["compiled"]

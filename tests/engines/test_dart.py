@@ -3,9 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from uses import BLOCK, HERE, SHAKEN, error, pulse, rocked
+from uses import HERE, SHAKEN, error, rocked
 
-from analytic import Outcome, RigidBlock, simulate
 from analytic.response import Reason
 from engines.dart.build import touching
 
@@ -47,13 +46,6 @@ def test_corrections_go_by_the_unit_of_length():
     assert fine < 1e-4 < 1e-3 < coarse
 
 
-def test_space_begins_as_the_plane_does():
-    """Four corners on a free joint move as two in the plane, also where they set out in a swing."""
-    start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
-    free = {"planar": False, "aside": False}
-    assert peak(start=start, settings=free) == pytest.approx(peak(start=start), rel=1e-5)
-
-
 def test_a_release_without_an_option_has_it_off(monkeypatch):
     """One that cannot split impulses does as one that does not, and not as one that does."""
     import dartpy
@@ -68,15 +60,3 @@ def test_a_release_without_an_option_has_it_off(monkeypatch):
     asked = rocked("dart", preset="fixed", settings={"split_impulse": True})
     assert asked.reason is Reason.FAULT
     assert "split impulse" in asked.message
-
-
-def test_friction_is_bounded_by_normal_forces_without_friction():
-    """The pulse needs a friction of 0.66, and its pivot slides away with 1: on one corner the
-    library's solver allows the friction of a normal force that it finds without friction."""
-    block = RigidBlock(width=0.5, height=1.0)
-    hard = {"motion": pulse(3.1, 2.0, 1, block), "system": block, "preset": "naive"}
-    assert 0.65 < simulate(block, hard["motion"]).friction_needed < 0.66
-    assert rocked("dart", **hard).reason is Reason.SLID
-    for solver in ("NSGS", "FBF"):
-        held = rocked("dart", **hard, settings={"solver": solver})
-        assert held.outcome is Outcome.OVERTURNED, held.message

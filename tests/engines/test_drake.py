@@ -4,11 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, SHAKEN, error, pulse, rocked, scene
+from uses import BLOCK, HERE, SHAKEN, agreed, error, rocked, scene
 
 from analytic import simulate
 from analytic.response import Outcome, Reason
-from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.drake import build as drake
 from engines.parts.shapes import NO_JAM
@@ -39,9 +38,11 @@ def test_the_worst_conditioned_case_of_the_sweep():
 
 
 def test_smaller_errors_of_a_step_make_smaller_errors():
-    found = [fails(OWN_STEPS, accuracy=accuracy) for accuracy in (1e-4, 1e-6, 1e-8)]
-    assert found[0] > 5.0 * found[1]
-    assert found[1] > 2.0 * found[2]
+    """CENIC's own are 1e-3 m or rad a step, whatever the size: a block may go through its base."""
+    steps = (1e-3 / BLOCK.alpha, 1e-4, 1e-6, 1e-8)
+    found = [fails(OWN_STEPS, accuracy=accuracy) for accuracy in steps]
+    assert found[0] > 0.05
+    assert found[1] > 5.0 * found[2] > 10.0 * found[3]
 
 
 def test_looks_may_be_far_apart():
@@ -49,11 +50,6 @@ def test_looks_may_be_far_apart():
     loose, standard = (rocked("drake", accuracy=accuracy) for accuracy in ("loose", "standard"))
     assert loose.peak_ratio == pytest.approx(standard.peak_ratio, rel=2e-3)
     assert loose.steps > 0.5 * standard.steps
-
-
-def test_the_library_s_own_accuracy_is_too_loose_for_a_block():
-    """CENIC's own is 1e-3 m or rad a step, whatever the size: a block may go through its base."""
-    assert fails(OWN_STEPS, accuracy=1e-3 / BLOCK.alpha) > 0.05
 
 
 def test_a_contact_is_as_stiff_under_a_heavier_block():
@@ -65,22 +61,16 @@ def test_a_contact_is_as_stiff_under_a_heavier_block():
     heavy = rocked("drake", preset=AT_REST, density=1e5)
     assert heavy.sink_m > 0.05 * BLOCK.width
     assert "sank" in heavy.message
-
-
-def test_a_contact_that_goes_with_the_mass_errs_as_much_under_any():
-    light, heavy = (
-        rocked("drake", preset="fixed", density=density).peak_ratio for density in (10.0, 1e5)
-    )
+    # one that goes with the mass errs as much under any
+    light, heavy = (rocked("drake", preset="fixed", density=it).peak_ratio for it in (10.0, 1e5))
     assert light == pytest.approx(heavy, rel=1e-6)
 
 
 @pytest.mark.parametrize("case", SWEEP[3::97])
 def test_a_block_in_a_soft_contact_rocks_as_deep_as_it_stands(case):
     """With the library's own it sinks by centimetres all the while, and its rocking is seen."""
-    exact = simulate(case.block, case.motion)
-    found = rocked("drake", case.motion, system=case.block, preset="naive")
+    exact, found = agreed("drake", case.motion, system=case.block, preset="naive")
     assert exact.outcome is not Outcome.AT_REST
-    assert found.outcome is exact.outcome
     if exact.outcome is Outcome.ROCKED:
         assert 0.5 < found.peak_ratio / exact.peak_ratio < 2.5
 
@@ -93,10 +83,6 @@ def test_friction_lags_behind_what_dissipates():
     assert fails("fixed", dissipation=1e4, friction=NO_JAM) > 0.05
     lost = rocked("drake", preset="fixed", settings={"dissipation": 1e5, "friction": NO_JAM})
     assert lost.reason is Reason.SLID
-
-
-def test_a_box_touches_a_half_space_in_one_point():
-    assert fails("fixed", geometry="box") > 10.0 * fails("fixed")
 
 
 def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(monkeypatch):
@@ -128,38 +114,15 @@ def test_settings_are_read_back(monkeypatch):
     assert rocked("drake", preset="fixed").message == "friction was set to 100.0 but reads 0.5"
 
 
-def test_a_box_turns_out_of_the_plane_about_its_one_contact():
-    """Its deepest corner alone holds it: what is seen in the plane is a pivot that slides away,
-    whatever the friction. Spheres at four corners hold it, and so does a joint in the plane."""
-    hard = pulse(7.0, 6.0, 2)
-    assert simulate(BLOCK, hard).friction_needed < 0.7
-    for friction in (1.0, 10.0):
-        slid = rocked("drake", hard, preset=AT_REST, settings={"friction": friction})
-        assert slid.reason is Reason.SLID
-    for settings in ({"planar": True}, {"geometry": "corners"}):
-        assert rocked("drake", hard, preset=AT_REST, settings=settings).slip_m < 2e-3
-
-
 def test_a_drive_that_yields_is_behind(monkeypatch):
     """An example's own gains, for a gripper of 0.1 kg, are nothing to a block."""
     monkeypatch.setattr(drake, "GAINS", {"p": 1e4, "d": 1.0})
     assert rocked("drake", preset="naive").observables[LAG] > 0.1
 
 
-def test_what_naive_leaves_is_what_the_library_does_itself():
-    from pydrake.geometry import SceneGraphConfig
+def test_naive_leaves_the_step_and_the_contact_to_the_library():
     from pydrake.multibody.plant import MultibodyPlantConfig
 
-    said = {source.setting: source.value for source in ENGINES["drake"].presets[0].documented}
-    bare, shapes = MultibodyPlantConfig(), SceneGraphConfig().default_proximity_properties
-    assert f"time_step = {bare.time_step}" in said["step"]
-    assert f"{bare.discrete_contact_approximation!r}" in said["solver"]
-    assert f"stiction_tolerance = {bare.stiction_tolerance}" in said["solver"]
-    assert f"contact_model = {bare.contact_model!r}" in said["contact"]
-    assert f"compliance_type = {shapes.compliance_type!r}" in said["contact"]
-    assert f"point_stiffness = {shapes.point_stiffness:.0f}" in said["contact"]
-    assert f"dissipation = {shapes.hunt_crossley_dissipation:.0f}" in said["contact"]
-    assert f"static_friction = {shapes.static_friction}" in said["friction"]
     world = build(HERE["drake"], scene(preset="naive"))
-    assert world._plant.time_step() == bare.time_step
+    assert world._plant.time_step() == MultibodyPlantConfig().time_step
     assert world._plant.get_contact_model().name == "kHydroelasticWithFallback"

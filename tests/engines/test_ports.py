@@ -6,7 +6,6 @@ from declared import equal_to
 from uses import BLOCK, HERE, pulse, rocked, scene
 
 from analytic import RigidBlock
-from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.mujoco.port import Port
@@ -16,15 +15,6 @@ from engines.run.drive import build, run
 
 PORTS = ("warp", "mjx")
 every_port = pytest.mark.parametrize("name", [name for name in PORTS if name in HERE])
-
-
-@pytest.mark.parametrize("name", PORTS)
-def test_where_it_is_missing_a_row_says_how_to_install_it(name):
-    if name in HERE:
-        pytest.skip("it is installed")
-    response = rocked(name)
-    assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
-    assert f"pip install 'rocking[{name}]'" in response.message
 
 
 @pytest.mark.parametrize("name", PORTS)

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from uses import HERE, pulse, rocked, scene
+from uses import HERE, agreed, pulse, scene
 
-from analytic import RigidBlock, simulate
+from analytic import RigidBlock
 from engines.parts.quiet import imported
 from engines.parts.shapes import NO_JAM
 from engines.run.drive import build
@@ -31,8 +31,8 @@ def test_equal_steps_come_to_rest_on_both_corners():
     """Not on the margin of a corner that is not the pivot, above the base."""
     block = RigidBlock(width=1.0, height=1.5)
     motion = pulse(1.5, 3.0, 1, block)
-    exact = simulate(block, motion, duration=4.0)
-    response = rocked("pymunk", motion, system=block, preset="fixed", duration=4.0, step=1e-3)
+    asked = {"system": block, "preset": "fixed", "duration": 4.0, "step": 1e-3}
+    exact, response = agreed("pymunk", motion, **asked)
     assert response.rests == pytest.approx(exact.rests, abs=0.05)
 
 

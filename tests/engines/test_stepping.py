@@ -81,13 +81,6 @@ def test_each_step_knows_the_corner(steps):
             assert step.side == math.copysign(1.0, theta[step.end_s - 0.5 * step.dt_s])
 
 
-class StandsStill(ScriptedWorld):
-    """Never moves, whatever the base does."""
-
-    def script(self, time, rate_s):
-        return 0.0, 0.0
-
-
 class HangsInTheAir(ScriptedWorld):
     """Is lifted at once, and stays where it is."""
 
@@ -108,7 +101,7 @@ class Bounces(ScriptedWorld):
 
 def test_a_block_that_does_not_lift_is_not_lifted():
     asked = scene(MOTION, accuracy="loose")
-    world = StandsStill(asked)
+    world = ScriptedWorld(asked)
     response = watched(world, asked, Stepping.LANDING)
     assert response.outcome is Outcome.AT_REST
     assert {step.phase for step in world.steps} == {ContactPhase.REST}
@@ -122,7 +115,7 @@ def test_a_block_that_cannot_lift_is_asked_seldom():
     """The farther off the onset is, the longer the steps are, and none is far from the next."""
     slow = pulse(1.3, 0.02)
     asked = scene(slow)
-    world = StandsStill(asked)
+    world = ScriptedWorld(asked)
     watched(world, asked, Stepping.LANDING)
     onset, ordinary = math.asin(1.0 / 1.3) / slow.omega, 5e-3 / BLOCK.p
     calm = [step for step in world.steps if step.end_s < onset - ordinary]
@@ -143,7 +136,7 @@ def test_no_ordinary_step_ends_on_the_onset(count):
     """Not even where a whole number of them leads there, give or take a rounding."""
     onset = math.asin(1.0 / 1.3) / MOTION.omega
     asked = scene(MOTION, step=onset / count * BLOCK.p)
-    world = StandsStill(asked)
+    world = ScriptedWorld(asked)
     watched(world, asked, Stepping.LANDING)
     last = min(world.steps, key=lambda step: abs(step.end_s - onset))
     assert last.dt_s < 0.01 * onset / count

@@ -7,12 +7,12 @@ import math
 
 import numpy as np
 import pytest
-from known import ElsewhereWorld, KnownWorld, exactly, watched
+from known import KnownWorld, ScriptedWorld, SelfSteppingWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
 from analytic import Still, simulate
 from analytic.response import Outcome, Reason
-from engines.declaration import Stepping
+from engines.declaration import Precision, Stepping
 from engines.world import Moment
 
 MOTION = pulse(1.3, 3.0, 2)
@@ -113,57 +113,55 @@ def test_rest_begins_where_swings_are_shorter_than_steps(moment):
     assert late[1] > -0.01
 
 
+DEEP = 0.1 * BLOCK.width
 BASES = {
-    "creeping in": lambda time: -0.1 * BLOCK.width * (1.0 - math.exp(-2.0 * BLOCK.p * time)),
-    "sunk": lambda time: -0.1 * BLOCK.width,
-    "on a skin": lambda time: 0.03 * BLOCK.width,
+    "creeping in": lambda time, _: -DEEP * (1.0 - math.exp(-2.0 * BLOCK.p * time)),
+    "sunk": lambda time, _: -DEEP,
+    "on a skin": lambda time, _: 0.3 * DEEP,
 }
 """Heights [m] of a contact over the base by the time, that no rotation depends on."""
+
+
+def seen(motion, step=0.01, told_s=9.0 / BLOCK.p, kind=KnownWorld, **options):
+    """Return what is seen in equal steps of a world that is raised, or not what it should be.
+
+    The script knows as much as it is told, which is more than is looked at.
+    """
+    world = kind(scene(motion, step=step, duration=told_s), **options)
+    return watched(world, scene(motion, step=step, max_steps=20_000), Stepping.FIXED)
 
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize(("onsets", "half_cycles"), [(1.1, 1), (1.3, 2), (0.95, 2), (6.0, 1)])
 def test_outcome_and_peak_do_not_depend_on_how_deep_a_contact_is(base, onsets, half_cycles):
     motion = pulse(onsets, 3.0, half_cycles)
-    exact = simulate(BLOCK, motion)
-    asked = scene(motion, step=0.005)
-    dt_s = 0.005 / BLOCK.p
-    # the script knows as much as it is told, which is more than is looked at
-    world = ElsewhereWorld(scene(motion, step=0.005, duration=9.0 / BLOCK.p), dt_s, BASES[base])
-    seen = watched(world, asked, Stepping.FIXED)
-    assert seen.outcome is exact.outcome
+    exact, found = simulate(BLOCK, motion), seen(motion, 0.005, raised_m=BASES[base])
+    assert found.outcome is exact.outcome
     # a turning point is met by a parabola through both ends of its step, as on a rigid base
-    assert seen.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
+    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
 
 
 def test_a_block_that_sinks_is_a_note_and_no_missing_answer():
-    asked = scene(MOTION, step=0.01)
-    told = scene(MOTION, step=0.01, duration=9.0 / BLOCK.p)
-    dt_s = 0.01 / BLOCK.p
-    sunk = watched(ElsewhereWorld(told, dt_s, BASES["sunk"]), asked, Stepping.FIXED)
+    sunk = seen(MOTION, raised_m=BASES["sunk"])
     assert sunk.outcome is Outcome.ROCKED
-    assert sunk.sink_m == pytest.approx(0.1 * BLOCK.width, rel=1e-6)
-    assert f"sank {0.1 * BLOCK.width:.3g} m" in sunk.message
-    falling = ElsewhereWorld(told, dt_s, lambda time: -BLOCK.height * time)
-    through = watched(falling, asked, Stepping.FIXED)
+    assert sunk.sink_m == pytest.approx(DEEP, rel=1e-6)
+    assert f"sank {DEEP:.3g} m" in sunk.message
+    through = seen(MOTION, raised_m=lambda time, _: -BLOCK.height * time)
     assert through.reason is Reason.SANK
+
+
+FALLING = pulse(6.0, 0.1, 2)
+"""It throws the block on its side long before it ends."""
 
 
 @pytest.mark.parametrize(("from_rad", "said"), [(0.95 * math.pi / 2, False), (0.5, True)])
 def test_a_block_that_only_lies_deep_has_not_sunk(from_rad, said):
-    deep, motion = 0.1 * BLOCK.width, pulse(6.0, 0.1, 2)
-
-    class Soft(KnownWorld):
-        def state(self):
-            (at,) = super().state()
-            return [at._replace(z=at.z - deep * (abs(at.theta) > from_rad))]
-
-    told = scene(motion, step=0.01, duration=motion.duration)
-    world = Soft(told, Moment.END, Stepping.FIXED)
-    seen = watched(world, scene(motion, step=0.01, max_steps=20_000), Stepping.FIXED)
-    assert seen.outcome is Outcome.OVERTURNED
-    assert seen.sink_m == pytest.approx(deep, rel=1e-6)
-    assert ("sank" in seen.message) == said
+    found = seen(
+        FALLING, 0.01, FALLING.duration, raised_m=lambda _, theta: -DEEP * (abs(theta) > from_rad)
+    )
+    assert found.outcome is Outcome.OVERTURNED
+    assert found.sink_m == pytest.approx(DEEP, rel=1e-6)
+    assert ("sank" in found.message) == said
 
 
 def test_one_step_makes_a_history():
@@ -177,23 +175,17 @@ def test_one_step_makes_a_history():
 def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(leans):
     """Two springs under the corners: one is pressed deeper by as much as the other is relieved."""
     deep, motion = 1e-3 * BLOCK.width, pulse(leans, 3.0, 2)
+    most, omega = 2.0 * deep / BLOCK.width * leans, motion.omega
 
-    class Springs(ElsewhereWorld):
+    class Springs(ScriptedWorld):
         def script(self, time, rate_s):
-            amount = 2.0 * deep / BLOCK.width * leans
-            phase = motion.omega * time
-            inside = phase < 2.0 * math.pi
-            return (
-                -amount * math.sin(phase) * inside,
-                -amount * motion.omega * math.cos(phase) * inside,
-            )
+            inside, phase = time < motion.duration, omega * time
+            return -most * math.sin(phase) * inside, -most * omega * math.cos(phase) * inside
 
-    def level(time):
-        leant = abs(math.sin(motion.omega * time)) * (motion.omega * time < 2.0 * math.pi)
-        return -deep * (1.0 + leans * leant)
+    def level(_, theta):
+        return -deep - 0.5 * BLOCK.width * abs(theta)
 
-    world = Springs(scene(motion), 0.01 / BLOCK.p, level)
-    assert watched(world, scene(motion, step=0.01), Stepping.FIXED).outcome is (Outcome.AT_REST)
+    assert seen(motion, kind=Springs, raised_m=level).outcome is Outcome.AT_REST
 
 
 def test_a_block_held_just_short_of_its_side_lies():
@@ -204,9 +196,35 @@ def test_a_block_held_just_short_of_its_side_lies():
             theta, rate = super().script(time, rate_s)
             return (theta, rate) if abs(theta) < 1.56 else (math.copysign(1.56, theta), 0.0)
 
-    motion = pulse(6.0, 0.1, 2)  # it falls long before the pulse ends
-    told = scene(motion, step=0.01, duration=motion.duration)
-    world = Lying(told, Moment.END, Stepping.FIXED)
-    seen = watched(world, scene(motion, step=0.01, max_steps=20_000), Stepping.FIXED)
-    assert seen.outcome is Outcome.OVERTURNED
-    assert seen.steps < 0.5 * motion.duration * BLOCK.p / 0.01
+    found = seen(FALLING, 0.01, FALLING.duration, Lying)
+    assert found.outcome is Outcome.OVERTURNED
+    assert found.steps < 0.5 * FALLING.duration * BLOCK.p / 0.01
+
+
+@pytest.mark.parametrize(
+    ("precision", "outcome"),
+    [(Precision.DOUBLE, Outcome.ROCKED), (Precision.SINGLE, Outcome.AT_REST)],
+)
+def test_an_engine_is_judged_by_what_its_numbers_tell_apart(precision, outcome):
+    """A block at rest whose height trembles by 6e-8 of it, as single precision rounds."""
+    asked = scene(pulse(0.9, 1.0), duration=5.0, max_steps=20_000)
+    trembling = ScriptedWorld(
+        asked, lambda time, _: 6e-8 * BLOCK.height * math.sin(1e4 * BLOCK.p * time)
+    )
+    declared = {"precision": precision, "shortest_step": 1e-6}
+    assert watched(trembling, asked, Stepping.LANDING, **declared).outcome is outcome
+
+
+def test_an_engine_may_choose_its_own_steps():
+    """It is told times to go to, on the corners of the motion among them."""
+    asked = scene(MOTION, duration=SEEN_S, times=TIMES, accuracy="loose")
+    world = SelfSteppingWorld(asked)
+    response = watched(world, asked, Stepping.OWN)
+    for corner in (*MOTION.breakpoints[1:], SEEN_S):
+        assert min(abs(end - corner) for end in world.steps) < 1e-12
+    assert response.steps == 3 * len(world.steps) > 3 * 40.0 * BLOCK.p * SEEN_S
+    errors = errors_of(response)
+    # by straight lines and parabolas over looks of p dt = 1/40
+    assert errors["time"] < 1e-3
+    assert errors["ratio"] < 2e-2
+    assert errors["peak"] < 1e-7

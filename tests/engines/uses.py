@@ -1,7 +1,5 @@
 """Every engine under every preset, and what may be asked of it by what it declares."""
 
-from dataclasses import asdict
-
 import pytest
 from declared import held_to
 from given import BLOCK, pulse
@@ -11,6 +9,7 @@ from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import UNTUNED, Stepping
 from engines.disclosure import Deviation
 from engines.run.drive import run
+from engines.run.monitor import Monitor
 from engines.world import ROUNDINGS
 from studies.cases.paper import sweep_cases
 
@@ -18,7 +17,6 @@ SHAKEN = pulse(1.3, 3.0, 2)
 """A pulse under which the block is struck once before its peak."""
 HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 CORE = [name for name in core_engines() if name in HERE]
-WITH_BULLET = pytest.mark.skipif("pybullet" not in HERE, reason="it has no wheel for this Python")
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
 FIXED = [name for name, preset in USES if preset == "fixed"]
@@ -81,29 +79,38 @@ def rocked(engine, motion=SHAKEN, **options):
     return run(engine, scene(motion, **options))
 
 
+def both(engine, motion=SHAKEN, **options):
+    """Return the exact response of a scene, and what an engine makes of it."""
+    posed = scene(motion, **options)
+    shared = {"start": posed.start, "duration": posed.duration, "times": posed.times}
+    return simulate(posed.system, motion, **shared), run(engine, posed)
+
+
+def agreed(engine, motion=SHAKEN, **options):
+    """Return both, whose outcomes agree."""
+    exact, found = both(engine, motion, **options)
+    assert found.outcome is exact.outcome, (options, found.message)
+    return exact, found
+
+
 def error(engine, motion=SHAKEN, **options):
     """Return by which part an engine's peak misses the exact one."""
-    posed = scene(motion, **options)
-    exact = simulate(posed.system, motion, start=posed.start)
-    return abs(run(engine, posed).peak_ratio / exact.peak_ratio - 1.0)
+    exact, found = both(engine, motion, **options)
+    return abs(found.peak_ratio / exact.peak_ratio - 1.0)
 
 
 def errors_of_sweep(engine, every, **options):
     """Return the errors of the peaks of the survivors of the sweep, outcomes having agreed."""
-    errors = []
-    for case in [*sweep_cases([6, 7, 8, 9])][every // 2 :: every]:
-        exact = simulate(case.block, case.motion)
-        response = rocked(engine, case.motion, system=case.block, **options)
-        assert response.outcome is exact.outcome, (case, response.message)
-        if exact.outcome is Outcome.ROCKED:
-            errors.append(abs(response.peak_ratio / exact.peak_ratio - 1.0))
-    return errors
+    cases = [*sweep_cases([6, 7, 8, 9])][every // 2 :: every]
+    pairs = [agreed(engine, case.motion, system=case.block, **options) for case in cases]
+    survived = [pair for pair in pairs if pair[0].outcome is Outcome.ROCKED]
+    return [abs(found.peak_ratio / exact.peak_ratio - 1.0) for exact, found in survived]
 
 
-def all_but_times(response):
-    """Return all fields to the last bit, apart from run times and what took the steps."""
-    found = asdict(response)
-    history = found.pop("history")
-    kept = [] if history is None else [part for part in history.values() if part is not None]
-    parts = [part.tolist() for part in kept]
-    return repr({**found, "wall_s": 0.0, "setup_s": 0.0, "driver": ""}) + repr(parts)
+def take_a_step(world, posed, engine):
+    """Take the first of the steps that a fixed preset takes in a scene; return it."""
+    monitor = Monitor(posed, HERE[engine].preset("fixed").ordinary_step_s(posed), Stepping.FIXED)
+    monitor.make_room(1)
+    step = monitor.next(world.state())
+    world.step(step)
+    return step

@@ -1,4 +1,4 @@
-"""Worlds of an engine from outside that does what no engine should, one in each class."""
+"""Worlds of an engine from outside that does what no engine should, a kind each."""
 
 import ctypes
 import multiprocessing
@@ -40,28 +40,8 @@ class Calm:
         pass
 
 
-def note(process):
-    with Path(os.environ[NOTE]).open("a") as file:
-        file.write(f"{process}\n")
-
-
-class Exits(Calm):
-    def step(self, step):
-        sys.exit()
-
-
-class ExitsAtOnce(Calm):
-    def step(self, step):
-        os._exit(0)
-
-
 class Own(BaseException):
     pass
-
-
-class RaisesOfItsOwn(Calm):
-    def step(self, step):
-        raise Own("nobody\ncatches me")
 
 
 class MuteError(Exception):
@@ -69,150 +49,123 @@ class MuteError(Exception):
         sys.exit()
 
 
-class RaisesNothingThatPrints(Calm):
-    def step(self, step):
-        raise MuteError
+def note(process):
+    with Path(os.environ[NOTE]).open("a") as file:
+        file.write(f"{process}\n")
 
 
-class Interrupts(Calm):
-    def step(self, step):
-        raise KeyboardInterrupt
+def throw(error):
+    raise error
 
 
-class Aborts(Calm):
-    def step(self, step):
-        os.abort()
+def loop():
+    """Go on for ever, with a signal handler and children of its own."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    note(os.getpid())
+    note(subprocess.Popen(["sleep", "1000"]).pid)
+    note(subprocess.Popen(["sleep", "1000"], start_new_session=True, env={}).pid)
+    while True:
+        pass
 
 
-class Crashes(Calm):
-    def step(self, step):
-        ctypes.string_at(0)
-
-
-class Loops(Calm):
-    """For ever, with a signal handler and children of its own."""
-
-    def step(self, step):
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        note(os.getpid())
-        note(subprocess.Popen(["sleep", "1000"]).pid)
-        note(subprocess.Popen(["sleep", "1000"], start_new_session=True, env={}).pid)
-        while True:
-            pass
-
-
-class LeavesAChild(Calm):
-    """A daemon, as they are made: it leaves its parent and its session, and ignores signals."""
-
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        there, done = os.pipe()
+def leave_a_child():
+    """End, but for a daemon as they are made: it leaves its session, and ignores signals."""
+    there, done = os.pipe()
+    if not os.fork():
+        os.setsid()
         if not os.fork():
-            os.setsid()
-            if not os.fork():
-                signal.signal(signal.SIGTERM, signal.SIG_IGN)
-                note(os.getpid())
-                os.write(done, b".")
-                time.sleep(1000.0)
-            os._exit(0)
-        os.wait()
-        os.read(there, 1)  # it is noted, and will not be ended before
-        os._exit(5)
+            signal.signal(signal.SIGTERM, signal.SIG_IGN)
+            note(os.getpid())
+            os.write(done, b".")
+            time.sleep(1000.0)
+        os._exit(0)
+    os.wait()
+    os.read(there, 1)  # it is noted, and will not be ended before
+    os._exit(5)
 
 
-class Forks(Calm):
-    """Both return."""
-
-    def close(self):
-        os.fork()
-
-
-class StartsAProcess(Calm):
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        process = multiprocessing.get_context("fork").Process(target=time.sleep, args=(1000.0,))
-        process.start()
-        note(process.pid)
+def start_a_process():
+    process = multiprocessing.get_context("fork").Process(target=time.sleep, args=(1000.0,))
+    process.start()
+    note(process.pid)
 
 
-class StartsAThread(Calm):
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        threading.Thread(target=threading.Event().wait).start()
+def start_a_thread():
+    threading.Thread(target=threading.Event().wait).start()
 
 
-class Talks(Calm):
-    """Without end, in its own words and its children's."""
-
-    def step(self, step):
-        while True:
-            print("again and again")
-            print("and again", file=sys.stderr)
-            os.write(1, b"and again\n")
-            subprocess.run(["echo", "and again"])
+def talk():
+    """Talk without end, in its own words and its children's."""
+    while True:
+        print("again and again")
+        print("and again", file=sys.stderr)
+        os.write(1, b"and again\n")
+        subprocess.run(["echo", "and again"])
 
 
-class Fills(Calm):
-    def step(self, step):
-        self.held = bytearray(10**10)
+def close_all():
+    """Close the streams, and what descriptors there may be."""
+    sys.stdout.close()
+    sys.stderr.close()
+    os.closerange(0, 1000)
 
 
-class GoesBack(Calm):
-    """In time: by steps of its own of which there are fewer than none."""
-
-    stepping = Stepping.OWN
-
-    def advance(self, end_s):
-        return -1
+def stop_the_clock():
+    for name in ("time", "monotonic", "perf_counter", "sleep"):
+        setattr(time, name, lambda *_: "noon")
 
 
-class IsNowhere(Calm):
-    def state(self):
-        return [(np.nan, np.nan, np.nan, np.nan)]
+def then(act):
+    """Return what builds a calm world, and then does something."""
+
+    def begin(world, scene, settings, dt_s):
+        Calm.__init__(world, scene, settings, dt_s)
+        act()
+
+    return begin
 
 
-class IsShort(Calm):
-    def state(self):
-        return np.zeros(3)
+BY_ITSELF, SIGNAL = "the process ended by itself with exit code", "the process was ended by signal"
+LATE = "no result within the time limit of 3 s"
+IN_A_STEP = {
+    "Exits": (sys.exit, "SystemExit"),
+    "ExitsAtOnce": (lambda: os._exit(0), f"{BY_ITSELF} 0"),
+    "RaisesOfItsOwn": (lambda: throw(Own("nobody\ncatches me")), "Own: nobody catches me"),
+    "RaisesNothingThatPrints": (lambda: throw(MuteError), "MuteError"),
+    "Interrupts": (lambda: throw(KeyboardInterrupt), "KeyboardInterrupt"),
+    "Aborts": (os.abort, f"{SIGNAL} SIGABRT"),
+    "Crashes": (lambda: ctypes.string_at(0), f"{SIGNAL} SIGSEGV"),
+    "Loops": (loop, LATE),
+    "Talks": (talk, LATE),
+    "Fills": (lambda: bytearray(10**10), "MemoryError; a process may take 4 GB"),
+    "Closes": (close_all, f"{BY_ITSELF} 1"),
+    "Moves": (lambda: os.chdir("/"), ""),
+    "StopsTheClock": (stop_the_clock, ""),
+    "TurnsTheClockBack": (lambda: setattr(time, "perf_counter", lambda: -1e6), ""),
+}
+"""World -> what it does in each step, and how its row begins; empty where that is a usable one."""
+SHAPE = "ValueError: the engine's state has the shape"
+OTHERWISE = {
+    "LeavesAChild": ("__init__", then(leave_a_child), f"{BY_ITSELF} 5"),
+    "StartsAProcess": ("__init__", then(start_a_process), ""),
+    "StartsAThread": ("__init__", then(start_a_thread), ""),
+    "IsNowhere": ("state", lambda _: [(np.nan,) * 4], "the engine's state is not finite"),
+    "IsShort": ("state", lambda _: np.zeros(3), f"{SHAPE} (3,)"),
+    "IsMany": ("state", lambda _: np.zeros((4, 4)), f"{SHAPE} (4, 4)"),
+    "TellsNoWords": ("fault", lambda _: b"\xff" * 10_000, r"b'\xff\xff"),
+    "Forks": ("close", lambda _: os.fork(), ""),  # both return
+    "CannotGo": ("__del__", lambda _: throw(Own), ""),  # its garbage cannot be collected
+    # it goes back in time by steps of its own, of which there are fewer than none
+    "GoesBack": ("advance", lambda *_: -1, "ValueError: the engine says that it took -1 steps"),
+}
+"""World -> what it has in place of a calm one's, and how its row begins."""
 
 
-class IsMany(Calm):
-    def state(self):
-        return np.zeros((4, 4))
-
-
-class TellsNoWords(Calm):
-    def fault(self):
-        return b"\xff" * 10_000
-
-
-class CannotGo(Calm):
-    """Its garbage cannot be collected."""
-
-    def __del__(self):
-        raise Own
-
-
-class Closes(Calm):
-    """The streams, and what descriptors there may be."""
-
-    def step(self, step):
-        sys.stdout.close()
-        sys.stderr.close()
-        os.closerange(0, 1000)
-
-
-class Moves(Calm):
-    def step(self, step):
-        os.chdir("/")
-
-
-class StopsTheClock(Calm):
-    def step(self, step):
-        for name in ("time", "monotonic", "perf_counter", "sleep"):
-            setattr(time, name, lambda *_: "noon")
-
-
-class TurnsTheClockBack(Calm):
-    def step(self, step):
-        time.perf_counter = lambda: -1e6
+def world_of(name):
+    """Return the class of a world."""
+    if name in IN_A_STEP:
+        act, _ = IN_A_STEP[name]
+        return type(name, (Calm,), {"step": lambda world, step: act()})
+    part, does, _ = OTHERWISE[name]
+    stepping = Stepping.OWN if part == "advance" else Stepping.LANDING
+    return type(name, (Calm,), {part: does, "stepping": stepping})

@@ -1,6 +1,5 @@
 """An engine from outside that does what no engine should: a row "failed", and nothing else."""
 
-import inspect
 import math
 import os
 import signal
@@ -15,11 +14,8 @@ import pytest
 from commanding import CASE, PATIENCE_S, python, refused
 
 from analytic import RigidBlock, SinePulse
-from engines import ENGINES
-from engines.declaration import Stepping
-from engines.parts.quiet import imported
 from engines.registry import FURTHER
-from engines.run.drive import build, simulate_world
+from engines.run.drive import simulate_world
 from engines.run.monitor import compile_monitor
 from engines.scene import Scene
 from studies.__main__ import run
@@ -33,36 +29,14 @@ from studies.sources.registry import SOURCES, Source
 pytestmark = pytest.mark.processes
 
 BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=6.0, omega=6.0)
-REASONS = {
-    "Exits": "SystemExit",
-    "ExitsAtOnce": "the process ended by itself with exit code 0",
-    "RaisesOfItsOwn": "Own: nobody catches me",
-    "RaisesNothingThatPrints": "MuteError",
-    "Interrupts": "KeyboardInterrupt",
-    "Aborts": "the process was ended by signal SIGABRT",
-    "Crashes": "the process was ended by signal SIGSEGV",
-    "Loops": "no result within the time limit of 3 s",
-    "LeavesAChild": "the process ended by itself with exit code 5",
-    "Talks": "no result within the time limit of 3 s",
-    "Fills": "MemoryError; a process may take 4 GB",
-    "GoesBack": "ValueError: the engine says that it took -1 steps",
-    "IsNowhere": "the engine's state is not finite",
-    "IsShort": "ValueError: the engine's state has the shape (3,)",
-    "IsMany": "ValueError: the engine's state has the shape (4, 4)",
-    "TellsNoWords": r"b'\xff\xff",
-    "Closes": "the process ended by itself with exit code 1",
-}
-"""World -> how its row begins."""
-ANSWERING = (
-    *("Calm", "Forks", "StartsAProcess", "StartsAThread"),
-    *("CannotGo", "Moves", "StopsTheClock", "TurnsTheClockBack"),
-)
-"""Worlds of which a row is usable, whatever they do beside it."""
+SAID = {name: said for name, (*_, said) in {**hostile.IN_A_STEP, **hostile.OTHERWISE}.items()}
+REASONS = {name: said for name, said in SAID.items() if said}
+ANSWERING = [name for name, said in SAID.items() if not said]
 
 
 def asked(block, motion, *, duration, times, world):
     scene = Scene(system=block, motion=motion)
-    there = getattr(hostile, world)(scene, None, 1e-3)
+    there = hostile.world_of(world)(scene, None, 1e-3)
     try:
         return simulate_world(there, scene, 1e-3, there.stepping)
     finally:
@@ -91,18 +65,12 @@ def rows(tmp_path_factory):
         # on a busy machine it takes a second to start processes, and to note them
         for limit_s, endless in ((3.0, True), (PATIENCE_S, False)):
             jobs = []
-            for world in (*REASONS, *ANSWERING):
-                if ("time limit" in REASONS.get(world, "")) == endless:
+            for world in SAID:
+                if ("time limit" in SAID[world]) == endless:
                     patch.setitem(SOURCES, world, Source("engine", partial(asked, world=world)))
                     jobs.append(Job(labels={}, block=BLOCK, motion=PULSE, source=world))
             found += run_jobs(jobs, executor=Local(2, limit_s), reduce=summary)
     return {row["source"]: row for row in found}, [int(pid) for pid in note.read_text().split()]
-
-
-def test_every_world_is_asked():
-    worlds = [name for name, kind in inspect.getmembers(hostile, inspect.isclass)
-              if issubclass(kind, hostile.Calm)]  # fmt: skip
-    assert sorted([*REASONS, *ANSWERING]) == worlds
 
 
 @pytest.mark.parametrize("world", REASONS)
@@ -124,65 +92,6 @@ def test_what_does_no_harm_to_its_answer_is_a_row_like_any_other(world, rows):
 def test_what_an_engine_started_is_ended_with_its_process(rows):
     assert len(rows[1]) == 5
     assert [process for process in rows[1] if not ended(process)] == []
-
-
-def wake_a_body_of_no_scene():
-    imported("sapien").physx.PhysxRigidDynamicComponent().wake_up()
-
-
-def copy_from_nowhere():
-    warp = imported("warp")
-    nowhere = warp.array(ptr=8, shape=(1,), dtype=float, device="cpu")
-    warp.copy(warp.zeros(1, dtype=float, device="cpu"), nowhere)
-
-
-CRASHES = {
-    "physx": wake_a_body_of_no_scene,
-    "newton": copy_from_nowhere,
-    "warp": copy_from_nowhere,
-}
-"""What each library does not survive; Newton steps by Warp's kernels."""
-
-
-class Crashing:
-    """A world whose library is asked for that in the hundredth step."""
-
-    def __init__(self, world, crash):
-        self._world, self._crash, self._left = world, crash, 100
-
-    def __getattr__(self, name):
-        return getattr(self._world, name)
-
-    def step(self, step):
-        self._left -= 1
-        if not self._left:
-            self._crash()
-        self._world.step(step)
-
-
-def stepped(block, motion, *, duration, times, engine, crash=None):
-    scene = Scene(system=block, motion=motion, preset="fixed")
-    world, dt_s = build(engine, scene), engine.preset("fixed").ordinary_step_s(scene)
-    try:
-        return simulate_world(
-            Crashing(world, crash) if crash else world, scene, dt_s, Stepping.FIXED
-        )
-    finally:
-        world.close()
-
-
-@pytest.mark.parametrize("name", [name for name in CRASHES if ENGINES[name].installed])
-def test_a_crash_inside_a_library_is_a_row_and_the_others_go_on(name, monkeypatch):
-    ask = partial(stepped, engine=ENGINES[name])
-    asked = {"before": ask, "crash": partial(ask, crash=CRASHES[name]), "after": ask}
-    for source, call in asked.items():
-        monkeypatch.setitem(SOURCES, source, Source("engine", call))
-    jobs = [Job(labels={}, block=BLOCK, motion=PULSE, source=source) for source in asked]
-    before, crash, after = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
-    assert (crash["outcome"], crash["message"]) == ("failed", REASONS["Crashes"])
-    sound = ask(BLOCK, PULSE, duration=None, times=None)
-    for row in (before, after):
-        assert (row["outcome"], row["steps"]) == (sound.outcome.value, sound.steps)
 
 
 HARMFUL = """
@@ -223,11 +132,6 @@ def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, m
     line = refused(capfd, ["score", f"{module}:World", "--out", "out"], words)
     assert line.startswith(f"rocking: ENGINE: engine '{module}:World' ")
     assert not Path("out").exists()
-
-
-def test_what_is_built_in_is_no_engine(announced, capfd):
-    words = "'os:system' is neither a declaration nor what builds"
-    refused(capfd, ["score", "os:system", "--out", "out"], words)
 
 
 @pytest.mark.parametrize("source", ["import sys; sys.exit()", "World = 7"])
