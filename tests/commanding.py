@@ -1,5 +1,6 @@
 """Command lines as tests run them: in this process or in one of their own."""
 
+import json
 import os
 import signal
 import subprocess
@@ -25,6 +26,14 @@ def refused(capsys, arguments, *parts):
     for part in parts:
         assert part in line
     return line
+
+
+def compared(capsys, *options):
+    """Run a comparison; return its exit code, and its rows as it tells them in JSON, by source."""
+    capsys.readouterr()
+    code = run(["compare", *map(str, options), "--json"])
+    rows = map(json.loads, capsys.readouterr().out.splitlines())
+    return code, {row["source"]: row for row in rows}
 
 
 def python(*arguments, before=None, path=(), **options):

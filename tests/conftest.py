@@ -14,7 +14,7 @@ from studies.sources.registry import SOURCES
 def in_this_process(request, monkeypatch):
     """Let no job need a process of its own, but in tests of what these do."""
     if "processes" not in request.keywords:
-        monkeypatch.setattr(Job, "needs_process", lambda job, source: False)
+        monkeypatch.setattr(Job, "needs_process", False)
 
 
 @pytest.fixture

@@ -5,6 +5,8 @@ The samples are made up; the headers are worded as those of the archives, with o
 
 import numpy as np
 
+from analytic import GRAVITY
+
 SAMPLES = np.array([0.0, 0.1, -0.25, 0.4, 0.05, -0.1, 0.0])
 COLUMNS = "  0.0000000E+00  1.0000000E-01 -2.5000000E-01\n   .4000000E+00  .5000000E-01 -.1\n 0\n"
 TITLE = "PEER STRONG MOTION DATABASE RECORD. PROCESSING BY SOMEBODY.\nSOMEWHERE 01/02/99, ABC, N\n"
@@ -75,3 +77,11 @@ USER1:
 USER1:
 """
 ASC_COLUMN = "".join(f"{sample:.6f}\n" for sample in SAMPLES)
+
+
+def write_record(path, record):
+    """Write a record as an AT2 file, in g."""
+    words = " ".join(repr(float(a)) for a in record.samples / GRAVITY)
+    count, dt = record.samples.size, float(record.dt)
+    path.write_text(f"{TITLE}ACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {dt!r} SEC\n{words}\n")
+    return path

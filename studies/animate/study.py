@@ -15,7 +15,7 @@ from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.paper import Case, free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Positive, refuse_given
+from studies.kit.arguments import BadInputError, Place, Positive, refuse_given, required
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -71,8 +71,7 @@ def command(
     if len(sources) > 8:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most 8")
     if results is None:
-        if width is None or height is None:
-            raise BadInputError("--width and --height missing; give them, or --results")
+        width, height = required("give them, or --results", width=width, height=height)
         block = standing.system(width, height, yours.friction)
         posed = standing.pose(block, excitation)
     else:

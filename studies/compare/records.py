@@ -17,18 +17,7 @@ ESTIMATED = ("estimate", "bound")
 is null there."""
 
 
-def json_lines(rows: list[Row], note: str = "") -> str:
-    """Return one JSON object a line, of what `records` tells.
-
-    Parameters
-    ----------
-    rows, note
-        As for `records`. A number that is not finite becomes null.
-    """
-    return objects_as_lines(records(rows, note))
-
-
-def objects_as_lines(objects: Sequence[Mapping[str, Any]]) -> str:
+def as_lines(objects: Sequence[Mapping[str, Any]]) -> str:
     """Return one JSON object a line; a number that is not finite is null."""
     return "\n".join(
         json.dumps({k: _finite_or_null(v) for k, v in item.items()}, allow_nan=False)
@@ -42,7 +31,7 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
     Parameters
     ----------
     rows : list of dict
-        From `studies.compare.study.compare`, perhaps with kappa and sensitivity.
+        From `studies.compare.study.compare`.
     note : str, optional
         On the motion of the base.
 

@@ -221,7 +221,7 @@ def table_text(
     window : float
         Time [s] for which it was observed.
     rows : list of dict
-        From `studies.compare.study.conditioned`; their messages stand below the table.
+        From `studies.compare.study.compare`; their messages stand below the table.
     note : str, optional
         On the motion of the base.
     edge : str, optional

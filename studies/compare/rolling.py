@@ -8,7 +8,7 @@ from typing import Any
 
 from analytic.cylinder import RollingCylinder
 from analytic.motion import Still
-from studies.compare.records import objects_as_lines
+from studies.compare.records import as_lines
 from studies.compare.rendering import right_aligned
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job
@@ -72,7 +72,7 @@ def compare_rolling(
         for count in turns
     ]
     rows = run_jobs(jobs, executor=executor, reduce=reduced)
-    print(objects_as_lines(rows) if json else table_text(cylinder, turns, rows))
+    print(as_lines(rows) if json else table_text(cylinder, turns, rows))
     return exit_code(rows)
 
 

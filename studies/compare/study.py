@@ -20,7 +20,7 @@ from analytic.slide import SlidingBlock
 from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
-from studies.compare.records import json_lines, records
+from studies.compare.records import as_lines, records
 from studies.compare.rendering import draw, slip_error, table_text
 from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
@@ -28,7 +28,9 @@ from studies.kit.arguments import (
     Place,
     Positive,
     check_plot,
+    refuse_both,
     refuse_given,
+    required,
 )
 from studies.kit.executors import Executor
 from studies.kit.jobs import Job, ask, summary
@@ -41,12 +43,11 @@ from studies.kit.options import (
     Computing,
     EffortOptions,
     Yours,
-    refuse_two_steps,
     slides,
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
 from studies.kit.runner import exit_code, run_jobs
-from studies.kit.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width, both_sizes
+from studies.kit.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width
 from studies.kit.unusual import note_unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
@@ -102,9 +103,9 @@ def command(
     """
     if standing.scene in ("slide", "cart", "cylinder") and sources == DEFAULT_SOURCES:
         sources = OF_A_SLIDE
+    refuse_both(dt=yours.dt, step=effort.step)
     if standing.scene == "cylinder":
         refuse_given({"width": width, "plot": plot, "estimate": estimate or None}, NOT_ROLLING)
-        refuse_two_steps(effort.step, yours)
         return compare_rolling(
             standing.cylinder(height, excitation),
             sources,
@@ -114,7 +115,8 @@ def command(
             executor=computing.executor(at_once=True),
             json=json,
         )
-    width, height = both_sizes(width, height)
+    words = "a block requires its full width and height [m]"
+    width, height = required(words, width=width, height=height)
     if not standing.rocks:
         refuse_given({"plot": plot}, WHERE_IT_ROCKS)
     if standing.scene == "cart":
@@ -125,7 +127,6 @@ def command(
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     window = _window(block, motion, duration)
-    refuse_two_steps(effort.step, yours)
     refuse_endless(block, window, duration=duration, step=effort.step, dt=yours.dt)
     rows = compare(
         block,
@@ -138,9 +139,8 @@ def command(
         estimate=estimate,
         executor=computing.executor(at_once=True),
     )
-    rows = conditioned(rows, block, posed)
     if json:
-        print(json_lines(rows, note))
+        print(as_lines(records(rows, note)))
     else:
         edge = hanging(block, posed, window, rows[0]["exact"])
         print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
@@ -150,18 +150,16 @@ def command(
     return exit_code(rows)
 
 
-def conditioned(rows: Sequence[Row], block: Any, posed: Posed) -> list[Row]:
-    """Add kappa and sensitivity of the exact peak to every row, where there is one."""
+def _conditioning(block: System, posed: Posed, exact: Response) -> dict[str, float]:
+    """Return kappa and sensitivity of the exact peak, nan where there is none."""
     if isinstance(block, SlidingBlock):
-        return [{**row, "kappa": math.nan, "sensitivity": math.nan} for row in rows]
+        return {"kappa": math.nan, "sensitivity": math.nan}
     if isinstance(block, CartBlock):
-        kappa = kappa_of_cart(block, posed, rows[0]["exact"])
-        return [{**row, "kappa": kappa, "sensitivity": math.nan} for row in rows]
-    known = conditioning_of_one(block, posed.motion, posed.start, rows[0]["exact"])
-    return [{**row, **known} for row in rows]
+        return {"kappa": _kappa_of_cart(block, posed, exact), "sensitivity": math.nan}
+    return conditioning_of_one(block, posed.motion, posed.start, exact)
 
 
-def kappa_of_cart(cart: CartBlock, posed: Posed, exact: Response) -> float:
+def _kappa_of_cart(cart: CartBlock, posed: Posed, exact: Response) -> float:
     """Return d ln(peak)/d ln(a_p) by a difference; nan unless the block rocks and survives."""
     if exact.outcome is not Outcome.ROCKED or isinstance(posed.motion, Still):
         return math.nan
@@ -227,9 +225,9 @@ def compare(
     list of dict
         Columns source, outcome, peak_ratio, impacts, steps, wall_s, message, response, error
         (relative; nan unless both rocked), velocity_ratio (the median), impact_error [1/p] (of the
-        first impacts, nan where one is missing) and exact, the response of the exact solution;
-        with `estimate`, estimate and bound, nan where there is none. Where the friction is less
-        than the exact solution needs, its message says so.
+        first impacts, nan where one is missing), exact, the response of the exact solution, and its
+        kappa and sensitivity; with `estimate`, estimate and bound; nan where there is none. Where
+        the friction is less than the exact solution needs, its message says so.
     """
     own = yours.options(sources, block)
     asked = list(dict.fromkeys(["exact", *sources]))
@@ -255,7 +253,10 @@ def compare(
         own_steps = effort.own and yours.dt is None
         rows = with_estimates(rows, halves, own_steps=own_steps, unheld=unheld)
     exact = next(row["response"] for row in rows if row["source"] == "exact")
-    compared = {row["source"]: {**row, **_beside(row["response"], exact, block)} for row in rows}
+    known = _conditioning(block, posed, exact)
+    compared = {
+        row["source"]: {**row, **_beside(row["response"], exact, block), **known} for row in rows
+    }
     faults = _faults(block, posed, yours.friction)
     said = (compared["exact"]["message"], slides(exact, yours.friction), *faults)
     compared["exact"]["message"] = "; ".join(filter(None, said))
@@ -299,7 +300,7 @@ def frame(
     window, posed = _window(block, motion, duration), Posed(motion, start)
     refuse_endless(block, window, duration=duration, dt=yours.dt)
     rows = compare(block, posed, sources, window, executor=_here, yours=yours, estimate=estimate)
-    return pd.DataFrame(records(conditioned(rows, block, posed)))
+    return pd.DataFrame(records(rows))
 
 
 def _here(jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:

@@ -16,7 +16,7 @@ from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.drawing.kept import tell
 from studies.estimate import STUDY
-from studies.kit.arguments import BadInputError, Count, Out, Yes, one_of
+from studies.kit.arguments import BadInputError, Count, Out, Yes, one_of, refuse_both
 from studies.kit.jobs import Job
 from studies.kit.naming import Sources
 from studies.kit.options import (
@@ -26,7 +26,6 @@ from studies.kit.options import (
     EffortOptions,
     Running,
     Yours,
-    refuse_two_steps,
 )
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
@@ -72,7 +71,7 @@ def command(
     everyone = ("exact", *3 * sources)
     asked = f"--cases is {cases}, --tests {tests}"
     running.refuse_too_much(asked, cases + tests, everyone, yes=yes, effort=effort)
-    refuse_two_steps(effort.step, yours)
+    refuse_both(dt=yours.dt, step=effort.step)
     own = {name: value for name, value in asdict(yours).items() if value is not None}
     own |= {} if scene == "block" else {"scene": scene}
     plan = Plan(

@@ -18,12 +18,12 @@ from engines.parts.script import Script
 from engines.run import ground
 from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Positive, Step
+from studies.kit.arguments import BadInputError, Place, Positive, Step, refuse_both
 from studies.kit.drafts import write_all
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
-from studies.kit.options import NOT_YOURS, Yours, refuse_two_steps
+from studies.kit.options import NOT_YOURS, Yours
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, refuse_endless
 from studies.kit.provenance import project_version, version_of
 from studies.kit.runner import exit_code, run_jobs
@@ -61,7 +61,7 @@ def command(
     time_limit
         Wall-clock time [s] after which the engine is given up.
     """
-    refuse_two_steps(step, yours)
+    refuse_both(dt=yours.dt, step=step)
     asked, used = _asked(engine, preset)
     block = standing.system(width, height, yours.friction)
     if type(block) not in CALLED:

@@ -6,11 +6,13 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
 from studies.cases.refusal import BadInputError as BadInputError
+
+T = TypeVar("T")
 
 MOST = 10**9
 """The largest whole number that an argument takes."""
@@ -185,6 +187,48 @@ def refuse_given(options: Mapping[str, object], allowed: str) -> None:
     given = [f"--{name} is {value}" for name, value in options.items() if value is not None]
     if given:
         raise BadInputError(f"{' and '.join(given)}; it may be given {allowed}")
+
+
+def required(words: str, **given: T | None) -> tuple[T, ...]:
+    """Return the values of options that are needed together.
+
+    Parameters
+    ----------
+    words : str
+        What needs them, as the refusal ends.
+    **given
+        Name -> value, None where the option was not given.
+
+    Raises
+    ------
+    BadInputError
+        That names all options which have no value.
+    """
+    missing = [_option(name) for name, value in given.items() if value is None]
+    if missing:
+        raise BadInputError(f"{' and '.join(missing)} missing; {words}")
+    return tuple(value for value in given.values() if value is not None)
+
+
+def refuse_both(**given: float | str | None) -> None:
+    """Refuse two options of which each says what the other does; None where one was not given.
+
+    Raises
+    ------
+    BadInputError
+        That names both.
+    """
+    if None not in given.values():
+        said = [f"{_option(name)} is {_shown(value)}" for name, value in given.items()]
+        raise BadInputError(f"{' and '.join(said)}; give one or the other")
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def check_plot(path: Path | None) -> None:

@@ -5,36 +5,34 @@ connection is encrypted, and whom it trusts, is Dask's own configuration (`distr
 as on the scheduler and the workers. A case whose worker dies is done again elsewhere, up to the
 scheduler's `allowed-failures`, after which it is a failed row.
 
-A worker says whether it is fit, and does to a job what Local would: models and solvers run in its
-own process, engines and long solves in a process of their own, so that a crash or the time limit
-is a failed row and costs no worker.
+A worker says whether it is fit, and runs its jobs as `Local` does: models and solvers in its own
+process, engines and long solves in a process of their own, so that a crash or the time limit is a
+failed row and costs no worker.
 """
 
 import asyncio
 import logging
 import multiprocessing
 import platform
-import threading
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from queue import Empty, SimpleQueue
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from analytic.kernels.compiled import compile_all
 from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.executors import ask_apart, ask_together, batches, compile_ahead, outcome_of
+from studies.kit.executors import Ask, Local, batches
 from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool
 from studies.kit.refusing import one_line
-from studies.sources.registry import Source
 
 if TYPE_CHECKING:
     from distributed import Client, Worker
@@ -77,78 +75,29 @@ def unfit(expected: dict[str, str]) -> str:
 
 
 def work(
-    expected: dict[str, str],
-    job: Job,
-    source: Source,
-    ask: Callable[[Job, Source], Response],
-    time_limit_s: float,
-) -> Response:
-    """Run a job on this worker.
-
-    Raises
-    ------
-    RefusedError
-        If this worker is not fit.
-    """
-    _refuse_unless_fit(expected)
-    compile_all()
-    if job.needs_process(source):
-        return _work_in_process(job, source, ask, time_limit_s)
-    if job.source not in _loaded:
-        # loading the compiled kernels is no part of the first case's run time
-        _loaded.add(job.source)
-        ask(job, source)
-    return ask(job, source)
-
-
-def work_together(
-    expected: dict[str, str], jobs: Sequence[Job], time_limit_s: float
+    expected: dict[str, str], jobs: Sequence[Job], ask: Ask, time_limit_s: float
 ) -> list[Response]:
-    """Run the jobs of a batch on this worker, at once.
+    """Run jobs on this worker, as `Local` does on a machine.
 
     Raises
     ------
     RefusedError
         If this worker is not fit.
-    studies.kit.pool.TaskError
-        If the batch has no answer.
     """
     from distributed import Reschedule, get_worker
 
-    _refuse_unless_fit(expected)
-    pool = _processes_of(get_worker())
-    try:
-        task = pool.schedule(ask_together, (jobs,), time_limit_s * len(jobs))
-        return list(task.result())
-    except CancelledError:  # this worker is closing
-        raise Reschedule from None
-
-
-def _refuse_unless_fit(expected: dict[str, str]) -> None:
     if problem := unfit(expected):
         raise RefusedError(f"a worker cannot be used: {problem}")
-
-
-def _work_in_process(
-    job: Job, source: Source, ask: Callable[[Job, Source], Response], time_limit_s: float
-) -> Response:
-    from distributed import Reschedule, get_worker
-
+    with _starting:
+        pool = _processes_of(get_worker())
     try:
-        with _compiling:  # a case of another thread's waits for what it needs, too
-            pool = _processes_of(get_worker())
-            if job.source not in _compiled:
-                compile_ahead(pool, ask, [(job, source)])
-                _compiled.add(job.source)
-        task = pool.schedule(ask_apart, (ask, job, source, True), time_limit_s)
-        return outcome_of(task, time_limit_s)
+        answers = dict(Local(1, time_limit_s, ask)(jobs, pool))
     except CancelledError:  # this worker is closing
         raise Reschedule from None
+    return [answers[number] for number in range(len(jobs))]
 
 
-_loaded: set[str] = set()
-_compiled: set[str] = set()
-_compiling = threading.Lock()
+_starting = Lock()
 
 
 @cache
@@ -201,7 +150,7 @@ class Cluster:
 
     address: str
     time_limit_s: float
-    ask: Callable[[Job, Source], Response] = ask
+    ask: Ask = ask
 
     def check(self) -> None:
         """Raise ClusterError unless the cluster can be used."""
@@ -212,37 +161,27 @@ class Cluster:
         """Run the jobs."""
         if not jobs:
             return
-        ended: SimpleQueue[Future[Any]] = SimpleQueue()
+        ended: SimpleQueue[Future[list[Response]]] = SimpleQueue()
         with self._client() as client:
             executor = client.get_executor(pure=False)
-            parts: dict[Future[Any], Sequence[int]] = {}
-
-            def submit(numbers: Sequence[int], *order: Any) -> None:
-                task = executor.submit(*order, self.time_limit_s)
-                parts[task] = numbers
+            parts: dict[Future[list[Response]], list[int]] = {}
+            for part in self._parts(client, dict(enumerate(jobs))):
+                asked = [jobs[number] for number in part]
+                task = executor.submit(work, fitness(), asked, self.ask, self.time_limit_s)
+                parts[task] = part
                 task.add_done_callback(ended.put)
-
-            def submit_alone(numbers: Iterable[int]) -> None:
-                for number in numbers:
-                    job = jobs[number]
-                    submit([number], work, fitness(), job, job.asked, self.ask)
-
-            left = dict(enumerate(jobs))
-            if self.ask is ask and batches(left, 1):
-                threads = sum(self._answer(client, client.nthreads).values())
-                for numbers in batches(left, max(threads, 1)):
-                    batch = [left.pop(number) for number in numbers]
-                    submit(numbers, work_together, fitness(), batch)
-            submit_alone(left)
             while parts:
                 task = self._next(client, ended)
-                part, answer = parts.pop(task), self._response(client, task)
-                if len(part) == 1:
-                    yield part[0], answer
-                elif isinstance(answer, Response):  # the failure of all is no row of one
-                    submit_alone(part)
-                else:
-                    yield from zip(part, answer, strict=True)
+                part = parts.pop(task)
+                yield from zip(part, self._answers(client, task, len(part)), strict=True)
+
+    def _parts(self, client: "Client", jobs: dict[int, Job]) -> list[list[int]]:
+        """Return the numbers of jobs that one worker is given at a time."""
+        together: list[list[int]] = []
+        if self.ask is ask and batches(jobs, 1):
+            threads = sum(self._answer(client, client.nthreads).values())
+            together = batches(jobs, max(threads, 1))
+        return together + [[number] for number in jobs.keys() - set().union(*together)]
 
     @contextmanager
     def _client(self) -> Iterator["Client"]:
@@ -296,7 +235,9 @@ class Cluster:
             pass
         raise self._gone()
 
-    def _next(self, client: "Client", ended: "SimpleQueue[Future[Any]]") -> "Future[Any]":
+    def _next(
+        self, client: "Client", ended: "SimpleQueue[Future[list[Response]]]"
+    ) -> "Future[list[Response]]":
         """Wait for the next job that ends; raise ClusterError when nobody is left to end one."""
         alone_since = time.monotonic()
         while True:
@@ -307,8 +248,10 @@ class Cluster:
             elif time.monotonic() - alone_since > PATIENCE_S:
                 raise self._error("its workers have all gone; start another one")
 
-    def _response(self, client: "Client", task: "Future[Any]") -> Any:
-        """Return a job's response or a batch's, or the failure as which it ended."""
+    def _answers(
+        self, client: "Client", task: "Future[list[Response]]", count: int
+    ) -> list[Response]:
+        """Return the responses of a part, or of each of its jobs the failure as which it ended."""
         from distributed import KilledWorker
 
         try:
@@ -316,11 +259,11 @@ class Cluster:
         except RefusedError as error:
             raise self._error(str(error)) from None
         except KilledWorker:
-            return Response.failure("every worker that ran this case died")
+            return [Response.failure("every worker that ran this case died")] * count
         except (Exception, CancelledError) as error:
             if isinstance(error, CancelledError) or client.status != "running":
                 raise self._gone() from None
-            return Response.failure(one_line(error))
+            return [Response.failure(one_line(error))] * count
 
     def _error(self, problem: str) -> ClusterError:
         return ClusterError(self.address, problem)

@@ -8,10 +8,10 @@ import math
 import sys
 from collections.abc import Callable, Generator, Hashable, Iterable, Mapping, Sequence
 from concurrent.futures import CancelledError, Future, as_completed
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 from analytic.kernels.compiled import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
@@ -26,6 +26,9 @@ from studies.kit.jobs import Job, ask, short
 from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
 from studies.kit.refusing import one_line, say
 from studies.sources.registry import Source, run_engine, scene_of
+
+Ask: TypeAlias = Callable[[Job, Source], Response]
+"""How a job is put to its source."""
 
 
 def batches(jobs: Mapping[int, Job], workers: int) -> list[list[int]]:
@@ -87,36 +90,35 @@ _loaded: set[str] = set()
 """Sources whose kernels this process has loaded."""
 
 
-def compile_ahead(
-    pool: Pool, ask_: Callable[[Job, Source], Response], asked: Iterable[tuple[Job, Source]]
-) -> None:
-    """Compile what engines need on a machine, before any time limit holds.
+def compile_ahead(pool: Pool, ask_: Ask, jobs: Iterable[Job]) -> None:
+    """Compile what the engines of jobs need on a machine, before any time limit holds.
 
     Parameters
     ----------
     pool : Pool
-        One of its processes compiles; the others load what was compiled.
+        One of its processes compiles, once for each source; the others load what was compiled.
     ask_ : callable
         How a job is put to its source.
-    asked : iterable of (Job, Source)
-        A job of each source.
+    jobs : iterable of Job
     """
     tasks: list[Future[Any]] = []
-    for job, source in asked:
-        if source.engine not in ENGINES or not source.declared.installed:
-            continue
-        if not tasks:
-            tasks.append(pool.schedule(compile_monitor, (), COMPILING_S))
-        if source.declared.compiles:
-            tasks.append(pool.schedule(ask_apart, (ask_, short(job), source, True), COMPILING_S))
-    for task in tasks:
-        with suppress(Exception):  # the cases will say what is wrong
-            task.result()
+    with pool.preparing:  # who asks meanwhile waits for what it needs, too
+        for job in jobs:
+            source = job.asked
+            known = source.engine in ENGINES and job.source not in pool.prepared
+            if not known or not source.declared.installed:
+                continue
+            if not pool.prepared:
+                tasks.append(pool.schedule(compile_monitor, (), COMPILING_S))
+            pool.prepared.add(job.source)
+            if source.declared.compiles:
+                tasks.append(pool.schedule(ask_apart, (ask_, short(job), True), COMPILING_S))
+        for task in tasks:
+            with suppress(Exception):  # the cases will say what is wrong
+                task.result()
 
 
-def ask_apart(
-    ask_: Callable[[Job, Source], Response], job: Job, source: Source, many: bool
-) -> Response:
+def ask_apart(ask_: Ask, job: Job, many: bool) -> Response:
     """Put a job to its source: what is called in the process of a pool.
 
     Where jobs are many, the kernels are compiled first, and those of a model or solver loaded by a
@@ -127,8 +129,7 @@ def ask_apart(
     ask_ : callable
         How a job is put to its source.
     job : Job
-    source : Source
-        What the name of the job's source means; the process need not have registered it.
+        The process need not have registered its source.
     many : bool
         Whether the jobs are so many that compiling is worth its time.
 
@@ -139,10 +140,10 @@ def ask_apart(
     """
     if many:
         compile_all()
-        if source.kind != "engine" and job.source not in _loaded:
+        if job.asked.kind != "engine" and job.source not in _loaded:
             _loaded.add(job.source)
-            ask(short(job), source)
-    response = ask_(job, source)
+            ask(short(job), job.asked)
+    response = ask_(job, job.asked)
     if response.message.startswith(MemoryError.__name__):
         words = f"{response.message.rstrip(': ')}; a process may take {MEMORY_BYTES / 1e9:g} GB"
         return replace(response, message=words)
@@ -211,57 +212,60 @@ class Local:
 
     workers: int
     time_limit_s: float
-    ask: Callable[[Job, Source], Response] = ask
+    ask: Ask = ask
     at_once: bool = False
 
-    def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
-        """Run the jobs."""
+    def __call__(
+        self, jobs: Sequence[Job], pool: Pool | None = None
+    ) -> Generator[tuple[int, Response], None, None]:
+        """Run the jobs.
+
+        Parameters
+        ----------
+        jobs : sequence of Job
+        pool : Pool, optional
+            Whose processes are used, and may be again; by default new ones, which end.
+        """
         slow: dict[int, Job] = {}
         many = not self.at_once or len(jobs) > FEW
         if many:
             compile_all()
         if sys.stderr.isatty():
             Kernel.tell = say
-        loaded: set[str] = set()
         for number, job in enumerate(jobs):
-            source = job.asked
-            if job.needs_process(source):
+            if job.needs_process:
                 slow[number] = job
                 continue
-            if many and job.source not in loaded:
+            if many and job.source not in _loaded:
                 # loading the compiled kernels is no part of the first case's run time
-                loaded.add(job.source)
-                self.ask(job, source)
-            yield number, self.ask(job, source)
+                _loaded.add(job.source)
+                self.ask(job, job.asked)
+            yield number, self.ask(job, job.asked)
         if slow:
-            yield from self._in_processes(slow, many)
+            with nullcontext(pool) if pool else Pool(min(self.workers, len(slow))) as processes:
+                yield from self._in_processes(processes, slow, many)
 
     def _in_processes(
-        self, jobs: Mapping[int, Job], many: bool
+        self, pool: Pool, jobs: Mapping[int, Job], many: bool
     ) -> Generator[tuple[int, Response], None, None]:
-        firsts: dict[str, Job] = {}
-        for job in jobs.values():
-            firsts.setdefault(job.source, job)
-        with Pool(min(self.workers, len(jobs))) as pool:
-            if many:
-                if Kernel.tell is not None and not are_compiled(PACKAGE):
-                    Kernel.tell("compiling what engines need, once: some 10 to 40 s")
-                compile_ahead(pool, self.ask, [(job, job.asked) for job in firsts.values()])
-            pending = dict(jobs)
-            try:
-                if many and self.ask is ask:
-                    for number, response in self._in_batches(pool, jobs):
-                        del pending[number]
-                        yield number, response
-                # the source travels with the job, so that a worker needs no registry of its own
-                tasks = {
-                    pool.schedule(ask_apart, (self.ask, job, job.asked, many), self.time_limit_s): n
-                    for n, job in pending.items()
-                }
-                for task in as_completed(tasks):
-                    yield tasks[task], outcome_of(task, self.time_limit_s)
-            except StartError as error:
-                raise OSError(f"a process could not be started ({error})") from error
+        if many:
+            if Kernel.tell is not None and not are_compiled(PACKAGE):
+                Kernel.tell("compiling what engines need, once: some 10 to 40 s")
+            compile_ahead(pool, self.ask, jobs.values())
+        pending = dict(jobs)
+        try:
+            if many and self.ask is ask:
+                for number, response in self._in_batches(pool, jobs):
+                    del pending[number]
+                    yield number, response
+            tasks = {
+                pool.schedule(ask_apart, (self.ask, job, many), self.time_limit_s): number
+                for number, job in pending.items()
+            }
+            for task in as_completed(tasks):
+                yield tasks[task], outcome_of(task, self.time_limit_s)
+        except StartError as error:
+            raise OSError(f"a process could not be started ({error})") from error
 
     def _in_batches(
         self, pool: Pool, jobs: Mapping[int, Job]

@@ -98,13 +98,14 @@ class Job:
         mine = {**self.labels, "source": self.source}
         return json.dumps(mine) == json.dumps({name: row.get(name) for name in mine})
 
-    def needs_process(self, source: Source) -> bool:
-        """Whether a source may crash over it, or take so long that it must be stoppable."""
+    @property
+    def needs_process(self) -> bool:
+        """Whether its source may crash over it, or take so long that it must be stoppable."""
         observed = self.motion.duration if self.duration is None else self.duration
         most = observed * self.block.p + SLOWEST_RETURN
-        step_s = STEP_S.get(source.kind, COMPILED_STEP_S)
+        step_s = STEP_S.get(self.asked.kind, COMPILED_STEP_S)
         long = most * step_s > LONG_S * float(self.options.get("step", 1e-3))
-        return source.kind == "engine" or long
+        return self.asked.kind == "engine" or long
 
 
 def plain(value: Any) -> Any:

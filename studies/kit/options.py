@@ -320,24 +320,6 @@ def check_written(dt: float | None) -> None:
         raise BadInputError(f"--dt is {dt:g}; it must be from {SHORTEST_S:g} to {LONGEST_S:g} s")
 
 
-def refuse_two_steps(step: float | None, yours: Yours) -> None:
-    """Refuse a step that is given both in units of 1/p and in seconds.
-
-    Parameters
-    ----------
-    step : float or None
-        --step: p dt [-].
-    yours : Yours
-        With --dt: dt [s].
-
-    Raises
-    ------
-    BadInputError
-    """
-    if None not in (step, yours.dt):
-        raise BadInputError(f"--dt is {yours.dt:g} and --step is {step:g}; give one or the other")
-
-
 def slides(exact: Response, friction: float | None) -> str:
     """Say that a block slides where the exact solution, which does not, needs more friction.
 

@@ -14,6 +14,7 @@ from contextlib import suppress
 from multiprocessing import Pipe, get_context
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
+from threading import Lock
 from typing import Any, Self
 
 from studies.kit.keeper import work_in_a_child
@@ -46,9 +47,17 @@ class Pool:
     Parameters
     ----------
     workers : int
+
+    Attributes
+    ----------
+    preparing : Lock
+        Held by who compiles what its processes need.
+    prepared : set of str
+        Names of the sources for which that is done.
     """
 
     def __init__(self, workers: int) -> None:
+        self.preparing, self.prepared = Lock(), set[str]()
         # a thread for each process: who starts one must live as long
         self._threads = ThreadPoolExecutor(workers)
         self._idle: list[_Worker] = []

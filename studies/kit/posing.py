@@ -23,7 +23,9 @@ from studies.kit.arguments import (
     Positive,
     as_bad_input,
     one_of,
+    refuse_both,
     refuse_given,
+    required,
 )
 
 OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
@@ -131,9 +133,7 @@ class Excitation:
         return Still() if released else self._pulse()
 
     def _recorded(self, path: Path) -> Record:
-        if self.scale is not None and self.pga is not None:
-            both = f"--scale is {self.scale:g} and --pga is {self.pga:g}"
-            raise BadInputError(f"{both}; give one or the other")
+        refuse_both(scale=self.scale, pga=self.pga)
         record = read_record(path, self.units)
         with as_bad_input("--record: "):
             record = corrected(record, self.baseline)
@@ -142,18 +142,13 @@ class Excitation:
             return record.scaled(1.0 if self.scale is None else self.scale)
 
     def _pulse(self) -> SinePulse:
-        if self.pulse and self.half_cycles:
-            both = f"--half-cycles is {self.half_cycles} and --pulse is {self.pulse}"
-            raise BadInputError(f"{both}; give one or the other")
-        if self.amplitude is None or self.omega is None:
-            given = {"--amplitude": self.amplitude, "--omega": self.omega}
-            missing = [name for name, value in given.items() if value is None]
-            words = "a pulse requires both, or give --record, --tilt or --rate"
-            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
+        refuse_both(half_cycles=self.half_cycles, pulse=self.pulse)
+        words = "a pulse requires both, or give --record, --tilt or --rate"
+        amplitude_g, omega = required(words, amplitude=self.amplitude, omega=self.omega)
         with as_bad_input():
             return SinePulse.in_g(
-                self.amplitude,
-                omega=self.omega,
+                amplitude_g,
+                omega=omega,
                 half_cycles=self.half_cycles or PULSES[self.pulse or "full-sine"],
                 phase=self._angle(self.phase or 0.0, 1.0),
             )

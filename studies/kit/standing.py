@@ -1,7 +1,9 @@
 """From the options of a command line to what stands on the base."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Annotated, Literal
 
 from cyclopts import Parameter
@@ -20,6 +22,7 @@ from studies.kit.arguments import (
     as_bad_input,
     one_of,
     refuse_given,
+    required,
 )
 from studies.kit.posing import Excitation, Posed
 
@@ -29,31 +32,17 @@ MOST_M = 200.0
 LEAST_COLUMNS = 2
 """Of a frame."""
 
+OF_A_SCENE = {
+    "frame": ("columns", "load"),
+    "cart": ("mass_ratio", "stiffness"),
+    "cylinder": ("radius",),
+}
+"""Scene -> the options that are its own."""
+
 Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
 Height = Annotated[Positive, Parameter(help="Full height H of these, or of a cylinder [m].")]
 
 SceneName = Literal["block", "frame", "slide", "cart", "cylinder"]
-
-
-def both_sizes(width: float | None, height: float | None) -> tuple[float, float]:
-    """Return --width and --height, where a scene cannot do without them.
-
-    Parameters
-    ----------
-    width, height : float or None
-        Full sizes [m]; None where the option was not given.
-
-    Raises
-    ------
-    BadInputError
-        That names what is missing.
-    """
-    if width is None or height is None:
-        missing = " and ".join(
-            f"--{name}" for name, size in (("width", width), ("height", height)) if size is None
-        )
-        raise BadInputError(f"{missing} missing; a block requires its full width and height [m]")
-    return width, height
 
 
 def posed_block(width: float, height: float) -> RigidBlock:
@@ -116,19 +105,15 @@ class Standing:
         BadInputError
             If an option is missing, or is one of another scene, or has a value that is not allowed.
         """
-        refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        self._refuse_others()
         replace(excitation, tilt=None, degrees=False).refuse("only where no cylinder rolls")
-        given = {"radius": self.radius, "height": height, "tilt": excitation.tilt}
-        if missing := [f"--{name}" for name, value in given.items() if value is None]:
-            words = "a cylinder that rolls requires its radius, height and tilt"
-            raise BadInputError(f"{' and '.join(missing)} missing; {words}")
-        tilt = float(excitation.tilt or 0.0)
+        words = "a cylinder that rolls requires its radius, height and tilt"
+        radius, height, tilt = required(
+            words, radius=self.radius, height=height, tilt=excitation.tilt
+        )
+        tilt = math.radians(tilt) if excitation.degrees else tilt
         with as_bad_input():
-            return RollingCylinder(
-                radius=float(self.radius or 0.0),
-                height=float(height or 0.0),
-                tilt=math.radians(tilt) if excitation.degrees else tilt,
-            )
+            return RollingCylinder(radius=radius, height=height, tilt=tilt)
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean.
@@ -145,37 +130,37 @@ class Standing:
         BadInputError
             If an option is missing, contradicts the scene, or has a value that is not allowed.
         """
-        refuse_given({"radius": self.radius}, "only with --scene cylinder")
-        if self.scene != "frame":
-            refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
-        if self.scene != "cart":
-            given = {"mass-ratio": self.mass_ratio, "stiffness": self.stiffness}
-            refuse_given(given, "only with --scene cart")
+        self._refuse_others()
         block = posed_block(width, height)
+        sizes = {"width": width, "height": height}
         with as_bad_input():
             if self.scene == "frame":
-                if self.load is None:
-                    words = "a frame requires the mass of its beam, over that of all columns"
-                    raise BadInputError(f"--load missing; {words}")
-                columns = LEAST_COLUMNS if self.columns is None else self.columns
-                return RockingFrame(width=width, height=height, columns=columns, load=self.load)
+                words = "a frame requires the mass of its beam, over that of all columns"
+                (load,) = required(words, load=self.load)
+                return RockingFrame(**sizes, columns=self.columns or LEAST_COLUMNS, load=load)
             if self.scene == "slide":
-                if friction is None:
-                    words = "a block that slides requires one below B/H"
-                    raise BadInputError(f"--friction missing; {words}")
-                return SlidingBlock(width=width, height=height, friction=friction)
+                words = "a block that slides requires one below B/H"
+                (friction,) = required(words, friction=friction)
+                return SlidingBlock(**sizes, friction=friction)
             if self.scene == "cart":
-                if self.mass_ratio is None:
-                    words = "a cart requires the block's mass over that of both"
-                    raise BadInputError(f"--mass-ratio missing; {words}")
-                cart = {"mass_ratio": self.mass_ratio, "stiffness": self.stiffness or 0.0}
-                return CartBlock(width=width, height=height, **cart)
+                words = "a cart requires the block's mass over that of both"
+                (ratio,) = required(words, mass_ratio=self.mass_ratio)
+                return CartBlock(**sizes, mass_ratio=ratio, stiffness=self.stiffness or 0.0)
             return block
 
     def refuse(self, allowed: str) -> None:
         """Raise BadInputError if an option was given a value, which is allowed otherwise."""
         scene = None if self.scene == ONE_BLOCK.scene else self.scene
-        refuse_given({"scene": scene, "columns": self.columns, "load": self.load}, allowed)
+        own = self._given(chain.from_iterable(OF_A_SCENE.values()))
+        refuse_given({"scene": scene, **own}, allowed)
+
+    def _refuse_others(self) -> None:
+        for scene, names in OF_A_SCENE.items():
+            if scene != self.scene:
+                refuse_given(self._given(names), f"only with --scene {scene}")
+
+    def _given(self, names: Iterable[str]) -> dict[str, object]:
+        return {name.replace("_", "-"): getattr(self, name) for name in names}
 
     @property
     def rocks(self) -> bool:

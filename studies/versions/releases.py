@@ -36,10 +36,6 @@ class MissingError(Exception):
     """A release that cannot be had, or releases that cannot be asked for; one line says why."""
 
 
-class NoWheelError(MissingError):
-    """A release of which there is no package for this Python, though pip lists it."""
-
-
 @dataclass(frozen=True, slots=True)
 class Release:
     """A release of an engine's package.
@@ -193,29 +189,31 @@ class Asked:
         A row for each case and preset, the columns of answers.csv; None where it could not be had.
     problem : str
         Why there are no answers.
-    has_wheel : bool
-        Whether there is a package of it for this Python.
     """
 
     release: Release
     answers: pd.DataFrame | None
     problem: str = ""
-    has_wheel: bool = True
+
+    @property
+    def has_wheel(self) -> bool:
+        """Whether there is a package of it for this Python: pip lists what was never built, too."""
+        return NO_WHEEL not in self.problem
 
 
-def ask(release: Release, out: Path, environments: Path, options: Sequence[str]) -> Asked:
+def ask(release: Release, out: Path, options: Sequence[str]) -> Asked:
     """Run the short study of a release into its folder, or what is missing there.
 
     Parameters
     ----------
     release : Release
-    out, environments : Path
-        Folders, with one inside for each release.
+    out : Path
+        Folder with one inside for each release, and one of environments, 2 to 300 MB each.
     options : sequence of str
         Further words of the command.
     """
     folder = out / release.folder
-    packages = None if release.here else environments / release.folder
+    packages = None if release.here else out / "environments" / release.folder
     words = ("--releases", INSTALLED, "--engines", release.engine, *options, "--out", str(folder))
     try:
         if packages:
@@ -227,7 +225,7 @@ def ask(release: Release, out: Path, environments: Path, options: Sequence[str])
         if (found := set(answers["release"])) != {release.version}:
             raise MissingError(f"{', '.join(sorted(found))} was loaded in its stead")
     except MissingError as error:
-        return Asked(release, None, str(error), not isinstance(error, NoWheelError))
+        return Asked(release, None, str(error))
     return Asked(release, answers)
 
 
@@ -253,6 +251,4 @@ def fill(folder: Path, release: Release) -> None:
 def _install(folder: Path, *requirements: str) -> None:
     done = pip("install", "--target", str(folder), "--quiet", "--no-input", *requirements)
     if done.returncode:
-        why = complaint(done)
-        kind = NoWheelError if NO_WHEEL in why else MissingError
-        raise kind(f"cannot be installed: {why}")
+        raise MissingError(f"cannot be installed: {complaint(done)}")

@@ -44,7 +44,14 @@ from studies.versions.releases import (
     chosen,
     installed,
 )
-from studies.versions.tables import CHANGED, answered, changes_table, is_changed, releases_table
+from studies.versions.tables import (
+    CHANGED,
+    RELEASES,
+    answered,
+    changes_table,
+    is_changed,
+    releases_table,
+)
 
 FIGURE, SEED = 8, 1
 """Figure of the paper whose cases are asked, and the seed of the random ones."""
@@ -106,7 +113,6 @@ def command(
     engines: Engines | None = None,
     releases: Annotated[tuple[str, ...], several] = (INSTALLED,),
     quick: bool = False,
-    environments: Place | None = None,
     jobs: Count | None = None,
     time_limit: Positive = 60.0,
 ) -> int:
@@ -123,8 +129,6 @@ def command(
         as in mujoco==3.2.7.
     quick
         A tenth of the cases.
-    environments
-        Folder for the environments, 2 to 300 MB each; by default one inside the results'.
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
@@ -140,14 +144,12 @@ def command(
         return carry_out(STUDY, plan_here(engines, quick), out, running, report)
     limits = ("--time-limit", repr(time_limit), *(("--jobs", str(jobs)) if jobs else ()))
     options = (*limits, *(("--quick",) if quick else ()))
-    environments = environments or out / "environments"
     found = {engine: chosen(engine, releases) for engine in engines}
     wanted = [release for some, _ in found.values() for release in some]
 
     def tabulate(_: object) -> Tables:
         each = tqdm(wanted, disable=None, unit="release")
-        asked = [ask(one, out, environments, options) for one in each]
-        # pip lists what was never built for this Python, too
+        asked = [ask(one, out, options) for one in each]
         return {"releases": releases_table([it for it in asked if it.has_wheel or is_named(it)])}
 
     def is_named(it: Asked) -> bool:
@@ -181,10 +183,7 @@ def _tables_here(here: Sequence[Release], rows: Sequence[Row]) -> Tables:
     return {"answers": answers, "releases": releases_table(asked)}
 
 
-SHOWN = [
-    *("engine", "release", "source", "set", "cases", "failed", "right"),
-    *("median_error", "p90_error", "max_error", "moved", "turned", "message"),
-]
+SHOWN = [name for name in RELEASES if name != "moved_cases"]
 
 
 def report(folder: Path) -> str:

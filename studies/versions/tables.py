@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from studies.kit.journal import Row
 from studies.measures.differences import with_reference
 from studies.versions.releases import Asked, Release
 
@@ -34,60 +33,56 @@ def releases_table(asked: Sequence[Asked]) -> pd.DataFrame:
     asked : sequence of Asked
         The releases of each engine in order.
     """
-    rows: list[Row] = []
-    before: dict[str, Asked] = {}
+    tables = []
+    before: dict[str, pd.DataFrame] = {}
     for one in asked:
-        rows += _lines(one, before.get(one.release.engine))
-        if answering(one):
-            before[one.release.engine] = one
-    return pd.DataFrame(rows, columns=list(RELEASES))
+        engine, answers = one.release.engine, one.answers
+        if answers is None:
+            lines = pd.DataFrame([{"source": "", "set": "", "message": one.problem}])
+        else:
+            lines = _lines(answers, before.get(engine))
+            if (answers["outcome"] != "failed").any():
+                before[engine] = answers
+        tables.append(lines.assign(engine=engine, release=one.release.version))
+    return pd.concat(tables, ignore_index=True).reindex(columns=list(RELEASES))
 
 
-def answering(one: Asked) -> bool:
-    """Whether some case of a release has a result."""
-    return one.answers is not None and bool((one.answers["outcome"] != "failed").any())
+def _lines(answers: pd.DataFrame, before: pd.DataFrame | None) -> pd.DataFrame:
+    """Return a line for each preset and set: how far off it is, and from the release before."""
+    rows = with_reference(answers)
+    moves = rows[CASE].assign(moved=math.nan, turned=math.nan)
+    rows = rows.merge(moves if before is None else moved(before, answers), on=CASE, how="left")
+    failed, turned = rows["outcome"] == "failed", rows["turned"].astype(float)
+    rows = rows.assign(
+        size=rows["error"].abs(),
+        failed=failed,
+        reason=rows["message"].where(failed),
+        turned=turned,
+        changed=(rows["moved"] > CHANGED).where(turned.notna()).astype(float),
+    )
+    grouped = rows.groupby(["source", "set"], sort=False, as_index=False)
+    return grouped.agg(
+        cases=("case", "size"),
+        failed=("failed", "sum"),
+        right=("agrees", "sum"),
+        median_error=("size", "median"),
+        p90_error=("size", lambda sizes: sizes.quantile(0.9)),
+        max_error=("size", "max"),
+        moved=("moved", "max"),
+        moved_cases=("changed", _counted),
+        turned=("turned", _counted),
+        message=("reason", _commonest),
+    )
 
 
-def _lines(one: Asked, before: Asked | None) -> list[Row]:
-    release = one.release
-    head = {"engine": release.engine, "release": release.version}
-    if one.answers is None:
-        return [{**head, "source": "", "set": "", "message": one.problem}]
-    compared = with_reference(one.answers)
-    moves = None if before is None or before.answers is None else moved(before.answers, one.answers)
-    return [
-        {
-            **head,
-            "source": source,
-            "set": name,
-            **_errors(rows),
-            **_moves(None if moves is None else _of(moves, str(source), str(name))),
-            "message": _commonest(rows),
-        }
-        for (source, name), rows in compared.groupby(["source", "set"], sort=False)
-    ]
+def _counted(marks: pd.Series[float]) -> float:
+    """Return how many cases are marked, nan where none could be."""
+    return float(marks.sum(min_count=1))
 
 
-def _of(moves: pd.DataFrame, source: str, name: str) -> pd.DataFrame:
-    return moves[(moves["source"] == source) & (moves["set"] == name)]
-
-
-def _errors(rows: pd.DataFrame) -> Row:
-    errors = rows["error"].abs().dropna()
-    return {
-        "cases": len(rows),
-        "failed": int((rows["outcome"] == "failed").sum()),
-        "right": int(rows["agrees"].sum()),
-        "median_error": errors.median(),
-        "p90_error": errors.quantile(0.9) if len(errors) else math.nan,
-        "max_error": errors.max(),
-    }
-
-
-def _commonest(rows: pd.DataFrame) -> str:
+def _commonest(reasons: pd.Series[str]) -> str:
     """Return why most cases failed, empty where none did."""
-    reasons = rows.loc[rows["outcome"] == "failed", "message"]
-    return "" if reasons.empty else str(reasons.value_counts().index[0])
+    return str(next(iter(reasons.value_counts().index), ""))
 
 
 def moved(before: pd.DataFrame, after: pd.DataFrame) -> pd.DataFrame:
@@ -109,16 +104,6 @@ def moved(before: pd.DataFrame, after: pd.DataFrame) -> pd.DataFrame:
     ratio = (both["peak_ratio"] / both["peak_ratio_before"]).where(rocked)
     turned = both["outcome_before"] != both["outcome"]
     return both[CASE].assign(moved=(ratio - 1.0).abs(), turned=turned)
-
-
-def _moves(moves: pd.DataFrame | None) -> Row:
-    if moves is None:
-        return {"moved": math.nan, "moved_cases": math.nan, "turned": math.nan}
-    return {
-        "moved": moves["moved"].max(),
-        "moved_cases": int((moves["moved"] > CHANGED).sum()),
-        "turned": int(moves["turned"].sum()),
-    }
 
 
 CHANGES = (

@@ -69,9 +69,16 @@ def test_an_asc_file_of_esm_or_itaca(end, written):
     assert read_record(written(raw + ASC_COLUMN), "gal") == record
 
 
+SPELLED = {"m/s²": "m/s2", "cm/s^2": "cm/s2", "CM/SEC/SEC": "cm/s2", "Gal": "gal"}
+
+
 @pytest.mark.parametrize(
     "names",
     [
+        "Time [sec], Acceleration [m/s²]",
+        "# units: cm/s^2",
+        "% UNITS OF CM/SEC/SEC",
+        "time (s) acceleration (Gal)",
         "# Time [s], Acceleration [g]",
         "time_s,acc_g",
         "Time in seconds, acc in g",
@@ -85,8 +92,9 @@ def test_an_asc_file_of_esm_or_itaca(end, written):
 def test_names_above_the_columns_say_time_and_acceleration_with_its_unit(names, written):
     rows = "".join(f"{5 * i},{a}\n" for i, a in enumerate(SAMPLES))
     record = read_record(written(f"{names}\n{rows}"))
+    unit = next((unit for word, unit in SPELLED.items() if word in names), "g")
     assert record.dt == 5.0
-    assert record.samples == pytest.approx(9.81 * SAMPLES, rel=1e-15)
+    assert record.samples == pytest.approx(UNITS[unit] * SAMPLES, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -106,6 +114,11 @@ def test_tables_that_leave_no_doubt(text, written):
     record = read_record(written(text))
     assert record.dt == 1.0
     assert record.samples[:2].tolist() == [9.81, 19.62]
+
+
+def test_times_printed_in_few_decimals_are_equal_steps(written):
+    rows = "".join(f"{i / 256:.4f} {i % 3}\n" for i in range(600))
+    assert read_record(written(rows), "m/s2").dt == pytest.approx(1 / 256, rel=1e-4)
 
 
 @settings(max_examples=200, deadline=None)

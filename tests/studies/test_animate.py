@@ -131,20 +131,6 @@ def test_another_scene_is_shown_and_an_engine_that_cannot_hold_it_is_named(
         assert film.n_frames > 10
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--scene", "frame"], "--load missing"),
-        (["--scene", "slide"], "--friction missing"),
-        (["--scene", "slide", "--friction", "0.2", "--tilt", "0.1"], "only where something rocks"),
-        (["--scene", "frame", "--load", "2", "--dt", "0.001"], "it must come with equal steps"),
-    ],
-)
-def test_a_scene_that_cannot_be_shown_is_one_line(options, words, tmp_path, capsys):
-    asked = ["animate", *CASE, *options, "--out", str(tmp_path / "film.gif")]
-    refused(capsys, [*asked, "--sources", "exact", "mujoco:landing"], words)
-
-
 def sweep(folder, peaks):
     common = {"figure": 8, "pulse": "full-sine", "excess_g": 0.1, "aspect": 3, "width_m": 0.5}
     rows = [
@@ -221,34 +207,11 @@ def test_what_stood_still_is_drawn_once_and_nothing_stays_of_a_frame_before():
     assert np.count_nonzero(whole != frames[-1]) < 100
 
 
-COLUMNS = "figure,pulse,excess_g,aspect,width_m,omega_over_p,source,peak_ratio"
-ROW = "8,full-sine,0.1,3,0.5,1.0,exact,"
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"\n\n",
-        bytes(range(256)),
-        b"a,b\n1,2,3\n",
-        f"{COLUMNS}\n".encode(),
-        f"{COLUMNS.replace('aspect', 'shape')}\n{ROW}0.5".encode(),
-        f"{COLUMNS.replace('source', 'who')}\n{ROW}0.5".encode(),
-        *(f"{COLUMNS}\n{ROW}{peak}".encode() for peak in ("nan", "", "many")),
-        f"{COLUMNS}\n{ROW}0.5\n{ROW}0.6".encode(),
-        *(
-            f"{COLUMNS}\n{ROW.replace(old, new)}0.5".encode()
-            for old, new in (("full", "saw"), (",3,", ",-3,"), (",0.5,", ",,"), ("1.0", "nan"))
-        ),
-        f"{COLUMNS}\n{ROW.replace('exact', 'housner')}0.5".encode(),
-    ],
-)
-def test_what_is_no_table_of_a_sweep_is_one_line(content, tmp_path, capsys):
-    (tmp_path / "sweep.csv").write_bytes(content)
+@pytest.mark.parametrize("content", ["", "figure,source,peak_ratio\n8,exact,0.5\n"])
+def test_what_no_sweep_wrote_is_one_line(content, tmp_path, capsys):
+    (tmp_path / "sweep.csv").write_text(content)
     film = tmp_path / "film.gif"
-    arguments = ["--results", str(tmp_path), "--sources", "exact", "--out", str(film)]
-    refused(capsys, ["animate", *arguments], "--results")
+    refused(capsys, ["animate", "--results", tmp_path, "--out", film], "--results", "sweep.csv")
     assert not film.exists()
 
 
@@ -264,29 +227,3 @@ def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch, ca
     refused(capsys, ["animate", *arguments], "No space left", str(film))
     assert film.read_bytes() == b"before"
     assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ([*CASE, "--out", "film.avi"], ("--out", ".gif")),
-        ([*CASE, "--out", "nowhere/film.gif"], ("--out", "folder")),
-        (["--out", "film.gif"], ("--width", "missing")),
-        ([*CASE, "--results", "results", "--out", "film.gif"], ("--width", "--results")),
-        (["--results", "results", "--out", "film.gif"], ("--results", "sweep.csv")),
-        (
-            ["--results", "results", "--tilt", "0.5", "--degrees", "--out", "film.gif"],
-            ("--tilt", "--degrees", "--results"),
-        ),
-        ([*CASE[:4], "--tilt", "5", "--out", "film.gif"], ("--tilt", "between")),
-        ([*CASE, "--slower", "0", "--out", "film.gif"], ("--slower", "positive")),
-        ([*CASE, "--slower", "1e9", "--out", "film.gif"], ("--slower 1e+09", "1500")),
-        ([*CASE, "--slower", "1e308", "--out", "film.gif"], ("--slower 1e+308", "1500")),
-        ([*CASE, "--out", "/dev/full/film.gif"], ("--out", "folder")),
-        ([*CASE, "--out", "/proc/film.gif"], ("--out", "written")),
-    ],
-)
-def test_bad_input_is_one_clear_line(arguments, words, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    refused(capsys, ["animate", *arguments], *words)
-    assert list(tmp_path.iterdir()) == []

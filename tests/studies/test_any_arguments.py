@@ -106,7 +106,7 @@ def refuse(folder, *_):
     raise FolderError(folder, FULL)
 
 
-def give_up(_, jobs, many):
+def give_up(_, pool, jobs, many):
     """What takes long, or may crash, reaches its time limit."""
     for number in jobs:
         yield number, Response.failure("no result", reason=Reason.UNDECIDED)

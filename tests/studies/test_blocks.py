@@ -2,20 +2,14 @@
 
 import csv
 import html
-import json
 import math
-import os
 import re
 import shlex
-import signal
-import subprocess
-import sys
-import time
 
 import numpy as np
-import pandas as pd
 import pytest
-from commanding import ROOT, refused
+from commanding import compared, refused
+from records import write_record
 
 from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
 from analytic.criteria import overturning_velocity
@@ -23,20 +17,11 @@ from studies.__main__ import run
 from studies.blocks.report import read
 from studies.blocks.strength import BEYOND, WIDTH, grid, strength
 from studies.blocks.study import joined
-from studies.kit.journal import JOURNAL
 
 REST = (0.0, 0.0)
 HEAD = "name,width,height,friction,tilt\n"
 LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"
 SHAKEN = kanai_tajimi(3, peak=3.0, duration=6.0, omega=10.0, rise=1.0, fall=3.0)
-
-
-def write_record(path, record):
-    words = " ".join(repr(float(a)) for a in record.samples / 9.81)
-    count, dt = record.samples.size, float(record.dt)
-    path.write_text(
-        f"PEER\nA\nACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {dt!r} SEC\n{words}\n"
-    )
 
 
 @pytest.fixture
@@ -46,13 +31,6 @@ def place(tmp_path, monkeypatch):
     write_record(tmp_path / "Y.AT2", SHAKEN.scaled(-1.5))
     (tmp_path / "list.csv").write_text(LIST)
     return tmp_path
-
-
-def compared(capsys, *options):
-    capsys.readouterr()
-    code = run(["compare", *options, "--json"])
-    rows = map(json.loads, capsys.readouterr().out.splitlines())
-    return code, {row["source"]: row for row in rows}
 
 
 def test_rows_are_those_of_compare_to_the_last_digit(place, capsys):
@@ -190,31 +168,6 @@ def test_all_bad_rows_are_named_at_once(place, capsys):
     ]
 
 
-@pytest.mark.parametrize(
-    ("options", "problem"),
-    [
-        (["--record", "X.AT2", "--scale", "0"], "--scale is '0'; it must be a positive finite"),
-        (["--record", "X.AT2", "--scale", "1", "x"], "--scale is 'x'"),
-        (["--record", "X.AT2", "--scale", "2", "2"], "--scale names 2.0 twice"),
-        (["--record", "X.AT2", "--scale", "inf"], "--scale is 'inf'"),
-        (["--record", "X.AT2", "--scale"], "--scale"),
-        (["--record", "none.AT2"], "--record is 'none.AT2'; it must be a file that can be read"),
-        (["--record", "X.AT2", "./X.AT2"], "--record names 'X.AT2' twice"),
-        (["--record", "list.csv"], "--record is 'list.csv'"),
-        (["--record", "X.AT2", "--units", "m/s2"], "it states g; --units must not be m/s2"),
-        (["--record", "X.AT2", "--baseline", "cubic"], "--baseline is 'cubic'"),
-        (["--record", "X.AT2", "--sources", "exat"], "--sources: source is 'exat', perhaps|exat"),
-        (["--record", "X.AT2", "--sources", "exact", "exact"], "--sources names 'exact' twice"),
-        (["--record", "still.csv", "--units", "g"], "it is zero throughout, and must not be"),
-        ([], "--record requires an argument"),
-    ],
-)
-def test_bad_options_are_one_line(options, problem, place, capsys):
-    (place / "still.csv").write_text("time_s,acceleration\n0,0\n0.1,0\n0.2,0\n")
-    assert re.search(problem, refused(capsys, ["blocks", "list.csv", *options, "--out", "out"]))
-    assert not (place / "out").exists()
-
-
 NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300]
 
 
@@ -259,33 +212,3 @@ def test_the_least_margin_comes_first_in_words_page_and_table(place, capsys):
     assert lines[heads + 1].split()[0] == first["name"]
     page = (place / "out" / "blocks.html").read_text()
     assert words in page and "href=" not in page
-
-
-def journalled(out):
-    path = out / JOURNAL
-    return path.read_bytes().count(b'"row"') if path.exists() else 0
-
-
-@pytest.mark.slow
-def test_what_finished_before_a_kill_is_not_lost(place):
-    lines = [f"N{n},{0.3 + 0.01 * n},1.6" for n in range(24)]
-    (place / "list.csv").write_text("\n".join(["name,width,height", *lines]))
-    records = ["X.AT2", "Y.AT2", "Z.AT2"]
-    write_record(place / "Z.AT2", SHAKEN.scaled(0.9))
-    arguments = ["blocks", "list.csv", "--record", *records, "--out", "out"]
-    command = [sys.executable, "-m", "studies", *arguments]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL) as process:
-        while journalled(place / "out") < 30 and process.poll() is None:
-            time.sleep(0.002)
-        process.send_signal(signal.SIGKILL)
-    kept = journalled(place / "out")
-    total = 2 * 24 * 3
-    assert 30 <= kept < total
-    assert run(arguments) == 0
-    told = json.loads((place / "out" / "provenance.json").read_text())["runs"][-1]
-    assert told["rows"] == total
-    assert total - kept <= told["computed"] <= total - kept + 1
-    assert run([*arguments[:-1], "fresh"]) == 0
-    both = [pd.read_csv(place / name / "blocks.csv") for name in ("out", "fresh")]
-    pd.testing.assert_frame_equal(*(table.drop(columns="wall_s") for table in both), rtol=0.0)

@@ -1,6 +1,5 @@
 """Studies on a Dask cluster: a real scheduler and real workers, each a process of its own."""
 
-import http.server
 import json
 import signal
 import socketserver
@@ -14,7 +13,6 @@ from functools import partial
 from pathlib import Path
 
 import dask
-import grimp
 import pandas as pd
 import pytest
 from dask_station import (
@@ -221,14 +219,6 @@ def test_a_case_that_kills_every_worker_is_a_row(tmp_path, monkeypatch):
         assert {first.wait(), second.wait()} == {3}
 
 
-def test_a_cluster_knows_nothing_of_who_chooses_it():
-    graph = grimp.build_graph("studies")
-    for module in ("cluster", "executors", "pool"):
-        assert not graph.chain_exists(
-            importer=f"studies.kit.{module}", imported="studies.kit.options"
-        )
-
-
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nowhere", "::::", "tcp://"])
 def test_an_address_where_nobody_answers(address, tmp_path, capsys):
     assert "scheduler" in refusal(address, capsys, tmp_path)
@@ -252,20 +242,10 @@ class Shell(Silent):
     said = b"SSH-2.0-OpenSSH_9.6\r\n"
 
 
-class Web(http.server.BaseHTTPRequestHandler):
-    def do_GET(self):
-        self.send_response(200)
-        self.end_headers()
-
-    def log_message(self, *_):
-        pass
-
-
 @pytest.mark.parametrize(
     ("handler", "limit_s", "reason"),
     [
         (Silent, 1.0, "no answer within 1 s"),
-        (Web, 1.0, "no answer within 1 s"),
         (Shell, 600.0, "MemoryError"),
     ],
 )
@@ -287,12 +267,12 @@ def test_missing_dask_is_named(monkeypatch):
 
 
 class Breaking:
-    """A client, and its executor, whose answer to every question is an error."""
+    """A client, and its executor: a question is an error, and so is the answer if there is one."""
 
     nthreads = None
 
-    def __init__(self, status, error):
-        self.status, self.error = status, error
+    def __init__(self, status, error, answering=True):
+        self.status, self.error, self.answering = status, error, answering
 
     def sync(self, *_, **__):
         raise self.error
@@ -302,52 +282,37 @@ class Breaking:
 
     def submit(self, *_):
         future = Future()
-        future.set_exception(self.error)
+        if self.answering:
+            future.set_exception(self.error)
         return future
 
 
-@pytest.fixture
-def asked(monkeypatch):
-    """Return what puts a job to a cluster with a client that breaks."""
-
-    def ask(client):
-        monkeypatch.setattr(Cluster, "_client", lambda _: nullcontext(client))
-        ((_, response),) = Cluster("tcp://127.0.0.1:1", 1.0)(jobs_of("exact"))
-        return response
-
-    return ask
+def asked_of(client, monkeypatch):
+    """Return the answer to a job that is put to a cluster with this client."""
+    monkeypatch.setattr(Cluster, "_client", lambda _: nullcontext(client))
+    monkeypatch.setattr(cluster, "LOOK_S", 0.01)
+    ((_, response),) = Cluster("tcp://127.0.0.1:1", 1.0)(jobs_of("exact"))
+    return response
 
 
 BROKEN = [CommClosedError("in <TCP>: Stream is closed"), OSError("gone"), CancelledError()]
+GONE = [
+    ("running", BROKEN[-1], True),
+    *(("running", error, False) for error in BROKEN[:2]),
+    *((status, error, True) for status in ("connecting", "closed") for error in BROKEN),
+]
 
 
-@pytest.mark.parametrize(
-    ("status", "error"),
-    [
-        ("running", BROKEN[-1]),
-        *((status, error) for status in ("connecting", "closed") for error in BROKEN),
-    ],
-)
-def test_a_connection_that_breaks_before_the_answer_is_a_scheduler_that_has_gone(
-    status, error, asked
+@pytest.mark.parametrize(("status", "error", "answering"), GONE)
+def test_a_connection_that_breaks_is_a_scheduler_that_has_gone(
+    status, error, answering, monkeypatch
 ):
     with pytest.raises(ClusterError, match="scheduler has gone"):
-        asked(Breaking(status, error))
+        asked_of(Breaking(status, error, answering), monkeypatch)
 
 
-@pytest.mark.parametrize("error", BROKEN[:2])
-def test_a_connection_that_breaks_at_a_question_is_a_scheduler_that_has_gone(
-    error, asked, monkeypatch
-):
-    monkeypatch.setattr(cluster, "LOOK_S", 0.01)
-    client = Breaking("running", error)
-    client.submit = lambda *_: Future()
-    with pytest.raises(ClusterError, match="scheduler has gone"):
-        asked(client)
-
-
-def test_an_error_of_a_job_is_a_row(asked):
-    response = asked(Breaking("running", OSError("no room")))
+def test_an_error_of_a_job_is_a_row(monkeypatch):
+    response = asked_of(Breaking("running", OSError("no room")), monkeypatch)
     assert response.outcome.value == "failed"
     assert "no room" in response.message
 

@@ -3,7 +3,6 @@
 import ast
 import math
 import os
-import signal
 import threading
 import time
 from pathlib import Path
@@ -13,63 +12,19 @@ import pytest
 from commanding import PATIENCE_S, python
 from given import BLOCK, FULL_SINE
 
-from analytic import SinePulse, simulate
+from analytic import SinePulse
 from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.pool import Pool
 from studies.kit.runner import run_jobs
-from studies.sources.registry import SOURCES, Source, resolve
+from studies.sources.registry import SOURCES, Source
 
 pytestmark = pytest.mark.processes
 
 
-# sources that misbehave; they stand at the top of the module so that a worker finds them
-def exits(block, motion, *, duration, times):
-    os._exit(3)
-
-
-def segfaults(block, motion, *, duration, times):
-    os.kill(os.getpid(), signal.SIGSEGV)
-
-
-def hangs(block, motion, *, duration, times):
-    threading.Event().wait()
-
-
-def raises(block, motion, *, duration, times):
-    raise RuntimeError("the engine\nsaid no")
-
-
-def answers(block, motion, *, duration, times):
-    return simulate(block, motion, duration=duration, times=times)
-
-
 def job(source, motion=FULL_SINE, **more):
     return Job(labels={}, block=BLOCK, motion=motion, source=source, **more)
-
-
-def test_whatever_an_engine_does_becomes_a_row(monkeypatch):
-    for misbehaving in (exits, segfaults, raises, answers):
-        monkeypatch.setitem(SOURCES, misbehaving.__name__, Source("engine", misbehaving))
-    names = ["exits", "segfaults", "raises", "answers", "exact"]
-    rows = run_jobs(
-        [job(name) for name in names],
-        executor=Local(workers=2, time_limit_s=PATIENCE_S),
-        reduce=summary,
-    )
-    assert [row["source"] for row in rows] == names
-    assert [row["outcome"] for row in rows] == ["failed"] * 3 + ["rocked"] * 2
-    assert all(math.isnan(row["peak_ratio"]) for row in rows[:3])
-    for row, reason in zip(rows, ("code 3", "SIGSEGV", "said no"), strict=False):
-        assert reason in row["message"]
-        assert "\n" not in row["message"]
-
-
-def test_an_engine_that_hangs_is_given_up(monkeypatch):
-    monkeypatch.setitem(SOURCES, "hangs", Source("engine", hangs))
-    (row,) = run_jobs([job("hangs")], executor=Local(1, time_limit_s=1.0), reduce=summary)
-    assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit of 1 s")
 
 
 def test_a_long_solve_has_a_time_limit_too():
@@ -106,7 +61,7 @@ def test_a_long_solve_is_not_timed_while_its_kernels_are_loaded(monkeypatch):
     slow = SinePulse(amplitude=0.34 * 9.81, omega=1e-5, half_cycles=2)
     window = {"duration": slow.duration, "times": np.arange(100.0)}
     jobs = [job("remembers", slow, **window, options={"step": step}) for step in (1e-9, 1e-8)]
-    assert all(asked.needs_process(resolve(asked.source)) for asked in jobs)
+    assert all(asked.needs_process for asked in jobs)
     rows = run_jobs(jobs, executor=Local(1, PATIENCE_S), reduce=summary)
     first, second = (ast.literal_eval(row["message"]) for row in rows)
     # a short question once in each process, and then what was to be timed
@@ -142,7 +97,7 @@ for name in ("exact", "modified", "rk4", "average-acceleration"):
         for window in ({}, {"duration": motion.duration + 2.0, "times": np.linspace(0.0, 3.0, 50)}):
             job = Job(labels={}, block=block, motion=motion, source=name, **window)
             quick, source = short(job), resolve(name)
-            assert not quick.needs_process(resolve(quick.source))
+            assert not quick.needs_process
             assert ask(quick, source).outcome.value == "rocked"
             before = loaded()
             assert ask(job, source).outcome.value in ("rocked", "overturned")
@@ -153,15 +108,3 @@ for name in ("exact", "modified", "rk4", "average-acceleration"):
 def test_a_short_question_loads_the_kernels_of_the_long_one():
     done = python("-c", KERNELS)
     assert (done.returncode, done.stderr) == (0, "")
-
-
-def keeps_from_the_terminal(job, source):
-    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    return Response.failure(str({signal.SIGINT, signal.SIGHUP} <= blocked))
-
-
-def test_the_terminal_interrupts_no_process_that_compiled_first():
-    """What an engine needs compiled is so before its cases, by the processes that then run them."""
-    local = Local(1, PATIENCE_S, keeps_from_the_terminal)
-    jobs = [Job(labels={}, block=BLOCK, motion=FULL_SINE, source="pybullet")]
-    assert [response.message for _, response in local(jobs)] == ["True"]

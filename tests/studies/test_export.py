@@ -256,51 +256,6 @@ def test_no_room_for_a_file_leaves_no_part_of_a_script(tmp_path, capsys):
     assert rocking([*asked, str(tmp_path / "scene")]) == 0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--engine", "bullet", *SHAKEN], "--engine is 'bullet'; it must be one that can be"),
-        (
-            ["--engine", "mujoco", "--preset", "landing", *SHAKEN],
-            "--preset is 'landing'; it must have equal steps: naive, naive-base-at-rest, "
-            "recommended, fixed",
-        ),
-        (
-            ["--engine", "mujoco:landing", *SHAKEN],
-            "--engine is 'mujoco:landing'; its preset must have equal steps: naive, "
-            "naive-base-at-rest, recommended, fixed",
-        ),
-        (
-            ["--engine", "mujoco:naive", "--preset", "fixed", *SHAKEN],
-            "--preset is 'fixed'; it may be given only where --engine has none after a colon",
-        ),
-        (["--engine", "mujoco", *SHAKEN, "--pga", "1"], "--pga is 1.0; it may be given only with"),
-        (["--engine", "mujoco"], "--amplitude and --omega missing"),
-        (
-            ["--engine", "mujoco", *SHAKEN, *FRAME, "--columns", "1"],
-            "columns is 1; it must be a whole number of 2 or more",
-        ),
-        (
-            ["--engine", "mujoco", *SHAKEN, "--scene", "frame", "--load", "0"],
-            "--load is '0'; it must be",
-        ),
-        (["--engine", "mujoco", *SHAKEN, "--scene", "slide"], "--friction missing"),
-        (
-            ["--engine", "mujoco", *SHAKEN, "--scene", "slide", "--friction", "0.4"],
-            "friction is 0.4; it must be below width/height",
-        ),
-        (
-            ["--engine", "mujoco", *SHAKEN, *SLIDE, "--tilt", "0.5"],
-            "--tilt is 0.5; it may be given only where something rocks",
-        ),
-        (["--engine", "mujoco", *SHAKEN, "--record", "x"], "it may be given only without --record"),
-    ],
-)
-def test_refusals(arguments, words, tmp_path, capsys):
-    asked = [*SIZED, "--out", tmp_path / "scene", *arguments]
-    refused(capsys, asked, words)
-
-
 def test_what_an_engine_cannot_hold_is_one_line(tmp_path, capsys):
     arguments = [*CALL, *FRAME, "--engine", "newton", "--out", str(tmp_path / "scene")]
     assert rocking(arguments) == 1

@@ -69,17 +69,6 @@ def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, c
     assert not list(tmp_path.glob(".part*"))
 
 
-@pytest.mark.parametrize("name", ASKING)
-def test_a_folder_that_is_removed_during_a_run_is_no_success(name, tmp_path, monkeypatch, capsys):
-    def removing(_, jobs):
-        shutil.rmtree(tmp_path)
-        yield from never(_, jobs)
-
-    monkeypatch.setattr(Local, "__call__", removing)
-    refused(capsys, command_line(name, tmp_path), "removed during the run")
-    assert not tmp_path.exists()
-
-
 def test_a_folder_that_is_removed_while_tables_are_made_is_no_success(tmp_path):
     def removing(_):
         shutil.rmtree(tmp_path)

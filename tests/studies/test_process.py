@@ -4,19 +4,18 @@ import json
 import os
 import resource
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from commanding import BLOCK as SIZES
 from commanding import CASE, PATIENCE_S, python
+from given import BLOCK, FULL_SINE
 
-from analytic import RigidBlock, SinePulse
 from analytic.response import Response
-from studies.kit import signals
 from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
-from studies.kit.runner import run_jobs
-from studies.precision import cost
-from studies.sources.registry import SOURCES, Source
+from studies.kit.jobs import Job
 
 pytestmark = pytest.mark.processes
 
@@ -74,26 +73,17 @@ def test_a_signal_that_is_to_be_ignored_stays_so():
     assert done.stdout == "True\n", done.stderr
 
 
-def tells_what_is_blocked(block, motion, *, duration, times):
-    return Response.failure(",".join(sorted(blocked(0.0))))
+def tells_what_is_blocked(*_):
+    kept = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    return Response.failure(" ".join(sorted(signal.Signals(number).name for number in kept)))
 
 
-def blocked(_):
-    return {signal.Signals(number).name for number in signal.pthread_sigmask(signal.SIG_BLOCK, [])}
-
-
-def count_blocked(_):
-    return float(len(blocked(0.0) & {"SIGINT", "SIGHUP"}))
-
-
-def test_the_terminal_s_signals_are_left_to_the_process_that_ends_the_others(monkeypatch):
-    monkeypatch.setitem(SOURCES, "tells", Source("engine", tells_what_is_blocked))
-    block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=4.0, omega=6.0)
-    job = Job(labels={}, block=block, motion=pulse, source="tells")
-    rows = run_jobs([job] * 3, executor=Local(2, PATIENCE_S), reduce=summary)
-    assert {row["message"] for row in rows} == {"SIGHUP,SIGINT"}
-    assert cost.in_a_new_process(count_blocked, 0.0) == 2.0
-    assert not blocked(0.0) & {number.name for number in signals.ENDING}
+def test_the_terminal_s_signals_are_left_to_the_process_that_ends_the_others():
+    """Also by processes that first compiled what an engine needs, as those of PyBullet's cases."""
+    jobs = [Job(labels={}, block=BLOCK, motion=FULL_SINE, source="pybullet")] * 3
+    local = Local(2, PATIENCE_S, tells_what_is_blocked)
+    assert [response.message for _, response in local(jobs)] == ["SIGHUP SIGINT"] * 3
+    assert not signal.pthread_sigmask(signal.SIG_BLOCK, []) & {*ENDING}
 
 
 def closing(*numbers):
@@ -141,3 +131,28 @@ def test_too_few_open_files_are_one_line(count, tmp_path):
     assert len(done.stderr.splitlines()) == 1
     assert "Too many open files" in done.stderr
     assert "rows are kept" in done.stderr
+
+
+def test_the_longest_pulse_fits_into_memory(tmp_path):
+    pulse = ["--amplitude", "0.4", "--omega", "60", "--half-cycles", "1000000"]
+    few = ["--sources", "mujoco:naive", "--time-limit", "1", "--jobs", "1"]
+    done = python(
+        *("-m", "studies", "compare", *SIZES, *pulse, *few),
+        before=lambda: resource.setrlimit(resource.RLIMIT_DATA, (2 * 10**9,) * 2),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 1
+    assert "no result within the time limit" in done.stdout
+    assert "MemoryError" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [["--help"], ["compare", "--help"], ["--version"], ["compare", *CASE, "--sources", "exact"]],
+)
+def test_output_that_nobody_reads_to_its_end_is_no_failure_of_rows(asked):
+    command, pipe = [sys.executable, "-m", "studies", *asked], subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 141  # as of any program that a pipe ends

@@ -80,17 +80,6 @@ def pretender(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_another_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path, capsys):
-    out, here = tmp_path / "out", metadata.version("pretender")
-    words = ["versions", "--engines", "pretender", "--quick", "--jobs", "1", "--out", str(out)]
-    assert run([*words, "--releases", "pretender==2.0"]) == 0
-    (change,) = STUDY.read(out, "changes").to_dict("records")
-    assert (change["before"], change["release"], change["presets"]) == ("1.0", "2.0", "naive")
-    assert [path.name for path in out.glob("environments/*")] == ["pretender-2.0"]
-    assert metadata.version("pretender") == here == "1.0"
-
-
-@pytest.mark.slow
 def test_each_release_is_asked_in_an_environment_of_its_own(pretender, tmp_path, capsys):
     """And what one says that errs is seen, and what is there is not made again."""
     out = tmp_path / "out"

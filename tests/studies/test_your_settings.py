@@ -6,7 +6,6 @@ import re
 
 import pandas as pd
 import pytest
-from commanding import refused
 from given import BLOCK
 
 from studies import respond
@@ -125,34 +124,3 @@ def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
         answer = respond("pymunk:naive", case.block, case.motion, friction=0.9, step=step)
         assert row["peak_ratio"] == answer.peak_ratio and row["steps"] == answer.steps
     assert run(["estimate", *few, "--out", str(tmp_path / "a")]) == 2
-
-
-ADVISE = ["advise", "--engine", "mujoco"]
-SYMPTOMS = ["symptoms", "--engines", "mujoco"]
-ESTIMATE = ["estimate", "--out", "DIR", "--sources", "mujoco:naive"]
-NUMBERS = ["0", "-1", "nan", "inf", "x", "1_0", "1,5"]
-BAD = [
-    *(([*ask, "--dt", text], f"--dt is '{text}'; it must be a positive finite number")
-      for ask in (ADVISE, SYMPTOMS, ESTIMATE) for text in NUMBERS),
-    *(([*ask, "--friction", text], f"--friction is '{text}'; it must be a finite number, 0 or more")
-      for ask in (ADVISE, SYMPTOMS, ESTIMATE) for text in ("-1", *NUMBERS[2:])),
-    *(([*ask, "--dt", text], f"--dt is {float(text):g}; it must be from 1e-06 to 1 s")
-      for ask in (ADVISE, SYMPTOMS) for text in ("2", "1e-9", "1e300", "1e-300")),
-    ([*ADVISE, "--dt", "0.002", "--error", "0.1"], "--error is 0.1; it may be given only without"),
-    ([*ADVISE, "--dt", "0.002", "--out", "DIR"], "--out is DIR; it may be given only without --dt"),
-    (["advise", "--engine", "pybullet", "--friction", "99"], "friction is 99.0; it must be from 0"),
-    ([*ADVISE, "--dt"], "--dt"),
-    ([*ADVISE, "--friction"], "--friction"),
-    (["symptoms", "--engines", "pybullet", "--friction", "99"], "friction is 99.0; it must be"),
-    ([*SYMPTOMS, "--dt", "0.1", "0.2"], "0.2"),
-    ([*ESTIMATE, "--dt", "0.1", "--step", "0.1"], "--dt is 0.1 and --step is 0.1; give one or"),
-    (["estimate", "--out", "DIR", "--sources", "mujoco", "--dt", "0.1"], "mujoco takes steps that"),
-    (["estimate", "--out", "DIR", "--sources", "pybullet", "--friction", "99"], "friction is 99.0"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("arguments", "problem"), BAD)
-def test_what_cannot_be_is_one_line(arguments, problem, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    refused(capsys, arguments, problem)
-    assert not (tmp_path / "DIR").exists() or arguments[0] == "estimate"
