@@ -64,18 +64,14 @@ def command(
     quick
         Full sines at H/B 3 alone, and every third frequency and amplitude.
     """
-    return carry_out(STUDY, plan(sources, frame, quick), out, running, report)
-
-
-def plan(sources: Sequence[str], frame: str | None, quick: bool) -> Plan:
-    """Return the plan that puts the pulses to some sources, and to the exact solution."""
     asked = tuple(dict.fromkeys(("exact", *sources)))
-    return Plan(
+    plan = Plan(
         jobs=grid_jobs(asked, frame, quick),
         settings={"frame": frame, "quick": quick},
         growing={"source": asked},
         needed=lambda rows: [row for row in rows if row["source"] == "exact"],
     )
+    return carry_out(STUDY, plan, out, running, report)
 
 
 def grid_jobs(sources: Sequence[str], frame: str | None, quick: bool) -> list[Job]:

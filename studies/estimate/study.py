@@ -33,7 +33,7 @@ from studies.measures.differences import with_reference, with_reference_of_frame
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, estimates_of, halved
 from studies.measures.words import alike, listed, out_of, part
 from studies.measures.wrongness import FALL, REST, wrong_in
-from studies.sources.registry import Effort, core_sources
+from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = core_sources("", "fixed", "naive")
 
@@ -74,49 +74,28 @@ def command(
     refuse_both(dt=yours.dt, step=effort.step)
     own = {name: value for name, value in asdict(yours).items() if value is not None}
     own |= {} if scene == "block" else {"scene": scene}
-    plan = Plan(
-        jobs=pairs(cases, tests, seed, sources, effort, yours, scene=scene),
-        settings={"seed": seed, "tests": tests, **asdict(effort), **own},
-        growing={"case": range(max(cases, tests)), "source": sources},
-    )
-    return carry_out(STUDY, plan, out, running, report)
-
-
-def pairs(
-    cases: int,
-    tests: int,
-    seed: int,
-    sources: tuple[str, ...],
-    effort: Effort = OWN_EFFORT,
-    yours: Yours = NOT_YOURS,
-    *,
-    scene: Drawn = "block",
-) -> list[Job]:
-    """Return two jobs for each case and source, the second at half the step.
-
-    Raises
-    ------
-    BadInputError
-        If a source has no step that could be halved.
-    """
     jobs = []
     for use, case in both_sets(cases, tests, seed, scene):
-        own = yours.options(sources, case.block)
+        options = yours.options(sources, case.block)
         for source in sources:
-            labels = {"set": use, **asdict(case), "half": 0}
             job = Job(
-                labels=labels,
+                labels={"set": use, **asdict(case), "half": 0},
                 block=case.block,
                 motion=case.motion,
                 source=source,
-                options={**effort.options(source), **own[source]},
+                options={**effort.options(source), **options[source]},
             )
             finer = halved(job)
             if finer is None:
                 words = "it must be an engine with steps that can be halved"
                 raise BadInputError(f"--sources is {source!r}; {words}")
-            jobs += [job, replace(finer, labels={**labels, "half": 1})]
-    return jobs
+            jobs += [job, replace(finer, labels={**job.labels, "half": 1})]
+    plan = Plan(
+        jobs=jobs,
+        settings={"seed": seed, "tests": tests, **asdict(effort), **own},
+        growing={"case": range(max(cases, tests)), "source": sources},
+    )
+    return carry_out(STUDY, plan, out, running, report)
 
 
 def report(folder: Path) -> str:

@@ -49,21 +49,16 @@ def command(
 def plan(sources: Sequence[str], quick: bool) -> Plan:
     """Return the plan that releases blocks of some shapes and tilts, for each source."""
     return Plan(
-        jobs=free_jobs(sources, quick),
+        jobs=[
+            released(aspect, tilt, source)
+            for aspect in (QUICK_ASPECTS if quick else ASPECTS)
+            for tilt in (QUICK_TILTS if quick else TILTS)
+            for source in sources
+        ],
         settings={"quick": quick},
         growing={"source": sources},
         reduce=reduce,
     )
-
-
-def free_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
-    """Return a job for each aspect ratio, tilt and source."""
-    return [
-        released(aspect, tilt, source)
-        for aspect in (QUICK_ASPECTS if quick else ASPECTS)
-        for tilt in (QUICK_TILTS if quick else TILTS)
-        for source in sources
-    ]
 
 
 def released(aspect: float, tilt: float, source: str) -> Job:

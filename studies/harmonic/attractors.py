@@ -60,8 +60,8 @@ class Shaking:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class State:
-    """What a response settled on, and where it stands.
+class Attractor:
+    """What responses settle on: an orbit, or overturning; and where the first of them stands.
 
     Attributes
     ----------
@@ -75,16 +75,19 @@ class State:
         not.
     end : (float, float)
         theta [rad] and rate [rad/s] at the end of the motion.
+    starts : int
+        How many of the grid's starts settle on it; 0 if it was found from a neighbour alone.
     """
 
     outcome: str
     right: float
     left: float
-    period: int
-    impacts: int
-    end: tuple[float, float]
+    period: int = 0
+    impacts: int = 0
+    end: tuple[float, float] = (0.0, 0.0)
+    starts: int = 0
 
-    def is_like(self, other: "State") -> bool:
+    def is_like(self, other: "Attractor") -> bool:
         """Say whether both are on one orbit, or on its mirror image half a period later.
 
         All that do not repeat count as one.
@@ -97,23 +100,7 @@ class State:
         return all(abs(a - b) <= APART * max(a, b) for a, b in zip(*sizes, strict=True))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Attractor:
-    """An orbit on which responses settle, or overturning.
-
-    Attributes
-    ----------
-    state : State
-        Of the first response that was found on it.
-    starts : int
-        How many of the grid's starts settle on it; 0 if it was found from a neighbour alone.
-    """
-
-    state: State
-    starts: int
-
-
-def settle(shaking: Shaking, start: tuple[float, float], periods: int) -> State:
+def settle(shaking: Shaking, start: tuple[float, float], periods: int) -> Attractor:
     """Return what a response settles on, from a start.
 
     It is given a number of periods and, where its orbit does not repeat by then, more of them. A
@@ -127,22 +114,15 @@ def settle(shaking: Shaking, start: tuple[float, float], periods: int) -> State:
     return found
 
 
-def _shaken(shaking: Shaking, start: tuple[float, float], periods: int) -> State:
+def _shaken(shaking: Shaking, start: tuple[float, float], periods: int) -> Attractor:
     motion = shaking.motion(periods)
     times = sample_times(motion)
     response = simulate(shaking.block, motion, start=start, duration=motion.duration, times=times)
     if response.outcome is Outcome.OVERTURNED or response.history is None:
         lost = math.inf if response.outcome is Outcome.OVERTURNED else math.nan
-        return State(
-            outcome=response.outcome.value,
-            right=lost,
-            left=lost,
-            period=0,
-            impacts=0,
-            end=(0.0, 0.0),
-        )
+        return Attractor(outcome=response.outcome.value, right=lost, left=lost)
     orbit = orbit_of(shaking.block, motion, response)
-    return State(
+    return Attractor(
         outcome=(Outcome.ROCKED if orbit.right else Outcome.AT_REST).value,
         right=orbit.right,
         left=orbit.left,
@@ -182,17 +162,17 @@ def attractors(points: Sequence[Shaking], starts: int, periods: int) -> list[lis
     for order in (range(len(points)), range(len(points))[::-1]):
         for before, after in itertools.pairwise(order):
             for known in list(found[before]):
-                if known.state.outcome == Outcome.ROCKED.value:
-                    state = settle(points[after], known.state.end, periods)
-                    if state.outcome == Outcome.ROCKED.value:
-                        _count(found[after], state, 0)
+                if known.outcome == Outcome.ROCKED.value:
+                    beside = settle(points[after], known.end, periods)
+                    if beside.outcome == Outcome.ROCKED.value:
+                        _count(found[after], beside, 0)
     return [sorted(here, key=lambda one: -one.starts) for here in found]
 
 
-def _count(found: list[Attractor], state: State, starts: int) -> None:
-    """Add so many starts to the attractor that a state is on, which may be a new one."""
+def _count(found: list[Attractor], settled: Attractor, starts: int) -> None:
+    """Add so many starts to the attractor that a response settled on, which may be a new one."""
     for place, known in enumerate(found):
-        if known.state.is_like(state):
+        if known.is_like(settled):
             found[place] = replace(known, starts=known.starts + starts)
             return
-    found.append(Attractor(state=state, starts=starts))
+    found.append(replace(settled, starts=starts))

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import pandas as pd
 
-from analytic.block import RigidBlock
 from analytic.response import Outcome, Response
 from studies.drawing.kept import tell
 from studies.harmonic import STUDY
-from studies.harmonic.attractors import Attractor, Shaking, State, attractors
+from studies.harmonic.attractors import Attractor, Shaking, attractors
 from studies.kit import provenance
-from studies.kit.arguments import (
-    BadInputError,
-    Count,
-    Out,
-    Positive,
-    Yes,
-    refuse_given,
-)
+from studies.kit.arguments import BadInputError, Count, Out, Positive, Yes, refuse_given
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.naming import CORE, EngineSources
@@ -55,18 +47,8 @@ PERIOD_S, POINT_BYTES = 3e-5, 2e3
 """About how long a period of a start takes [s], and what a point holds."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Branch:
-    """A point of a branch: where it is, and what some of the starts settled on."""
-
-    x: float
-    shaking: Shaking
-    attractor: Attractor
-
-    @property
-    def state(self) -> State:
-        """What the starts settled on."""
-        return self.attractor.state
+Branch: TypeAlias = "tuple[Shaking, Attractor]"
+"""A point of what is swept, and what some of the starts settled on there."""
 
 
 def command(
@@ -131,30 +113,34 @@ def command(
     refuse_excess(asked, count * POINT_BYTES)
     refuse_days(asked, count * (each**2 + FOLLOWED) * cycles * PERIOD_S, yes)
 
+    grid = np.linspace(begin, end, count).tolist()
+    shaken = [
+        Shaking(block=block, onsets=fixed, omega_over_p=x)
+        if over == "frequency"
+        else Shaking(block=block, onsets=x, omega_over_p=fixed)
+        for x in grid
+    ]
+
     @cache
     def branches() -> list[Branch]:
-        grid = np.linspace(begin, end, count).tolist()
-        return found(block, over, grid, fixed, each, cycles)
+        living = zip(shaken, attractors(shaken, each, cycles), strict=True)
+        return [(shaking, attractor) for shaking, here in living for attractor in here]
 
     def jobs() -> list[Job]:
         some = chosen(branches(), QUICK_ENGINE_POINTS if quick else ENGINE_POINTS)
-        return [engine_job(branch, source) for branch in some for source in sources]
-
-    settings = {
-        "block": asdict(block),
-        **{"over": over, "low": begin, "high": end, "fixed": fixed},
-        **{"points": count, "starts": each, "periods": cycles, "quick": quick},
-    }
+        return [engine_job(branch, over, source) for branch in some for source in sources]
 
     def tabulate(rows: Sequence[Row]) -> Tables:
-        return {
-            STUDY.name: pd.DataFrame([row_of(branch, each**2) for branch in branches()]),
-            **by_label("table")(rows),
-        }
+        table = pd.DataFrame([row_of(branch, over, each**2) for branch in branches()])
+        return {STUDY.name: table, **by_label("table")(rows)}
 
     plan = Plan(
         jobs=jobs,
-        settings=settings,
+        settings={
+            "block": asdict(block),
+            **{"over": over, "low": begin, "high": end, "fixed": fixed},
+            **{"points": count, "starts": each, "periods": cycles, "quick": quick},
+        },
         growing={"source": sources},
         reduce=reduce,
         tabulate=tabulate,
@@ -162,66 +148,54 @@ def command(
     return carry_out(STUDY, plan, out, running, report)
 
 
-def found(
-    block: RigidBlock, over: Over, grid: list[float], fixed: float, starts: int, periods: int
-) -> list[Branch]:
-    """Return every attractor that is found, from the first point to the last."""
-    points = [
-        Shaking(block=block, onsets=fixed, omega_over_p=x)
-        if over == "frequency"
-        else Shaking(block=block, onsets=x, omega_over_p=fixed)
-        for x in grid
-    ]
-    living = zip(grid, points, attractors(points, starts, periods), strict=True)
-    return [
-        Branch(x=x, shaking=shaking, attractor=attractor)
-        for x, shaking, here in living
-        for attractor in here
-    ]
+def abscissa(shaking: Shaking, over: Over) -> float:
+    """Return what of a motion is swept."""
+    return shaking.omega_over_p if over == "frequency" else shaking.onsets
 
 
-def row_of(branch: Branch, starts: int) -> Row:
+def row_of(branch: Branch, over: Over, starts: int) -> Row:
     """Return a branch as a row of harmonic.csv, of so many starts in all."""
-    alpha = branch.shaking.block.alpha
+    shaking, found = branch
     return {
-        "x": branch.x,
-        "onsets": branch.shaking.onsets,
-        "omega_over_p": branch.shaking.omega_over_p,
-        "outcome": branch.state.outcome,
-        "larger_ratio": branch.state.right / alpha,
-        "smaller_ratio": branch.state.left / alpha,
-        "period": branch.state.period,
-        "impacts": branch.state.impacts,
-        "starts": branch.attractor.starts,
-        "start_share": branch.attractor.starts / starts,
+        "x": abscissa(shaking, over),
+        "onsets": shaking.onsets,
+        "omega_over_p": shaking.omega_over_p,
+        "outcome": found.outcome,
+        "larger_ratio": found.right / shaking.block.alpha,
+        "smaller_ratio": found.left / shaking.block.alpha,
+        "period": found.period,
+        "impacts": found.impacts,
+        "starts": found.starts,
+        "start_share": found.starts / starts,
     }
 
 
 def chosen(branches: list[Branch], count: int) -> list[Branch]:
     """Return some of the orbits that repeat, evenly, those of each period in turn."""
-    settled = [branch for branch in branches if branch.state.period and branch.state.right > 0.0]
-    settled.sort(key=lambda branch: branch.state.period)
+    settled = [branch for branch in branches if branch[1].period and branch[1].right > 0.0]
+    settled.sort(key=lambda branch: branch[1].period)
     places = np.linspace(0, len(settled) - 1, min(count, len(settled)))
     return [settled[round(place)] for place in places.tolist()]
 
 
-def engine_job(branch: Branch, source: str) -> Job:
+def engine_job(branch: Branch, over: Over, source: str) -> Job:
     """Return the job of a source that starts on the exact orbit of a point."""
-    motion = branch.shaking.motion(ENGINE_PERIODS)
+    shaking, exact = branch
+    motion = shaking.motion(ENGINE_PERIODS)
     return Job(
         labels={
             "table": "engines",
-            "x": branch.x,
-            "larger_exact": branch.state.right / branch.shaking.block.alpha,
-            "smaller_exact": branch.state.left / branch.shaking.block.alpha,
-            "period_exact": branch.state.period,
+            "x": abscissa(shaking, over),
+            "larger_exact": exact.right / shaking.block.alpha,
+            "smaller_exact": exact.left / shaking.block.alpha,
+            "period_exact": exact.period,
         },
-        block=branch.shaking.block,
+        block=shaking.block,
         motion=motion,
         source=source,
         duration=motion.duration,
         times=sample_times(motion),
-        options={"start": branch.state.end},
+        options={"start": exact.end},
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -65,19 +67,10 @@ def command(
         housner and modified in 4 and 5. Any other source may be named.
     """
     refuse_repeats("--figure", figure)
-    with blaming_its_rows(out):
-        rows = fill(STUDY, plan(figure, sources), out, running)
-        print(report(out, rows))
-    seal(out)
-    return exit_code(rows)
-
-
-def plan(numbers: Sequence[int], sources: Sequence[str] | None) -> Plan:
-    """Return the plan of some figures, each with what the paper draws or with some sources."""
-    return Plan(
+    plan = Plan(
         jobs=[
             history_job(case, source)
-            for number in numbers
+            for number in figure
             for case in HISTORIES[number]
             for source in sources or DEFAULT_SOURCES[number]
         ],
@@ -85,6 +78,11 @@ def plan(numbers: Sequence[int], sources: Sequence[str] | None) -> Plan:
         reduce=reduce,
         tabulate=tabulate,
     )
+    with blaming_its_rows(out):
+        rows = fill(STUDY, plan, out, running)
+        print(report(out, rows))
+    seal(out)
+    return exit_code(rows)
 
 
 def history_job(case: HistoryCase, source: str) -> Job:
@@ -109,37 +107,17 @@ def reduce(job: Job, response: Response) -> Row:
     return {**row, "samples": drawn.to_dict("list")}
 
 
-def by_figure(rows: Sequence[Row]) -> dict[int, list[Row]]:
-    """Return the rows of each figure."""
-    numbers = dict.fromkeys(int(row["figure"]) for row in rows)
-    return {n: [row for row in rows if row["figure"] == n] for n in numbers}
-
-
 def tabulate(rows: Sequence[Row]) -> Tables:
-    """Return the samples of each figure that has any."""
-    tables = {f"figure-{n}": tidy(HISTORIES[n], told) for n, told in by_figure(rows).items()}
-    return {name: table for name, table in tables.items() if len(table)}
-
-
-def tidy(cases: Sequence[HistoryCase], rows: Sequence[Row]) -> pd.DataFrame:
-    """Return the samples of a figure's rows under each other."""
-    by_panel = {case.panel: case for case in cases}
-    parts = []
+    """Return the samples of each figure that has any, row by row."""
+    cases = {(case.figure, case.panel): case for case in chain(*HISTORIES.values())}
+    parts: dict[str, list[pd.DataFrame]] = {}
     for row in rows:
-        case = by_panel[row["panel"]]
-        labels = {
-            "figure": case.figure,
-            "panel": case.panel,
-            "pulse": case.pulse,
-            "width_m": case.width_m,
-            "height_m": case.height_m,
-            "amplitude_g": case.amplitude_g,
-            "source": row["source"],
-            "outcome": row["outcome"],
-        }
         if row["samples"]:
-            parts.append(pd.DataFrame({**labels, **row["samples"]}))
-    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+            labels = asdict(cases[row["figure"], row["panel"]])
+            labels |= {"source": row["source"], "outcome": row["outcome"]}
+            drawn = pd.DataFrame({**labels, **row["samples"]}).drop(columns="omega_rad_s")
+            parts.setdefault(f"figure-{row['figure']}", []).append(drawn)
+    return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}
 
 
 def report(folder: Path, rows: Sequence[Row]) -> str:
@@ -148,8 +126,8 @@ def report(folder: Path, rows: Sequence[Row]) -> str:
 
     tables, texts, found = tabulate(rows), [], []
     save_all(pictures(folder), folder)
-    for number, told in by_figure(rows).items():
-        name = f"figure-{number}"
+    for number in dict.fromkeys(row["figure"] for row in rows):
+        name, told = f"figure-{number}", [row for row in rows if row["figure"] == number]
         said = judge(number, told, tables.get(name, pd.DataFrame()))
         found.append(said)
         finding = f"{TITLES[number]}. {said.verdict}: {said.statement}; {said.numbers}"

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.labels import Name, beside
-from studies.linearizations.study import CODES, VARIANTS, key
+from studies.linearizations.study import NAMED, VARIANTS
 
 ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
 """What a variant takes as the onset -> its colour, and what that is."""
@@ -42,7 +42,7 @@ def draw_distributions(quantiles: pd.DataFrame) -> Figure:
 
 
 def _one_variant(axes: Axes, changed: str, rows: pd.DataFrame) -> Name:
-    title, known = VARIANTS[key(changed)].title, CODES.get(changed)
+    title, known = VARIANTS[changed].title, NAMED.get(changed)
     onset, frequency, saddle = tuple(changed)
     colour = ONSETS[onset][0]
     axes.plot(

@@ -25,12 +25,8 @@ from studies.measures.claims import TABLE, Finding, read_findings, tally, write_
 from studies.measures.differences import posed_cases
 from studies.measures.words import out_of
 
-HOUSNER, ONSET, MODIFIED = (0, 0, 0), (1, 0, 0), (1, 1, 1)
-NAMED = {HOUSNER: "housner", ONSET: "onset-matched", MODIFIED: "modified"}
-"""What of (onset, frequency, saddle) is changed from Housner's -> the model's name."""
-
-CODES = {"".join(map(str, changed)): name for changed, name in NAMED.items()}
-"""The same by the column "changed"."""
+NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
+"""Which of onset, frequency and saddle are changed from Housner's -> the model's name."""
 
 QUANTILES = np.linspace(0.0, 1.0, 201)
 GRIDS = ("paper", "wide")
@@ -40,14 +36,15 @@ SHOWN = [
 ]
 
 
-def variant(onset: int, frequency: int, saddle: int) -> Model:
-    """Return the linear model with Housner's or the modified onset, frequency and saddle.
+def variant(changed: str) -> Model:
+    """Return the linear model with Housner's or, by a 1, the modified onset, frequency and saddle.
 
     The onset is g alpha or g tan(alpha), the frequency p or p sqrt(cos(alpha)), the saddle alpha or
     tan(alpha); the forcing factor is the saddle over the onset.
     """
+    onset, frequency, saddle = (digit == "1" for digit in changed)
 
-    def angle(changed: int, alpha: FloatArray) -> FloatArray:
+    def angle(changed: bool, alpha: FloatArray) -> FloatArray:
         return np.tan(alpha) if changed else np.asarray(alpha, np.float64)
 
     words = (
@@ -55,7 +52,7 @@ def variant(onset: int, frequency: int, saddle: int) -> Model:
         "p√cos α" if frequency else "p",
         "saddle " + ("tan α" if saddle else "α"),
     )
-    known = NAMED.get((onset, frequency, saddle))
+    known = NAMED.get(changed)
     return Model(
         name=known or ", ".join(words),
         title=", ".join(words) + (f" ({known})" if known else ""),
@@ -66,8 +63,8 @@ def variant(onset: int, frequency: int, saddle: int) -> Model:
     )
 
 
-VARIANTS = {changed: variant(*changed) for changed in itertools.product((0, 1), repeat=3)}
-"""Changes from Housner's (onset, frequency, saddle) -> the model: all eight."""
+VARIANTS = {word: variant(word) for word in map("".join, itertools.product("01", repeat=3))}
+"""Changes from Housner's, as of NAMED -> the model: all eight."""
 
 
 def grid(name: str) -> pd.DataFrame:
@@ -117,12 +114,13 @@ def errors_on(name: str) -> pd.DataFrame:
     for changed, model in VARIANTS.items():
         peak, found = peak_ratios(*posed, model=model)
         both = np.isfinite(peak) & np.isfinite(exact) & (exact > 0.0) & (peak > 0.0)
+        found_peak, right = (np.where(both, value, np.nan) for value in (peak, exact))
         parts.append(
             cases.assign(
                 grid=name,
-                changed="".join(map(str, changed)),
-                error=np.divide(peak, exact, where=both, out=np.full(len(cases), np.nan)) - 1.0,
-                difference=np.subtract(peak, exact, where=both, out=np.full(len(cases), np.nan)),
+                changed=changed,
+                error=found_peak / right - 1.0,
+                difference=found_peak - right,
                 false=np.isinf(peak) & ~np.isinf(exact),
                 missed=~np.isinf(peak) & np.isinf(exact),
                 wrong=found != outcome,
@@ -146,7 +144,7 @@ def summarize(errors: pd.DataFrame) -> pd.DataFrame:
         rms_difference=("difference", lambda e: np.sqrt((e**2).mean())),
         max_difference=("difference", lambda e: e.abs().max()),
     ).reset_index()
-    titles = [VARIANTS[key(word)].title for word in table["changed"]]
+    titles = [VARIANTS[word].title for word in table["changed"]]
     return table.assign(title=titles)
 
 
@@ -164,12 +162,6 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
         for (name, changed), rows in errors.groupby(["grid", "changed"], sort=False)
     ]
     return pd.concat(parts, ignore_index=True)
-
-
-def key(word: str) -> tuple[int, int, int]:
-    """Return a variant's key from its column "changed"."""
-    onset, frequency, saddle = map(int, word)
-    return onset, frequency, saddle
 
 
 def report(folder: Path) -> str:
@@ -228,7 +220,7 @@ def by_slenderness(errors: pd.DataFrame) -> pd.DataFrame:
     groups = wide.groupby(["aspect", "changed"])
     parts = {"error": groups["error"].median(), "wrong": groups["wrong"].mean()}
     found = {
-        word: part.unstack()[list(CODES)].rename(columns=CODES) for word, part in parts.items()
+        word: part.unstack()[list(NAMED)].rename(columns=NAMED) for word, part in parts.items()
     }
     return pd.concat([part.add_suffix(f" {word}") for word, part in found.items()], axis=1)
 

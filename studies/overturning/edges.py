@@ -18,7 +18,7 @@ does not show on the grid, or one of several between the same two points of the 
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import pandas as pd
@@ -48,11 +48,35 @@ class Solve(Protocol):
 
 
 class Points(NamedTuple):
-    """Amplitudes over g tan(alpha) of columns, and their modes as of `Modes`, each (n,)."""
+    """Amplitudes over g tan(alpha) of columns, their modes as of `Modes`, how found; each (n,)."""
 
     column: IntArray
     amplitude: FloatArray
     mode: NDArray[np.int32]
+    found: NDArray[np.str_]
+
+
+def points_of(
+    column: IntArray, amplitude: FloatArray, mode: NDArray[np.int32], found: str
+) -> Points:
+    """Return points that were all found in one way."""
+    return Points(column, amplitude, mode, np.full(len(mode), found))
+
+
+NONE = points_of(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32), "")
+
+
+def join(*parts: Points) -> Points:
+    """Return the points of all parts."""
+    return Points(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def ordered(*parts: Points) -> Points:
+    """Return the points of all parts, by column and amplitude."""
+    points = join(*parts)
+    order = np.lexsort((points.amplitude, points.column))
+    columns: list[Any] = [values[order] for values in points]
+    return Points(*columns)
 
 
 def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
@@ -85,23 +109,23 @@ def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFra
     number = np.broadcast_to(np.arange(columns)[:, None], grid.shape)
     found = solve(number.ravel(), grid.ravel())
     mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
-    points = Points(number.ravel(), grid.ravel(), found.mode)
-    islands = extrema(solve, grid, mode, margin)
-    origin = np.array(["grid"] * len(points.mode) + ["margin"] * len(islands.mode))
-    points, origin = ordered(join(points, islands), origin)
+    points = ordered(
+        points_of(number.ravel(), grid.ravel(), found.mode, "grid"),
+        extrema(solve, grid, mode, margin),
+    )
     fine = 0
     for _ in range(ROUNDS):
-        edges = bisect(solve, points, origin)
+        edges = bisect(solve, points)
         # both sides of edges may show modes that the grid does not
-        sides = ("column", "low", "below"), ("column", "high", "above")
-        ends = join(*(Points(*(edges[name].to_numpy() for name in side)) for side in sides))
-        points, origin = ordered(join(points, ends), np.append(origin, np.tile(edges["found"], 2)))
-        new, name = mode_changes(solve, points), "mode"
+        sides = ("column", "low", "below", "found"), ("column", "high", "above", "found")
+        ends = [Points(*(edges[name].to_numpy() for name in side)) for side in sides]
+        points = ordered(points, *ends)
+        new = mode_changes(solve, points)
         if len(new.mode) == 0 and fine < FINE_ROUNDS:
-            new, name, fine = beside_edges(solve, points, edges), "margin", fine + 1
+            new, fine = beside_edges(solve, points, edges), fine + 1
         if len(new.mode) == 0:
             return edges
-        points, origin = ordered(join(points, new), np.append(origin, [name] * len(new.mode)))
+        points = ordered(points, new)
     raise RuntimeError(f"islands within islands after {ROUNDS} rounds")
 
 
@@ -123,7 +147,7 @@ def beside_edges(solve: Solve, points: Points, edges: pd.DataFrame) -> Points:
     found = solve(number.ravel(), grid.ravel())
     mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
     other = (mode >= 0) != (points.mode[at] >= 0)[:, None]
-    seen = Points(number[other], grid[other], mode[other])
+    seen = points_of(number[other], grid[other], mode[other], "margin")
     beyond = extrema(lambda i, amplitude: solve(owner[i], amplitude), grid, mode, margin)
     return join(seen, beyond._replace(column=owner[beyond.column]))
 
@@ -132,36 +156,20 @@ def _keys(column: IntArray, amplitude: FloatArray) -> NDArray[np.complex128]:
     return column + 1j * amplitude
 
 
-def join(first: Points, second: Points) -> Points:
-    """Return the points of both."""
-    return Points(
-        np.concatenate([first.column, second.column]),
-        np.concatenate([first.amplitude, second.amplitude]),
-        np.concatenate([first.mode, second.mode]),
-    )
-
-
-def ordered(points: Points, origin: NDArray[np.str_]) -> tuple[Points, NDArray[np.str_]]:
-    """Return points and their origins ordered by column and amplitude."""
-    order = np.lexsort((points.amplitude, points.column))
-    ranked = Points(points.column[order], points.amplitude[order], points.mode[order])
-    return ranked, origin[order]
-
-
 def neighbours(points: Points, wanted: NDArray[np.bool_]) -> IntArray:
     """Return where a point and the next one in its column are wanted."""
     return np.flatnonzero(wanted & (points.column[1:] == points.column[:-1]))
 
 
-def bisect(solve: Solve, points: Points, origin: NDArray[np.str_]) -> pd.DataFrame:
+def bisect(solve: Solve, points: Points) -> pd.DataFrame:
     """Bisect every change of the outcome between ordered points."""
     first, second = points.mode[:-1], points.mode[1:]
     changes = (first >= 0) != (second >= 0)
     direct = (first >= 0) & (second >= 0) & (first != second) & _close(points)
     at = neighbours(points, changes | direct)
     column = points.column[at]
-    low, high = points.amplitude[at].copy(), points.amplitude[at + 1].copy()
-    below, above = points.mode[at].copy(), points.mode[at + 1].copy()
+    low, high = points.amplitude[at], points.amplitude[at + 1]
+    below, above = points.mode[at], points.mode[at + 1]
     while len(wide := np.flatnonzero(high - low > WIDTH)):
         middle = 0.5 * (low[wide] + high[wide])
         mode = solve(column[wide], middle).mode
@@ -169,7 +177,8 @@ def bisect(solve: Solve, points: Points, origin: NDArray[np.str_]) -> pd.DataFra
         up, down = wide[~rises], wide[rises]
         low[up], below[up] = middle[~rises], mode[~rises]
         high[down], above[down] = middle[rises], mode[rises]
-    beside = np.where(origin[at] == "grid", origin[at + 1], origin[at])
+    found = points.found
+    beside = np.where(found[at] == "grid", found[at + 1], found[at])
     table = {"column": column, "low": low, "high": high, "below": below, "above": above}
     return pd.DataFrame({**table, "found": beside})
 
@@ -186,15 +195,16 @@ def mode_changes(solve: Solve, points: Points) -> Points:
     first, second = points.mode[:-1], points.mode[1:]
     at = neighbours(points, (first >= 0) & (second >= 0) & (first != second) & ~_close(points))
     column = points.column[at]
-    low, high = points.amplitude[at].copy(), points.amplitude[at + 1].copy()
-    below, above = points.mode[at].copy(), points.mode[at + 1].copy()
+    low, high = points.amplitude[at], points.amplitude[at + 1]
+    below, above = points.mode[at], points.mode[at + 1]
     search = np.arange(len(at))
-    found: list[Points] = []
+    found = [NONE]
     while len(search):
         middle = 0.5 * (low[search] + high[search])
         mode = solve(column[search], middle).mode
         survives = mode < 0
-        found.append(Points(column[search[survives]], middle[survives], mode[survives]))
+        surviving = (column[search[survives]], middle[survives], mode[survives])
+        found.append(points_of(*surviving, "mode"))
         like_below = mode == below[search]
         up, down = search[~survives & like_below], search[~survives & ~like_below]
         low[up] = middle[~survives & like_below]
@@ -203,14 +213,11 @@ def mode_changes(solve: Solve, points: Points) -> Points:
         done = high[search] - low[search] <= WIDTH
         ended = search[done]
         found += [
-            Points(column[ended], low[ended], below[ended]),
-            Points(column[ended], high[ended], above[ended]),
+            points_of(column[ended], low[ended], below[ended], "mode"),
+            points_of(column[ended], high[ended], above[ended], "mode"),
         ]
         search = search[~done]
-    none = Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32))
-    for part in found:
-        none = join(none, part)
-    return none
+    return join(*found)
 
 
 def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int32], margin: FloatArray) -> Points:
@@ -224,42 +231,28 @@ def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int32], margin: Flo
     column, row = np.nonzero(alike & least & np.isfinite(here))
     row += 1
     low, middle, high = grid[column, row - 1], grid[column, row], grid[column, row + 1]
-    best, side = distance[column, row].copy(), over[column, row]
-    middle = middle.copy()
+    best, side = distance[column, row], over[column, row]
     search = np.arange(len(column))
-    beyond: list[Points] = [Points(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32))]
+    beyond = [NONE]
     while len(search):
         right = high[search] - middle[search] > middle[search] - low[search]
         end = np.where(right, high[search], low[search])
         trial = 0.5 * (middle[search] + end)
         found = solve(column[search], trial)
         crossed = (found.mode >= 0) != side[search]
-        beyond.append(Points(column[search[crossed]], trial[crossed], found.mode[crossed]))
+        crossing = (column[search[crossed]], trial[crossed], found.mode[crossed])
+        beyond.append(points_of(*crossing, "margin"))
         size = np.where(np.isfinite(found.margin), np.abs(found.margin), np.inf)
         better = size < best[search]
-        # the new point is the middle, or it bounds the interval
-        _shrink(low, middle, search, better & right, ~better & ~right, trial)
-        _shrink(high, middle, search, better & ~right, ~better & right, trial)
+        # the new point is the middle, and the old one bounds the interval; or it bounds it itself
+        for bound, moves in ((low, right), (high, ~right)):
+            inwards, outwards = better & moves, ~better & ~moves
+            bound[search[inwards]] = middle[search[inwards]]
+            bound[search[outwards]] = trial[outwards]
         middle[search[better]], best[search[better]] = trial[better], size[better]
         search = search[~crossed]
         search = search[high[search] - low[search] > ISLAND_WIDTH]
-    result = beyond[0]
-    for part in beyond[1:]:
-        result = join(result, part)
-    return result
-
-
-def _shrink(
-    bound: FloatArray,
-    middle: FloatArray,
-    search: IntArray,
-    to_middle: NDArray[np.bool_],
-    to_trial: NDArray[np.bool_],
-    trial: FloatArray,
-) -> None:
-    """Move one end of the intervals to the old middle or to the new point."""
-    bound[search[to_middle]] = middle[search[to_middle]]
-    bound[search[to_trial]] = trial[to_trial]
+    return join(*beyond)
 
 
 def intervals(

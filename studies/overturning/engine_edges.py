@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -27,6 +29,8 @@ SPREAD = 0.03
 """Relative distance within which an engine's own threshold is looked for."""
 THRESHOLD_WIDTH = 1e-6
 """Relative width to which it is bisected."""
+PLACE = ("x", "low", "above")
+"""Columns that tell where an edge is, and on which side of it a block overturns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,27 +50,9 @@ class Bisected(Response):
 
 
 def grid_jobs(window: Window, engines: Sequence[str], count: int) -> list[Job]:
-    """Return a job for each engine at each cell centre of a coarse grid.
-
-    Parameters
-    ----------
-    window : Window
-    engines : sequence of str
-        Names that `studies.sources.registry.resolve` knows.
-    count : int
-        Columns of the grid, and amplitudes in each.
-
-    Returns
-    -------
-    list of Job
-        count**2 for each engine, whose labels are table ("engines"), x and onsets.
-    """
-    return [
-        _job(window, source, float(x), float(onsets), {"table": "engines"})
-        for x in window.centres(count)
-        for onsets in window.amplitudes(count)
-        for source in engines
-    ]
+    """Return a job for each engine at each cell of a grid of so many columns and amplitudes."""
+    cells = product(window.centres(count).tolist(), window.amplitudes(count).tolist(), engines)
+    return [_job(window, source, x, onsets, table="engines") for x, onsets, source in cells]
 
 
 def edge_jobs(window: Window, engines: Sequence[str], edges: pd.DataFrame) -> list[Job]:
@@ -76,7 +62,7 @@ def edge_jobs(window: Window, engines: Sequence[str], edges: pd.DataFrame) -> li
     ----------
     window : Window
     engines : sequence of str
-        As for `grid_jobs`.
+        Names that `studies.sources.registry.resolve` knows.
     edges : DataFrame
         From `chosen_edges`, with x, low (the amplitude over g tan(alpha)) and above (the mode).
 
@@ -87,34 +73,24 @@ def edge_jobs(window: Window, engines: Sequence[str], edges: pd.DataFrame) -> li
         (table "thresholds"); edge and overturns ("above" or "below" it) are labels of both.
     """
     jobs = []
-    for edge in edges.itertuples():
-        x, onsets = float(str(edge.x)), float(str(edge.low))
-        rises = int(str(edge.above)) >= 0
-        labels = {"edge": onsets, "overturns": "above" if rises else "below"}
+    for x, onsets, above in zip(*(edges[name].tolist() for name in PLACE), strict=True):
+        labels = {"edge": onsets, "overturns": "above" if above >= 0 else "below"}
         for source in engines:
-            jobs += [
-                _job(
-                    window,
-                    source,
-                    x,
-                    onsets * (1.0 + offset),
-                    {"table": "edges", **labels, "offset": offset},
-                )
-                for offset in OFFSETS
-            ]
-            jobs.append(_job(window, source, x, onsets, {"table": "thresholds", **labels}))
+            for offset in OFFSETS:
+                beside = {"table": "edges", **labels, "offset": offset}
+                jobs.append(_job(window, source, x, onsets * (1.0 + offset), **beside))
+            jobs.append(_job(window, source, x, onsets, table="thresholds", **labels))
     return jobs
 
 
-def _job(window: Window, source: str, x: float, onsets: float, labels: Row) -> Job:
+def _job(window: Window, source: str, x: float, onsets: float, **labels: Any) -> Job:
     block, motion = window.case(x, onsets)
-    return Job(
-        labels={**labels, "x": x, "onsets": onsets}, block=block, motion=motion, source=source
-    )
+    where = {"x": x, "onsets": onsets}
+    return Job(labels={**labels, **where}, block=block, motion=motion, source=source)
 
 
-def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.DataFrame, int]:
-    """Return the edges of the columns nearest to some positions that have room.
+def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> pd.DataFrame:
+    """Return the edges that have room, of the columns nearest to some positions.
 
     An edge has room where the next ones in its column are further than ROOM.
 
@@ -124,23 +100,13 @@ def chosen_edges(edges: pd.DataFrame, positions: Sequence[float]) -> tuple[pd.Da
         Of one model, with x and low (over g tan(alpha)), ordered by column and amplitude.
     positions : sequence of float
         Abscissae of the map; only columns with an edge count.
-
-    Returns
-    -------
-    DataFrame, int
-        The lines of these edges, and how many in the same columns have no room.
     """
     columns = np.unique(edges["x"])
     nearest = [columns[np.argmin(abs(columns - x))] for x in positions if columns.size]
-    wanted = {float(x) for x in nearest}
-    kept, narrow = [], 0
-    for _, group in edges[edges["x"].isin(wanted)].groupby("x"):
-        gaps = np.diff(np.log(group["low"]))
-        below, above = np.append(math.inf, gaps), np.append(gaps, math.inf)
-        room = np.minimum(below, above) > ROOM
-        kept.append(group[room])
-        narrow += int((~room).sum())
-    return (pd.concat(kept) if kept else edges.iloc[:0]), narrow
+    logs = np.log(edges["low"]).groupby(edges["x"])
+    room = ~(logs.diff() <= ROOM) & ~(logs.diff(-1) >= -ROOM)  # at an end there is no next one
+    chosen: pd.DataFrame = edges[room & edges["x"].isin(nearest)]
+    return chosen
 
 
 def ask_for_table(job: Job, source: Source) -> Response:

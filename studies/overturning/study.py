@@ -38,7 +38,7 @@ from studies.overturning.engine_edges import (
     reduce,
 )
 from studies.overturning.report import finding, report
-from studies.sources.registry import core_sources
+from studies.sources.registry import core_sources, resolve
 
 __all__ = ["command", "finding", "report"]
 
@@ -114,7 +114,11 @@ def command(
     quick
         A coarser map and fewer runs of the engines: less than a minute on 2 cores.
     """
-    check_mapped(sources)
+    if "exact" not in sources:
+        raise BadInputError("--sources must name exact, which the others are held against")
+    for name in sources:
+        if resolve(name).kind not in ("model", "engine"):
+            raise BadInputError(f"--sources: {name!r} cannot be mapped; models and engines can")
     beside = {"aspect": aspect, "omega-over-p": omega_over_p, "pulse-hz": pulse_hz}
     for name, axes in APPLIES.items():
         if over not in axes:
@@ -131,31 +135,6 @@ def command(
             **given,
         )
     refuse_too_much(window, sources, yes)
-    return carry_out(STUDY, plan(window, sources, quick), out, running, report)
-
-
-def refuse_too_much(window: Window, sources: Sequence[str], yes: bool) -> None:
-    """Raise BadInputError if a map needs more memory than there is, or days without a yes."""
-    models = sum(name in MODELS for name in sources)
-    asked = f"--columns is {window.columns} and --rows is {window.rows}"
-    columns = models * window.columns
-    refuse_excess(asked, max(window.rows, STRIP) * CELL_BYTES + columns * COLUMN_BYTES)
-    refuse_days(asked, columns * (COLUMN_S + window.rows * CELL_S / usable_cores()), yes)
-
-
-def check_mapped(sources: Sequence[str]) -> None:
-    """Raise BadInputError unless the exact model is among the sources, and all can be mapped."""
-    from studies.sources.registry import resolve
-
-    if "exact" not in sources:
-        raise BadInputError("--sources must name exact, which the others are held against")
-    for name in sources:
-        if resolve(name).kind not in ("model", "engine"):
-            raise BadInputError(f"--sources: {name!r} cannot be mapped; models and engines can")
-
-
-def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
-    """Return the plan of the models' maps, and of the engines at a grid and beside exact edges."""
     engines = [name for name in sources if name not in MODELS]
 
     @cache
@@ -165,10 +144,9 @@ def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
     def jobs() -> list[Job]:
         exact, _ = maps()["exact"]
         parts = QUICK_POSITIONS if quick else POSITIONS
-        chosen, _ = chosen_edges(
-            exact, [window.low + part * (window.high - window.low) for part in parts]
-        )
+        places = [window.low + part * (window.high - window.low) for part in parts]
         count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
+        chosen = chosen_edges(exact, places)
         return [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)]
 
     def tabulate(rows: Sequence[Row]) -> Tables:
@@ -176,7 +154,7 @@ def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
         mapped = {"boundaries": boundaries, "conditioning": conditioned(window), "map": areas}
         return {**by_label("table")(rows), **mapped}
 
-    return Plan(
+    plan = Plan(
         jobs=jobs,
         settings={"window": asdict(window), "quick": quick},
         growing={"source": engines},
@@ -184,6 +162,16 @@ def plan(window: Window, sources: Sequence[str], quick: bool) -> Plan:
         reduce=reduce,
         tabulate=tabulate,
     )
+    return carry_out(STUDY, plan, out, running, report)
+
+
+def refuse_too_much(window: Window, sources: Sequence[str], yes: bool) -> None:
+    """Raise BadInputError if a map needs more memory than there is, or days without a yes."""
+    models = sum(name in MODELS for name in sources)
+    asked = f"--columns is {window.columns} and --rows is {window.rows}"
+    columns = models * window.columns
+    refuse_excess(asked, max(window.rows, STRIP) * CELL_BYTES + columns * COLUMN_BYTES)
+    refuse_days(asked, columns * (COLUMN_S + window.rows * CELL_S / usable_cores()), yes)
 
 
 def conditioned(window: Window) -> pd.DataFrame:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.measures.finer import cheapest_kept
-from studies.measures.finer import joint as joint
+from studies.measures.finer import cheapest_kept, joint
 from studies.precision.methods import METHODS
 from studies.sources.registry import resolve
 

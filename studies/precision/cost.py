@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,8 +14,6 @@ import numpy as np
 import pandas as pd
 
 from analytic import peak_ratios, simulate
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, Scene
 from engines.run.drive import build, run
@@ -29,11 +27,12 @@ from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.pool import Pool
 from studies.kit.tables import table_in
 from studies.measures.costs import LOOPS, loop_of
+from studies.measures.differences import posed_cases
 from studies.measures.words import duration, listed
 from studies.precision import COST
 from studies.precision.batches import batch_table
 from studies.precision.repeats import interleaved
-from studies.precision.shares import pose_case, share_table
+from studies.precision.shares import CASE, share_table
 from studies.precision.starts import start_table
 
 BUDGET_S, QUICK_BUDGET_S = 5.0, 0.15
@@ -43,29 +42,24 @@ SCENES = 20
 """Scenes built at once to see what memory one takes."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Omission:
-    """Something that is left out by default, and the settings of a `Scene` that put it back."""
+def omissions() -> dict[str, dict[str, Any]]:
+    """Return the settings of a `Scene` that put back what it leaves out, by the name of that.
 
-    name: str
-    put_back: dict[str, Any] = field(default_factory=dict)
-
-
-def omissions(block: RigidBlock, motion: SinePulse) -> list[Omission]:
-    """Return what a scene leaves out, the scene as it is first."""
-    window = free_rocking_window(block, motion)
-    return [
-        Omission(name="as it is"),
-        Omission(name="free body instead of planar", put_back={"settings": {"planar": False}}),
-        Omission(name="full box instead of corners", put_back={"settings": {"geometry": "box"}}),
-        Omission(name="base moving in the world", put_back={"frame": "world"}),
-        Omission(name="8/p of free rocking after the pulse", put_back={"duration": window}),
-        Omission(
-            name="the same, recorded as a history",
-            put_back={"duration": window, "times": tuple(np.linspace(0.0, window, 1001))},
-        ),
-        Omission(name="steps all equal", put_back={"preset": "fixed"}),
-    ]
+    The scene as it is comes first.
+    """
+    window = free_rocking_window(CASE.block, CASE.motion)
+    return {
+        "as it is": {},
+        "free body instead of planar": {"settings": {"planar": False}},
+        "full box instead of corners": {"settings": {"geometry": "box"}},
+        "base moving in the world": {"frame": "world"},
+        "8/p of free rocking after the pulse": {"duration": window},
+        "the same, recorded as a history": {
+            "duration": window,
+            "times": tuple(np.linspace(0.0, window, 1001)),
+        },
+        "steps all equal": {"preset": "fixed"},
+    }
 
 
 def command(
@@ -115,19 +109,20 @@ def scene_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
 
     The scenes of an engine are timed in turn, so that their times can be held against each other.
     """
-    block, motion = pose_case()
-    exact = simulate(block, motion).peak_ratio
-    scenes = omissions(block, motion)
+    exact = simulate(CASE.block, CASE.motion).peak_ratio
+    scenes = omissions()
     rows = []
     for engine in engines:
-        actions = [partial(put_back, engine, omission, block, motion) for omission in scenes]
-        for omission, found in zip(scenes, interleaved(actions, budget_s), strict=True):
+        actions = [partial(put_back, engine, settings) for settings in scenes.values()]
+        for (name, settings), found in zip(
+            scenes.items(), interleaved(actions, budget_s), strict=True
+        ):
             failed = found.outcome is Outcome.FAILED
-            memory = (scene_memory, engine, omission.put_back)
+            memory = (scene_memory, engine, settings)
             rows.append(
                 {
                     "engine": engine,
-                    "scene": omission.name,
+                    "scene": name,
                     "outcome": found.outcome.value,
                     "wall_s": found.wall_s,
                     "runs": found.runs,
@@ -143,17 +138,17 @@ def scene_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def put_back(engine: str, omission: Omission, block: RigidBlock, motion: SinePulse) -> Response:
+def put_back(engine: str, settings: Mapping[str, Any]) -> Response:
     """Run a scene with what it leaves out; an engine that has no such thing fails."""
-    preset = omission.put_back.get("preset")
+    preset, own = settings.get("preset"), settings.get("settings", {})
     if preset not in (None, *(use.name for use in ENGINES[engine].presets)):
-        words = f"not available: {engine} has no preset {preset!r}"
-        return Response.failure(words, reason=Reason.UNAVAILABLE)
-    settings = omission.put_back.get("settings", {})
-    if not ENGINES[engine].preset(preset).takes(**settings):
-        words = f"not available: {engine} has no setting of {', '.join(settings)} to put back"
-        return Response.failure(words, reason=Reason.UNAVAILABLE)
-    return run(engine, Scene(system=block, motion=motion, **omission.put_back))
+        missing = f"preset {preset!r}"
+    elif not ENGINES[engine].preset(preset).takes(**own):
+        missing = f"setting of {', '.join(own)} to put back"
+    else:
+        return run(engine, Scene(system=CASE.block, motion=CASE.motion, **settings))
+    words = f"not available: {engine} has no {missing}"
+    return Response.failure(words, reason=Reason.UNAVAILABLE)
 
 
 def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
@@ -162,10 +157,9 @@ def in_a_new_process(function: Callable[..., float], *arguments: Any) -> float:
         return float(pool.schedule(function, arguments, COMPILING_S).result())
 
 
-def scene_memory(engine: str, put_back: dict[str, Any]) -> float:
+def scene_memory(engine: str, settings: Mapping[str, Any]) -> float:
     """Return the memory [KiB] that a built scene takes, nan where the system does not tell."""
-    block, motion = pose_case()
-    scene = Scene(system=block, motion=motion, **put_back)
+    scene = Scene(system=CASE.block, motion=CASE.motion, **settings)
     status = Path("/proc/self/statm")
     if not status.exists():
         return math.nan
@@ -184,38 +178,25 @@ def _resident(status: Path) -> float:
 
 def reference_table() -> pd.DataFrame:
     """Return what the exact solution leaves out: time of one response or of the whole sweep."""
-    block, motion = pose_case()
+    block, motion = CASE.block, CASE.motion
     window = free_rocking_window(block, motion)
+    watched = partial(simulate, block, motion, duration=window)
     times = np.linspace(0.0, window, 1001)
-    cases = np.array(
-        [
-            (math.atan(1.0 / c.aspect), c.amplitude_g, c.omega_over_p, c.motion.half_cycles)
-            for c in sweep_cases([6, 7, 8, 9])
-            if c.width_m == 0.5
-        ]
-    ).T
-    actions = {
-        "one response, to its peak": lambda: simulate(block, motion),
-        "8/p of free rocking after the pulse": lambda: simulate(block, motion, duration=window),
-        "the same, recorded as a history": lambda: simulate(
-            block, motion, duration=window, times=times
-        ),
-        "480 cases of the sweep": lambda: peak_ratios(*cases),
-        "960 cases, half of them copies by similarity": lambda: peak_ratios(*np.tile(cases, 2)),
-        "480 cases, one by one in Python": lambda: [one_by_one(*case) for case in cases.T],
+    cases = [case for case in sweep_cases([6, 7, 8, 9]) if case.width_m == 0.5]
+    alike = posed_cases(pd.DataFrame([asdict(case) for case in cases]))
+    actions: dict[str, Callable[[], object]] = {
+        "one response, to its peak": partial(simulate, block, motion),
+        "8/p of free rocking after the pulse": watched,
+        "the same, recorded as a history": partial(watched, times=times),
+        "480 cases of the sweep": partial(peak_ratios, *alike),
+        "960 cases, half of them copies by similarity": partial(peak_ratios, *np.tile(alike, 2)),
+        "480 cases, one by one in Python": lambda: [
+            simulate(case.block, case.motion) for case in cases
+        ],
     }
     return pd.DataFrame(
         {"scene": name, "wall_s": shortest(action)} for name, action in actions.items()
     )
-
-
-def one_by_one(alpha: float, amplitude: float, omega: float, half_cycles: float) -> Response:
-    """Solve a case of `peak_ratios` as a response of its own."""
-    block = RigidBlock(width=1.0, height=1.0 / math.tan(alpha))
-    pulse = SinePulse(
-        amplitude=amplitude * block.gravity, omega=omega * block.p, half_cycles=int(half_cycles)
-    )
-    return simulate(block, pulse)
 
 
 def shortest(action: Callable[[], Any], runs: int = 30) -> float:

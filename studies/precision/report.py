@@ -6,7 +6,6 @@ import json
 import math
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -22,9 +21,6 @@ from studies.measures.words import duration, listed, times
 from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
-
-if TYPE_CHECKING:
-    pass
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 STRICT = "RK4"

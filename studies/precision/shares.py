@@ -12,10 +12,9 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene
 from engines.declaration import Stepping
@@ -25,11 +24,8 @@ from engines.world import World
 from studies.cases.paper import HISTORIES
 from studies.precision.repeats import best_of, enough
 
-
-def pose_case() -> tuple[RigidBlock, SinePulse]:
-    """Return the block and pulse of figure 5-b: one impact before the peak, κ about 5."""
-    case = HISTORIES[5][1]
-    return case.block, case.motion
+CASE = HISTORIES[5][1]
+"""Figure 5-b: one impact before the peak, κ about 5."""
 
 
 def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
@@ -57,8 +53,7 @@ def share_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
 
 
 def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
-    block, motion = pose_case()
-    scene = Scene(system=block, motion=motion, compiled=False)
+    scene = Scene(system=CASE.block, motion=CASE.motion, compiled=False)
     # the first run of each driver may compile, which would spend the whole budget
     for compiled in (False, True):
         run(engine, replace(scene, compiled=compiled))
@@ -69,12 +64,10 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
     response, spent = least_clocked(engine, scene, budget_s)
     clock_s = tick()
     per_step = {part: max(total / response.steps - clock_s, 0.0) for part, total in spent.items()}
-    own = per_step.get("engine", math.nan)
-    rest = per_step["step"] - (0.0 if math.isnan(own) else own)
-    shares = (
-        *(plain.wall_s / plain.steps, own, max(rest, 0.0)),
-        *(per_step[part] for part in ("pose", "look")),
-    )
+    own = per_step.pop("engine", math.nan)
+    rest = max(per_step["step"] - np.nan_to_num(own), 0.0)
+    whole = plain.wall_s / plain.steps
+    shares = (whole, own, rest, per_step["pose"], per_step["look"])
     yield {"engine": engine, "driver": DRIVERS[0], **dict(zip(SHARES, shares, strict=True))}
     if getattr(example_world(engine), "drive", None) is not None:
         at_once = best_of(partial(run, engine, replace(scene, compiled=True)), budget_s)
@@ -121,8 +114,7 @@ def own_step(engine: str) -> tuple[Any, str]:
 
 def example_world(engine: str) -> World:
     """Return a world of an engine, closed: its class is wanted."""
-    block, motion = pose_case()
-    world = build(ENGINES[engine], Scene(system=block, motion=motion))
+    world = build(ENGINES[engine], Scene(system=CASE.block, motion=CASE.motion))
     world.close()
     return world
 

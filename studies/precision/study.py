@@ -54,21 +54,16 @@ def command(
     """
     alone = Running(jobs=1, time_limit=time_limit)
 
-    def both(folder: Path) -> str:
-        return f"{report(folder)}\n\n{cost.report(folder)}"
-
-    return carry_out(STUDY, plan(out, engines, quick), out, alone, both)
-
-
-def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:
-    """Return the plan of every method; a scene's cost is measured where a folder has it not."""
-
     def tabulate(rows: Sequence[Row]) -> Tables:
-        known = (folder / "scenes.csv").is_file()
+        # what a scene costs is measured where a folder has it not
+        known = (out / "scenes.csv").is_file()
         costs = {} if known else cost.measured(engines, quick)
         return {STUDY.name: pd.DataFrame(rows), **costs}
 
-    return Plan(
+    def both(folder: Path) -> str:
+        return f"{report(folder)}\n\n{cost.report(folder)}"
+
+    plan = Plan(
         jobs=precision_jobs(quick, engines),
         settings={"quick": quick},
         growing={"method": list(methods_of(engines))},
@@ -76,6 +71,7 @@ def plan(folder: Path, engines: Sequence[str], quick: bool) -> Plan:
         reduce=reduce,
         tabulate=tabulate,
     )
+    return carry_out(STUDY, plan, out, alone, both)
 
 
 def precision_jobs(quick: bool, engines: Sequence[str]) -> list[Job]:

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import LOWEST, Style
+from studies.measures.finer import joint
 from studies.measures.words import listed
-from studies.precision.choices import engines_of, joint
+from studies.precision.choices import engines_of
 from studies.precision.figure import called, style_of
 from studies.score.report import ladder, published, table_of
 from studies.stability.figure import draw_matrix

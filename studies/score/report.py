@@ -14,10 +14,11 @@ from studies.kit import provenance
 from studies.kit.provenance import check
 from studies.kit.tables import read_table
 from studies.measures.differences import summarize, with_reference
+from studies.measures.finer import joint
 from studies.measures.posed import posed
 from studies.measures.published import PUBLISHED
 from studies.measures.words import listed, part, right_but
-from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of, joint
+from studies.precision.choices import TARGETS, TYPICAL, cheapest_below, engines_of
 from studies.precision.report import with_errors, work_precision
 from studies.scenes.told import SCENES, lines_of
 from studies.score import STUDY

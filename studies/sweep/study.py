@@ -24,14 +24,7 @@ from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
 from studies.measures.posed import posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
-from studies.measures.words import (
-    alike,
-    between,
-    capital,
-    in_kinds,
-    part,
-)
-from studies.measures.wrongness import KINDS
+from studies.measures.words import alike, between, capital, in_kinds, part
 from studies.sources.registry import Effort, core_sources, resolve
 from studies.sweep import STUDY
 from studies.sweep.ports import port_table, same_physics
@@ -150,13 +143,12 @@ def finding(folder: Path) -> str:
 
 def read(folder: Path) -> pd.DataFrame:
     """Read a sweep.csv back."""
-    rows = pd.read_csv(folder / "sweep.csv", dtype={"message": str})
-    return rows.fillna({"message": ""})
+    return STUDY.read(folder, "sweep")
 
 
 def whole(folder: Path) -> pd.DataFrame:
     """Return the lines of a folder's summary.csv that are about all its figures."""
-    return over_all(pd.read_csv(folder / "summary.csv"))
+    return over_all(STUDY.read(folder, "summary"))
 
 
 def over_all(summary: pd.DataFrame) -> pd.DataFrame:
@@ -207,19 +199,11 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     if not groups:
         return pd.DataFrame()
     found = pd.concat(groups.values(), ignore_index=True)
-    return pd.DataFrame(
-        {
-            "preset": found["preset"],
-            "engine": found["source"].map(engine_of),
-            "source": found["source"],
-            "right": found["agree"],
-            **{kind: found[kind] for kind in KINDS},
-            "cases": found["cases"],
-            "median": found["median_error"],
-            "p90": found["p90_error"],
-            "max": found["max_error"],
-            "ms": 1e3 * found["wall_s"] / found["cases"],
-        }
+    return found.assign(
+        engine=found["source"].map(engine_of),
+        right=found["agree"],
+        **{name: found[f"{name}_error"] for name in ("median", "p90", "max")},
+        ms=1e3 * found["wall_s"] / found["cases"],
     )
 
 

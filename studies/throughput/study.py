@@ -55,9 +55,7 @@ def command(*, out: Out, quick: bool = False, threads: Count | None = None) -> i
 def measured(quick: bool, threads: int) -> pd.DataFrame:
     """Time every solver on both pulses; return a row for each."""
     count, peers = (QUICK_CASES, QUICK_PEER_CASES) if quick else (CASES, PEER_CASES)
-    return pd.DataFrame(
-        [row for pulse in PULSES for row in timings(Window(pulse=pulse), count, peers, threads)]
-    )
+    return pd.concat([timings(Window(pulse=pulse), count, peers, threads) for pulse in PULSES])
 
 
 def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
@@ -67,27 +65,25 @@ def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), onsets.ravel()
 
 
-def timings(window: Window, count: int, peers: int, threads: int) -> list[dict[str, object]]:
+def timings(window: Window, count: int, peers: int, threads: int) -> pd.DataFrame:
     """Return a row for each model, on all threads and on one, and for each peer."""
     x, onsets = points(window, count)
-    rows, alone = [], 0.0
+    rows = []
     for used in dict.fromkeys((threads, 1)):
         peaks, spent = timed(partial(window.peaks, x, onsets, used))
-        row = _row(window, PEAKS, used, len(x), spent)
-        rows.append({**row, "steps": math.nan, "wrong": int(np.isnan(peaks).sum())})
+        wrong = int(np.isnan(peaks).sum())
+        rows.append(_row(window, PEAKS, used, len(x), spent, wrong))
     for model in MODELS:
         for used in dict.fromkeys((threads, 1)):
             found, spent = timed(partial(window.modes, x, onsets, model, used))
-            row = _row(window, model, used, len(x), spent)
-            failed = int((found.mode == FAILED).sum())
-            rows.append({**row, "steps": float(found.steps.mean()), "wrong": failed})
-            if model == "exact" and used == 1:
-                alone = spent.wall_s / len(x)
+            failed, steps = int((found.mode == FAILED).sum()), float(found.steps.mean())
+            rows.append(_row(window, model, used, len(x), spent, failed, steps))
     for name, ask in peer_solvers().items():
         rows += _peer_rows(window, name, ask, peers)
-    return [
-        {**row, "times_exact": float(str(row["us_a_case_and_core"])) / alone / 1e6} for row in rows
-    ]
+    table = pd.DataFrame(rows)
+    alone = (table["source"] == "exact") & (table["threads"] == 1)
+    us = table["us_a_case_and_core"]
+    return table.assign(times_exact=us / us[alone].iloc[0])
 
 
 class Spent(NamedTuple):
@@ -110,7 +106,15 @@ def timed(solve: Callable[[], Found], runs: int = RUNS) -> tuple[Found, Spent]:
     return found, min(times)
 
 
-def _row(window: Window, name: str, threads: int, cases: int, spent: Spent) -> dict[str, object]:
+def _row(
+    window: Window,
+    name: str,
+    threads: int,
+    cases: int,
+    spent: Spent,
+    wrong: int,
+    steps: float = math.nan,
+) -> dict[str, object]:
     seconds = spent.wall_s
     return {
         "pulse": window.pulse,
@@ -121,6 +125,8 @@ def _row(window: Window, name: str, threads: int, cases: int, spent: Spent) -> d
         "cases_a_second": cases / seconds,
         "us_a_case_and_core": 1e6 * seconds * threads / cases,
         "busy": spent.busy_s / (seconds * threads),
+        "steps": steps,
+        "wrong": wrong,
     }
 
 
@@ -155,13 +161,12 @@ def _peer_rows(
     x, onsets = points(window, count)
     before = _integrating_s(ask)
     found, spent = timed(partial(ask, window, x, onsets), runs=1)
-    after, right = _integrating_s(ask), window.modes(x, onsets).mode >= 0
-    rest = {"steps": math.nan, "wrong": int((np.array(found) != right).sum())}
-    yield {**_row(window, name, 1, len(x), spent), **rest}
-    if not math.isnan(after):
-        alone = (after - before) / 2
-        spent = Spent(alone, alone)
-        yield {**_row(window, f"{name}, its integrator alone", 1, len(x), spent), **rest}
+    alone = (_integrating_s(ask) - before) / 2
+    wrong = int((np.array(found) != (window.modes(x, onsets).mode >= 0)).sum())
+    yield _row(window, name, 1, len(x), spent, wrong)
+    if not math.isnan(alone):
+        own = f"{name}, its integrator alone"
+        yield _row(window, own, 1, len(x), Spent(alone, alone), wrong)
 
 
 def _integrating_s(ask: Overturns) -> float:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
+from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason, Response
+from studies.cases.extreme import Extreme
 from studies.drawing.kept import tell
 from studies.kit.arguments import BadInputError, Out
 from studies.kit.jobs import Job, summary
@@ -23,7 +25,12 @@ from studies.kit.tables import write_table
 from studies.measures.words import listed
 from studies.sources.registry import core_sources, resolve
 from studies.validity import STUDY
-from studies.validity.cases import ValidityCase, grid, reference_map
+
+CASE = ["aspect", "onsets", "omega_over_p"]
+"""Columns that tell cases apart."""
+
+ASPECTS = (1.0, 1.5, 2.0, 3.0)
+"""H/B: the squatter, the less valid."""
 
 MAP_ONSETS = tuple(np.geomspace(1.02, 8.0, 36).round(4).tolist())
 MAP_OMEGAS = tuple(np.geomspace(0.5, 12.0, 36).round(4).tolist())
@@ -63,26 +70,18 @@ def command(
     for name in sources:
         if resolve(name).kind != "engine":
             raise BadInputError(f"--sources names {name!r}; it must name engines, which can slide")
-    return carry_out(STUDY, plan(sources, quick), out, running, report)
-
-
-def plan(sources: Sequence[str], quick: bool) -> Plan:
-    """Return the plan of the engines' cases, and of the reference's map.
-
-    Every case with the engine's own friction, and those in which the reference needs a friction
-    of MOST_NEEDED or less also with parts of it.
-    """
     every = 2 if quick else 1
     onsets, omegas = ONSETS[::every], OMEGAS[::every]
     factors = QUICK_FACTORS if quick else FACTORS
     jobs = []
-    for case in grid(onsets, omegas):
-        needed = simulate(case.block, case.motion).friction_needed
+    # with the engine's own friction, and, where the reference needs no more, with parts of that
+    for case in product(ASPECTS, onsets, omegas):
+        needed = simulate(*posed(*case)).friction_needed
         for source in sources:
             jobs.append(_job(case, source, math.nan, {}))
             if needed <= MOST_NEEDED:
                 jobs += [_job(case, source, f, {"friction": f * needed}) for f in factors]
-    return Plan(
+    plan = Plan(
         jobs=jobs,
         settings={"onsets": onsets, "omegas": omegas, "factors": factors},
         growing={"source": sources},
@@ -91,22 +90,38 @@ def plan(sources: Sequence[str], quick: bool) -> Plan:
         # a block that slid away is what was asked for
         needed=lambda rows: [row for row in rows if row["verdict"] == "failed"],
     )
+    return carry_out(STUDY, plan, out, running, report)
 
 
 def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the engines' table, and the map of the reference beside it."""
-    reference = reference_map(list(grid(MAP_ONSETS, MAP_OMEGAS)))
+    reference = reference_map(product(ASPECTS, MAP_ONSETS, MAP_OMEGAS))
     return {"validity": pd.DataFrame(rows), "map": reference}
 
 
-def _job(case: ValidityCase, source: str, factor: float, options: dict[str, float]) -> Job:
-    return Job(
-        labels={**case.labels, "friction_factor": factor},
-        block=case.block,
-        motion=case.motion,
-        source=source,
-        options=options,
+def posed(aspect: float, onsets: float, omega_over_p: float) -> tuple[RigidBlock, SinePulse]:
+    """Return a block, by similarity one of any width, and a full-sine pulse of so many g B/H."""
+    case = Extreme(
+        name="", group="validity", aspect=aspect, onsets=onsets, omega_over_p=omega_over_p
     )
+    return case.block, case.motion
+
+
+def reference_map(cases: Iterable[Sequence[float]]) -> pd.DataFrame:
+    """Return what the exact solution of each case needs to be one: the columns of map.csv."""
+    rows = []
+    for case in cases:
+        exact = simulate(*posed(*case))
+        needs = (exact.outcome.value, exact.peak_ratio, exact.min_normal, exact.friction_needed)
+        rows.append((*case, *needs))
+    needed = ["outcome", "peak_ratio", "min_normal", "friction_needed"]
+    return pd.DataFrame(rows, columns=[*CASE, *needed])
+
+
+def _job(case: Sequence[float], source: str, factor: float, options: dict[str, float]) -> Job:
+    block, motion = posed(*case)
+    labels = {**dict(zip(CASE, case, strict=True)), "friction_factor": factor}
+    return Job(labels=labels, block=block, motion=motion, source=source, options=options)
 
 
 LIFTED_WIDTHS = 3e-5
@@ -141,10 +156,7 @@ def report(folder: Path) -> str:
     """Reduce a folder's tables to compared.csv, the drawing and the findings; return these."""
     rows = pd.read_csv(folder / "validity.csv", dtype={"message": str})
     table = pd.read_csv(folder / "map.csv")
-    cases = [
-        ValidityCase(aspect=aspect, onsets=onsets, omega_over_p=omega)
-        for aspect, onsets, omega in rows[CASE].drop_duplicates().to_numpy(float).tolist()
-    ]
+    cases = rows[CASE].drop_duplicates().to_numpy(float).tolist()
     beside = compared(rows, reference_map(cases))
     write_table(folder / "compared.csv", beside)
     own = beside["friction_factor"].isna()
@@ -159,9 +171,6 @@ def report(folder: Path) -> str:
         ),
     }
     return tell(STUDY, folder, tables)
-
-
-CASE = ["aspect", "onsets", "omega_over_p"]
 
 
 def compared(rows: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:

@@ -17,7 +17,6 @@ from engines.run.drive import run
 from studies.measures.costs import LEAST_RUNS
 from studies.precision import batches, cost, shares, starts
 from studies.precision.cost import (
-    Omission,
     in_a_new_process,
     omissions,
     put_back,
@@ -26,18 +25,17 @@ from studies.precision.cost import (
     scene_table,
 )
 from studies.precision.repeats import LEAST_S
-from studies.precision.shares import clocks, pose_case, share_table
+from studies.precision.shares import CASE, clocks, share_table
 
-BLOCK, MOTION = pose_case()
-SCENE = Scene(system=BLOCK, motion=MOTION)
+SCENE = Scene(system=CASE.block, motion=CASE.motion)
 ONE_CONTACT = {"drake": 0.6}
 """What a box costs whose face touches a plane in one point, whatever its rotation."""
 
 
 @pytest.mark.parametrize("engine", installed_engines())
-@pytest.mark.parametrize("omission", omissions(BLOCK, MOTION), ids=lambda item: item.name)
+@pytest.mark.parametrize("omission", omissions())
 def test_what_is_left_out_can_be_put_back(engine, omission):
-    response = put_back(engine, omission, BLOCK, MOTION)
+    response = put_back(engine, omissions()[omission])
     if response.reason is Reason.UNAVAILABLE:
         assert engine not in core_engines()
         pytest.skip(response.message)
@@ -49,16 +47,16 @@ def test_what_is_left_out_can_be_put_back(engine, omission):
     lands = ENGINES[engine].best.stepping is Stepping.LANDING
     # equal steps, or those of an estimated error, add it up otherwise in other coordinates
     least = max(2.0 * equal_to(engine), ENGINES[engine].nuisance_sensitivity)
-    allowed = max(costs.get(omission.name, 1e-4 if lands else 1e-3), least)
+    allowed = max(costs.get(omission, 1e-4 if lands else 1e-3), least)
     whole = 0.385157 if lands else run(engine, SCENE).peak_ratio
     assert whole == pytest.approx(0.385157, rel=1e-2)
     assert response.peak_ratio == pytest.approx(whole, rel=allowed)
-    assert (response.history is not None) == ("times" in omission.put_back)
+    assert (response.history is not None) == ("times" in omissions()[omission])
 
 
 @pytest.mark.parametrize("engine", core_engines())
 def test_clocks_see_every_part_and_go_away(engine):
-    scene = Scene(system=BLOCK, motion=MOTION, compiled=False)
+    scene = replace(SCENE, compiled=False)
     plain = run(engine, scene)
     with clocks(engine) as spent:
         watched = run(engine, scene)
@@ -76,7 +74,7 @@ def test_the_parts_of_a_step_add_up(known, monkeypatch):
     parts = {"step": 6.0, "pose": 1.0, "look": 2.0}
     if known:
         parts["engine"] = 4.0
-    steps = run("pybullet", Scene(system=BLOCK, motion=MOTION)).steps
+    steps = run("pybullet", SCENE).steps
 
     @contextlib.contextmanager
     def known_times(engine):
@@ -108,10 +106,10 @@ def test_a_burst_of_other_work_slows_no_scene(monkeypatch):
     """Whatever slows the first runs, all at the same speed, is over before the last of each."""
     count = itertools.count()
 
-    def slow_at_first(engine, omission, block, motion):
+    def slow_at_first(engine, settings):
         time.sleep(2.0 * LEAST_S / LEAST_RUNS)  # what is timed is warm after so few runs
         slow = 1.2 if next(count) < 2 * LEAST_RUNS else 1.0
-        response = put_back(engine, Omission(name=""), block, motion)
+        response = put_back(engine, {})
         return replace(response, wall_s=slow)
 
     monkeypatch.setattr(cost, "put_back", slow_at_first)

@@ -23,7 +23,7 @@ def test_the_named_models_are_among_the_variants(changed, name):
 
 @pytest.mark.parametrize("changed", VARIANTS)
 def test_each_change_is_what_it_says(changed):
-    onset, frequency, saddle = changed
+    onset, frequency, saddle = map(int, changed)
     law = VARIANTS[changed].law(0.6, 0.7)
     assert law.onset == pytest.approx(math.tan(0.6) if onset else 0.6)
     assert law.k == pytest.approx(math.sqrt(math.cos(0.6)) if frequency else 1.0)
@@ -34,9 +34,9 @@ def test_the_saddle_alone_scales_the_rotation_and_changes_no_outcome():
     """A linear model's equation holds for any multiple of y that scales saddle and forcing."""
     cases = grid("paper").iloc[::7]
     posed = (np.arctan(1.0 / cases["aspect"]), *cases.iloc[:, 1:].to_numpy().T)
-    for onset, frequency in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        at_alpha, outcome = peak_ratios(*posed, model=VARIANTS[onset, frequency, 0])
-        at_tangent, same = peak_ratios(*posed, model=VARIANTS[onset, frequency, 1])
+    for changed in ("00", "01", "10", "11"):
+        at_alpha, outcome = peak_ratios(*posed, model=VARIANTS[f"{changed}0"])
+        at_tangent, same = peak_ratios(*posed, model=VARIANTS[f"{changed}1"])
         # but for a block whose side touches the ground, at 90 degrees whatever its saddle
         assert np.mean(outcome == same) > 0.99
         both = np.isfinite(at_alpha) & np.isfinite(at_tangent)

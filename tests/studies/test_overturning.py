@@ -1,5 +1,6 @@
 """Overturning maps: edges, islands, differences, checks, and the command."""
 
+import itertools
 import math
 from pathlib import Path
 
@@ -16,7 +17,13 @@ from studies.cases.window import AXES, LIMITS, Window
 from studies.kit.tables import table_in
 from studies.measures.published import PUBLISHED
 from studies.overturning.edges import WIDTH, find_edges, intervals
-from studies.overturning.engine_edges import Bisected, chosen_edges, edge_jobs, threshold
+from studies.overturning.engine_edges import (
+    ROOM,
+    Bisected,
+    chosen_edges,
+    edge_jobs,
+    threshold,
+)
 from studies.overturning.report import (
     apart,
     beside_edges,
@@ -198,9 +205,13 @@ def test_a_point_of_the_plane_is_the_case_that_sources_get(over):
 
 def test_a_threshold_is_found_where_it_is():
     edges, _ = mapped(WINDOW, "exact")
-    chosen, narrow = chosen_edges(edges, [4.0])
-    assert len(chosen) >= 1
-    assert len(chosen) + narrow == (edges["x"] == chosen["x"].iloc[0]).sum()
+    chosen = chosen_edges(edges, [4.0])
+    (x,) = chosen["x"].unique()
+    assert abs(x - 4.0) <= 0.5 * 5.7 / WINDOW.columns
+    column = edges.loc[edges["x"] == x, "low"]
+    for low in column:
+        alone = (abs(np.log(column.drop(column.index[column == low]) / low)) > ROOM).all()
+        assert alone == (low in set(chosen["low"]))
     jobs = [j for j in edge_jobs(WINDOW, ["exact"], chosen) if j.labels["table"] == "thresholds"]
     for job in jobs:
         found = threshold(job, resolve("exact"))
@@ -250,22 +261,13 @@ def test_a_map_on_which_nothing_overturns(window, tmp_path, capsys):
 def test_every_edge_is_found_at_the_limits_of_a_window(over, end):
     least, most = LIMITS[over]
     low = least if end == 0 else most / 1.5
-    pulse_hz = low if over == "size" else 1.0
-    for onsets in LIMITS["onsets"]:
-        for aspect in LIMITS["aspect"]:
-            window = Window(
-                over=over,
-                low=low,
-                high=1.5 * low,
-                onsets=onsets,
-                aspect=aspect,
-                pulse_hz=pulse_hz,
-                columns=4,
-                rows=10,
-            )
-            for model in ("exact", "housner", "modified", "onset-matched"):
-                _, spans = mapped(window, model)
-                assert (spans["mode"] >= -2).all()
+    known = {"over": over, "low": low, "high": 1.5 * low, "columns": 4, "rows": 10}
+    known |= {"pulse_hz": low} if over == "size" else {}
+    for onsets, aspect in itertools.product(LIMITS["onsets"], LIMITS["aspect"]):
+        window = Window(onsets=onsets, aspect=aspect, **known)
+        for model in MODELS:
+            _, spans = mapped(window, model)
+            assert (spans["mode"] >= -2).all()
 
 
 @pytest.mark.slow

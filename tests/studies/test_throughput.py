@@ -36,7 +36,7 @@ def test_points_fill_the_window():
 
 
 def test_steps_are_counted():
-    rows = pd.DataFrame(timings(Window(), 400, 1, 1)).set_index("source")
+    rows = timings(Window(), 400, 1, 1).set_index("source")
     assert rows.loc["exact", "steps"] > 2.0
     assert "dop853 (SciPy)" in peer_solvers()
 

@@ -1,5 +1,6 @@
 """Where the reference is valid, and what engines do beyond."""
 
+import itertools
 import math
 
 import numpy as np
@@ -13,22 +14,16 @@ from studies import respond
 from studies.__main__ import run
 from studies.kit.jobs import Job
 from studies.validity import study as validity
-from studies.validity.cases import ValidityCase, grid, reference_map
-from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce
+from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce, posed, reference_map
 
 G = 9.81
-
-
-def case(aspect, onsets, omega_over_p):
-    return ValidityCase(aspect=aspect, onsets=onsets, omega_over_p=omega_over_p)
 
 
 @pytest.mark.parametrize(("aspect", "onsets", "omega"), [(1, 1.4, 4), (1.5, 2.4, 4), (3, 1.5, 6)])
 def test_the_least_normal_force_is_newtons(aspect, onsets, omega):
     """The mass times the vertical acceleration of its centre, by differences of the history; the
     reference looks at 17 points in a step, the history at every thousandth of the pulse."""
-    here = case(aspect, onsets, omega)
-    block, motion = here.block, here.motion
+    block, motion = posed(aspect, onsets, omega)
     exact = simulate(block, motion)
     times = np.linspace(0.0, motion.duration, 20_001)
     theta = simulate(block, motion, times=times).history.theta
@@ -52,7 +47,7 @@ def test_the_least_normal_force_is_newtons(aspect, onsets, omega):
 
 def test_the_friction_needed_is_never_less_than_b_over_h():
     """The uplift itself needs |u_g''|/g = B/H; the impact, 1.5 t/(2 + t^2/2) with t = B/H, less."""
-    table = reference_map(list(grid((1.05, 1.5, 3.0), (1.0, 4.0, 9.0))))
+    table = reference_map(itertools.product((1.0, 2.0, 3.0), (1.05, 1.5, 3.0), (1.0, 4.0, 9.0)))
     steepness = 1.0 / table["aspect"]
     assert (table["friction_needed"] > steepness * (1 - 1e-12)).all()
     assert (1.5 * steepness / (2 + 0.5 * steepness**2) < steepness).all()
@@ -60,11 +55,10 @@ def test_the_friction_needed_is_never_less_than_b_over_h():
 
 def test_the_map_is_similar_and_grows_worse_with_squatness():
     small = RigidBlock(width=0.05, height=0.05)
-    here = case(1.0, 2.0, 3.0)
-    omega = 3.0 * small.p
-    same = simulate(small, SinePulse(amplitude=2.0 * G, omega=omega, half_cycles=2))
-    assert simulate(here.block, here.motion).min_normal == pytest.approx(same.min_normal, rel=1e-9)
-    table = reference_map([case(aspect, 2.0, 3.0) for aspect in (1.0, 1.5, 2.0, 3.0)])
+    same = simulate(small, SinePulse(amplitude=2.0 * G, omega=3.0 * small.p, half_cycles=2))
+    here = simulate(*posed(1.0, 2.0, 3.0))
+    assert here.min_normal == pytest.approx(same.min_normal, rel=1e-9)
+    table = reference_map((aspect, 2.0, 3.0) for aspect in (1.0, 1.5, 2.0, 3.0))
     assert (np.diff(table["min_normal"]) > 0).all()
     assert table["min_normal"].iloc[0] < 0 < table["min_normal"].iloc[1]
 
@@ -77,20 +71,19 @@ def test_engines_lift_off_where_the_reference_would_have_to_pull(source):
         (False, (1.0, 2.0, 3.0)),
         (False, (1.5, 2.4, 1.0)),
     ):
-        here = case(aspect, onsets, omega)
-        assert (simulate(here.block, here.motion).min_normal > 0) is valid
-        response = respond(source, here.block, here.motion)
+        block, motion = posed(aspect, onsets, omega)
+        assert (simulate(block, motion).min_normal > 0) is valid
+        response = respond(source, block, motion)
         assert response.outcome is not Outcome.FAILED
-        assert (response.hop_m < LIFTED_WIDTHS * here.block.width) is valid
+        assert (response.hop_m < LIFTED_WIDTHS * block.width) is valid
 
 
 @pytest.mark.parametrize("source", ["pybullet:fixed", "mujoco:fixed"])
 def test_engines_slide_where_the_reference_needs_more_friction(source):
-    here = case(2.0, 1.2, 4.0)
-    needed = simulate(here.block, here.motion).friction_needed
-    enough = respond(source, here.block, here.motion, friction=1.2 * needed)
-    short = respond(source, here.block, here.motion, friction=0.8 * needed)
-    assert enough.slip_m < SLID_WIDTHS * here.block.width < short.slip_m
+    block, motion = posed(2.0, 1.2, 4.0)
+    needed = simulate(block, motion).friction_needed
+    enough, short = (respond(source, block, motion, friction=k * needed) for k in (1.2, 0.8))
+    assert enough.slip_m < SLID_WIDTHS * block.width < short.slip_m
 
 
 def rocked(slip_m, hop_m):
@@ -110,9 +103,8 @@ def rocked(slip_m, hop_m):
     ],
 )
 def test_verdicts(response, verdict, outcome):
-    here = case(1.0, 2.0, 3.0)
-    job = Job(labels=here.labels, block=here.block, motion=here.motion, source="mujoco:fixed")
-    row = _reduce(job, response)
+    block, motion = posed(1.0, 2.0, 3.0)
+    row = _reduce(Job(labels={}, block=block, motion=motion, source="mujoco:fixed"), response)
     assert (row["verdict"], row["outcome"]) == (verdict, outcome)
 
 
@@ -157,10 +149,10 @@ def test_the_command_refuses_what_cannot_slide(tmp_path, capsys):
 
 
 def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("studies.validity.study.ONSETS", (1.2,))
-    monkeypatch.setattr("studies.validity.study.OMEGAS", (8.0,))
-    monkeypatch.setattr("studies.validity.study.MAP_ONSETS", (1.1, 2.0, 4.0))
-    monkeypatch.setattr("studies.validity.study.MAP_OMEGAS", (1.0, 3.0, 9.0))
+    monkeypatch.setattr(validity, "ONSETS", (1.2,))
+    monkeypatch.setattr(validity, "OMEGAS", (8.0,))
+    monkeypatch.setattr(validity, "MAP_ONSETS", (1.1, 2.0, 4.0))
+    monkeypatch.setattr(validity, "MAP_OMEGAS", (1.0, 3.0, 9.0))
     arguments = ["validity", "--out", str(tmp_path), "--quick", "--jobs", "1"]
     assert run([*arguments, "--sources", "pybullet:fixed"]) == 0
     text = capsys.readouterr().out
