@@ -251,9 +251,9 @@ def finding(agreed: pd.DataFrame) -> str:
     any_does = tests[["capacity_off", "mcnemar_rejected", "ks_rejected"]].any(axis=1)
     found, untold = (listed(list(tests.index[some])) for some in (any_does, ~any_does))
     if not any_does.any():
-        return f"Of many records, tests tell no statistics from the exact ones: not by {untold}."
-    rest = "" if any_does.all() else f", and those by {untold} they do not"
-    return f"Of many records, tests tell the statistics by {found} from the exact ones{rest}."
+        return f"Over many records, no test tells the statistics of {untold} from the exact ones."
+    rest = "" if any_does.all() else f"; not those of {untold}"
+    return f"Over many records, tests tell from the exact statistics those of {found}{rest}."
 
 
 def told(agreed: pd.DataFrame) -> pd.DataFrame:

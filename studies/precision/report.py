@@ -17,7 +17,7 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.drawing.kept import tell
 from studies.kit.tables import write_table
 from studies.measures.costs import LOOPS, loop_of
-from studies.measures.words import duration, listed, times
+from studies.measures.words import duration, listed, part, times
 from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
 from studies.precision.methods import METHODS, Method
@@ -60,17 +60,17 @@ def finding(table: pd.DataFrame) -> str:
         return "No engine setting reaches any of the errors asked for on every typical case."
     asked = {TYPICAL: "on typical cases", ALL: "with those near overturning"}
     engines = [
-        f"{times(chosen['over_exact'])} that {words}, {LOOPS[chosen['driver']]}"
+        f"{times(chosen['over_exact'])} that {words} ({LOOPS[chosen['driver']]})"
         for cases, words in asked.items()
         if (chosen := found.get((reached[-1], cases)))
     ]
     typical = table[table["set"] == TYPICAL]
     own = exact_cost(typical)
     best = cheapest_below(typical[typical["method"] == STRICT], reached[-1])
-    rival = "" if best is None else f", and RK4 {times(best['wall_s'] / own)} it"
+    rival = "" if best is None else f"; RK4 takes {times(best['wall_s'] / own)} it"
     return (
-        f"The exact solution takes {duration(own)} a case; an error below {reached[-1]:g} costs "
-        f"an engine {listed(engines)}{rival}."
+        f"The exact solution takes {duration(own)} a case. An error below {part(reached[-1])} "
+        f"costs an engine {listed(engines)}{rival}."
     )
 
 

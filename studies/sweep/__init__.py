@@ -56,27 +56,24 @@ command is given again.""",
     ),
     captions={
         "overview": (
-            "Error and run time: for each engine and preset a bar from the median to the largest "
-            "error of the peak over all cases, with how many outcomes are wrong, and beside it "
-            "the run time of a case."
+            "For each engine and preset the error of the peak from its median to the largest, how "
+            "many outcomes are wrong, and the run time of a case."
         ),
         **{
             f"figure-{number}": f"The same for the {pulse} pulses of figure {number}."
             for number, pulse in PULSES.items()
         },
         "figure-6": (
-            "Above, the largest rotation over the frequency of the half-sine pulses of figure 6, "
-            "and in the band who overturns; below, the relative error of it; a column for each H/B."
+            "The largest rotation over the frequency of the half-sine pulses of figure 6, who "
+            "overturns (band), and below the error; a column for each H/B."
         ),
         **{
             f"presets-{number}": f"The same for the {pulse} pulses of figure {number}."
             for number, pulse in PULSES.items()
         },
         "presets-6": (
-            "Relative error of the largest rotation over the frequency of the half-sine pulses of "
-            "figure 6 as colour, a strip for each engine and preset, a column for each H/B; marked "
-            "in red what outcomes are wrong: the fall (a square), at rest for rocked (a dash), no "
-            "answer (a cross)."
+            "Error of the peak over the frequency of the half-sine pulses of figure 6 as colour; "
+            "in red the fall wrong (square), at rest for rocked (dash), no answer (cross)."
         ),
     },
 )

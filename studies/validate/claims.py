@@ -89,8 +89,8 @@ def finding(compared: pd.DataFrame) -> str:
     calm = compared[sensitivity_of(compared) < WELL_CONDITIONED]
     return (
         "Outcomes right on random cases that nothing was tuned on: "
-        f"{gathered(right)}; largest errors of the peak {_sizes(compared)}, and {_sizes(calm)} "
-        f"where neither κ nor the sensitivity reaches {WELL_CONDITIONED:g}."
+        f"{gathered(right)}. Peaks are off by up to {_sizes(compared)}; where neither κ nor the "
+        f"sensitivity reaches {WELL_CONDITIONED:g}, by {_sizes(calm)}."
     )
 
 

@@ -276,7 +276,7 @@ def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys):
     arguments = ["ensemble", "--out", str(tmp_path), "--quick", "--motions", "3", "--jobs", "1"]
     assert run([*arguments, "--sources", "modified"]) == 0
     text = capsys.readouterr().out
-    assert text.startswith("Of many records, tests tell ")
+    assert text.startswith("Over many records, tests tell from the exact statistics those of ")
     assert text == (tmp_path / "findings.txt").read_text()
     assert len(pd.read_csv(tmp_path / "ensemble.csv")) == 3 * 3 * 3
     for name in ("stripes", "curves", "agreement", "confusion"):
@@ -363,7 +363,7 @@ def test_whose_statistics_are_told_from_the_exact_ones_where_all_or_none_are():
             **{"ratio_low": 0.9, "ratio_high": 1.1},
         }
     )
-    none = "tests tell no statistics from the exact ones: not by housner and modified."
+    none = "no test tells the statistics of housner and modified from the exact ones."
     assert finding(agreed).endswith(none)
     off = agreed.assign(ratio_low=1.1, ratio_high=1.3)
-    assert finding(off).endswith("by housner and modified from the exact ones.")
+    assert finding(off).endswith("the exact statistics those of housner and modified.")
