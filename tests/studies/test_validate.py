@@ -170,10 +170,8 @@ def test_the_headline_says_the_largest_errors_as_they_are():
         }
     )
     claim = finding(rows)
-    assert (
-        "off by up to 47 % and 95 %; where neither κ nor the sensitivity reaches 10, by 10⁻⁶ and 2 %"
-        in claim
-    )
+    assert "off by up to 47 % and 95 %; where neither" in claim
+    assert "reaches 10, by 10⁻⁶ and 2 %." in claim
 
 
 def test_errors_are_shown_as_they_are_in_bands_of_peak_and_kappa():
