@@ -107,23 +107,6 @@ def test_free_rocking_is_followed_for_the_duration(source):
     assert (none.outcome, none.peak_ratio) == (Outcome.AT_REST, 0.0)
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_an_upright_block_turns_about_the_corner_that_its_rate_says(model, sign):
-    rate = sign * 0.3 * BLOCK.alpha * BLOCK.p
-    response = simulate(BLOCK, Still(), model, (0.0, rate), duration=8.0, times=[1e-3, 2e-3])
-    assert np.all(np.sign(response.history.theta) == sign)
-    assert not response.uplifts
-    first = response.impacts[0]
-    assert first.velocity_before == pytest.approx(-rate, rel=1e-12)
-    # up and down again: twice the quarter period from where the energy is spent
-    law = MODELS[model].law(BLOCK.alpha, BLOCK.restitution)
-    assert first.time == pytest.approx(
-        2.0 * quarter_period(BLOCK, response.peak_ratio * BLOCK.alpha, model), rel=1e-11
-    )
-    assert 0.0 < response.peak_ratio * BLOCK.alpha < law.saddle
-
-
 def test_a_response_may_be_taken_up_where_it_was_left():
     """The state after half a record, and the rest of the record, make the same response."""
     samples = ONSET * np.array([0.0, 1.6, 0.4, -1.9, -0.3, 1.2, 0.2, -0.4, 0.1, 0.0])
@@ -204,30 +187,6 @@ def test_a_jump_beyond_the_onset_lifts_at_once():
         assert (response.uplifts[0] == 0.0) == lifted
         if lifted:
             assert math.copysign(1.0, response.history.theta[0]) == -math.copysign(1.0, phase)
-
-
-@pytest.mark.parametrize("start", [(0.0, 0.0), (0.1, -0.2), (0.0, 0.3)])
-@pytest.mark.parametrize("model", MODELS)
-def test_condition_numbers_are_the_slopes_of_the_peaks(model, start):
-    for phase in (0.4, 1.57, 3.0, 4.5):
-        motion = SinePulse(amplitude=3.6, omega=12.0, half_cycles=4, phase=phase)
-
-        def peak(scale, ratio=BLOCK.restitution, motion=motion):
-            block = replace(BLOCK, restitution=ratio)
-            shaken = replace(motion, amplitude=scale * motion.amplitude)
-            return simulate(block, shaken, model, start).peak_ratio
-
-        found = conditioning(BLOCK, motion, model, start)
-        assert math.isfinite(peak(1.0))
-        for number, function in (
-            (found[0], lambda part: peak(1.0 + part)),
-            (found[1], lambda part: peak(1.0, BLOCK.restitution * (1.0 + part))),
-        ):
-            nudge = 1e-5 / math.sqrt(1.0 + abs(number))
-            near, far = (math.log(function(x) / function(-x)) for x in (nudge, 2.0 * nudge))
-            # a difference of fourth order, and the rounding of peaks over its nudge
-            slope = (8.0 * near - far) / (12.0 * nudge)
-            assert number == pytest.approx(slope, rel=1e-7, abs=1e-9)
 
 
 @pytest.mark.parametrize("source", SOURCES)

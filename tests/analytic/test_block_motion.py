@@ -10,12 +10,9 @@ from hypothesis import strategies as st
 
 from analytic import (
     MODELS,
-    Impact,
     Outcome,
-    Response,
     RigidBlock,
     SinePulse,
-    Still,
     conditioning,
     housner_restitution,
     simulate,
@@ -72,19 +69,3 @@ def test_velocity_keeps_its_digits_early_in_the_pulse():
     cosine = SinePulse(amplitude=1.0, omega=1.0, phase=0.5 * math.pi)
     assert float(cosine.velocity(1e-7)) == pytest.approx(1e-7, rel=1e-12)
     assert float(cosine.displacement(1e-7)) == pytest.approx(0.5e-14, rel=1e-6)
-
-
-def test_still_ground_does_not_move():
-    still = Still()
-    for moved in (still.acceleration, still.velocity, still.displacement):
-        assert np.array_equal(moved([-1.0, 0.0, 2.0]), np.zeros(3))
-    assert still.duration == 0.0
-    assert still == Still()
-
-
-def test_impact_ratio_and_failure():
-    assert Impact(1.0, -2.0, -1.7).ratio == pytest.approx(0.85)
-    failed = Response.failure("diverged", steps=3)
-    assert failed.outcome is Outcome.FAILED
-    assert math.isnan(failed.peak_ratio)
-    assert failed.message == "diverged"

@@ -153,10 +153,7 @@ def test_a_spring_that_never_lets_it_rest_is_said_so():
     cart = CartBlock(width=0.5, height=1.5, mass_ratio=1e-6, stiffness=400.0)
     pulse = SinePulse(amplitude=8.0, omega=20.0, half_cycles=2)
     undecided = simulate(cart, pulse)
-    assert (undecided.outcome, undecided.reason) in (
-        (Outcome.FAILED, Reason.UNDECIDED),
-        (Outcome.OVERTURNED, None),
-    )
+    assert (undecided.outcome, undecided.reason) == (Outcome.FAILED, Reason.UNDECIDED)
     assert simulate(cart, pulse, duration=1.0).outcome is Outcome.ROCKED
 
 

@@ -3,17 +3,16 @@
 import math
 import subprocess
 import sys
-from itertools import product
+from dataclasses import replace
+from itertools import islice, product
 
 import numpy as np
 import pytest
-from given import all_but_times
+from given import all_but_times, onset_of
 
 from analytic import (
     MODELS,
     Record,
-    RigidBlock,
-    SinePulse,
     Still,
     condition_numbers,
     conditioning,
@@ -25,6 +24,7 @@ from analytic import (
 )
 from analytic.kernels import compiled
 from analytic.steppers import METHODS
+from studies.cases.drawn import draw
 from studies.cases.paper import sweep_cases
 
 
@@ -65,38 +65,26 @@ def bits(numbers):
     return np.asarray(numbers, dtype=np.float64).tobytes()
 
 
-def some_case(generator):
-    """Return a block, a motion and a start, of every kind that there is."""
-    alpha, height = generator.uniform(0.05, 0.9), 10.0 ** generator.uniform(-1.0, 1.0)
-    kept = {"restitution": float(generator.choice([0.0, 0.5, 0.9, 1.0]))}
-    block = RigidBlock(
-        width=height * math.tan(alpha), height=height, **(kept if generator.random() < 0.3 else {})
-    )
-    onset = block.gravity * math.tan(alpha)
-    motion = generator.choice(["pulse", "pulse", "pulse", "record", "still"])
-    start = (0.0, 0.0)
-    if motion == "still" or generator.random() < 0.3:
-        rate = float(generator.choice([0.0, generator.normal() * block.p * alpha]))
-        start = (float(generator.uniform(-1.2, 1.2) * alpha), rate)
-    if motion == "still":
-        return block, Still(), start
-    if motion == "record":
-        samples = generator.normal(size=int(generator.integers(10, 200))) * onset
-        return block, Record(dt=float(generator.uniform(0.005, 0.05)), samples=samples), start
-    pulse = SinePulse(
-        amplitude=onset * 10.0 ** generator.uniform(-0.1, 1.0),
-        omega=block.p * 10.0 ** generator.uniform(-1.0, 1.5),
-        half_cycles=int(generator.integers(1, 9)),
-        phase=float(generator.choice([0.0, generator.uniform(0.0, 6.0)])),
-    )
-    return block, pulse, start
+def some_cases(seed, count):
+    """Yield blocks, motions and starts, of every kind that there is."""
+    generator = np.random.default_rng(seed)
+    for number, case in enumerate(islice(draw(seed), count)):
+        block, restitution = case.block, (0.0, 0.5, 0.9, 1.0)[number // 3 % 4]
+        if number % 3 == 0:
+            block = replace(block, restitution=restitution)
+        samples = onset_of(block) * generator.normal(size=10 + 5 * number)
+        record = Record(dt=float(generator.uniform(0.005, 0.05)), samples=samples)
+        turned = replace(case.motion, phase=float(generator.uniform(0.0, 6.0)))
+        motion = (case.motion, turned, record, Still())[number % 4]
+        tilt, rate = generator.uniform(-1.2, 1.2), (number % 2) * generator.normal() * block.p
+        still = number % 4 < 2 and number % 5 > 0
+        yield block, motion, (0.0, 0.0) if still else (tilt * block.alpha, rate * block.alpha)
 
 
 def responses(model):
     """In the paper's grid, one case in 8, and in random cases of every kind."""
-    generator = np.random.default_rng(35)
     cases = [(case.block, case.motion, (0.0, 0.0)) for case in [*sweep_cases([6, 7, 8, 9])][::8]]
-    cases += [some_case(generator) for _ in range(60)]
+    cases += some_cases(35, 60)
     for number, (block, motion, start) in enumerate(cases):
         sampled = motion.duration and number % 5 == 0
         yield all_but_times(
@@ -113,8 +101,7 @@ def responses(model):
 
 
 def solved(model):
-    generator, times = np.random.default_rng(36), np.linspace(0.0, 1.0, 9)
-    cases = [some_case(generator) for _ in range(12)]
+    times, cases = np.linspace(0.0, 1.0, 9), list(some_cases(36, 12))
     for method in METHODS:
         for block, motion, start in cases:
             asked = {"method": method, "step": 0.02, "times": times}
@@ -122,9 +109,7 @@ def solved(model):
 
 
 def moved(model):
-    generator = np.random.default_rng(37)
-    for _ in range(25):
-        block, motion, start = some_case(generator)
+    for block, motion, start in some_cases(37, 25):
         yield bits(conditioning(block, motion, model, start))
         yield bits(sensitivity(block, motion, model, start))
 

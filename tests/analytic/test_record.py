@@ -29,12 +29,6 @@ def noise(seed, count, dt, peak, width=0.12):
     return Record(dt=dt, samples=shaken).scaled_to(peak)
 
 
-def bursts(block):
-    """Return a record that shakes a block four times and lets it come to rest in between."""
-    burst = [0.0, 1.6, -1.5, 0.3, 0.0, *[0.0] * 60]
-    return Record(dt=0.06, samples=onset_of(block) * np.array([*burst, *np.negative(burst)] * 2))
-
-
 def test_acceleration_is_numpys_interpolation():
     times = np.linspace(-0.5, 2.5, 401)
     expected = np.interp(times, 0.3 * np.arange(7), WANDERING.samples, left=0, right=0)
@@ -120,18 +114,6 @@ def test_a_finely_sampled_sine_is_the_sine(model):
         errors.append(abs(simulate(BLOCK, record, model).peak_ratio / right - 1.0))
     assert errors[0] < 1e-2
     assert math.log(errors[0] / errors[1], 4.0) == pytest.approx(2.0, abs=0.3)
-
-
-def test_rest_and_uplift_again():
-    """Each burst lifts a squat block where its straight line passes the onset."""
-    block = RigidBlock(width=1.0, height=1.4)
-    response = simulate(block, bursts(block))
-    assert len(response.uplifts) == len(response.rests) == 4
-    begins = 0.06 * np.array([0, 65, 130, 195])
-    assert response.uplifts == pytest.approx((begins + 0.06 / 1.6).tolist(), rel=1e-12)
-    mirrored = simulate(block, bursts(block).scaled(-1.0))
-    assert mirrored.peak_ratio == response.peak_ratio
-    assert mirrored.rests == response.rests
 
 
 def test_a_sample_at_the_onset_itself_lifts_nothing():

@@ -11,6 +11,11 @@ from analytic.steppers import METHODS
 G = 9.81
 BLOCK = RigidBlock(width=0.5, height=1.0)
 PULSE = SinePulse(amplitude=0.6 * G, omega=2 * math.pi, half_cycles=2)
+ANSWERED = [
+    (PULSE, Outcome.ROCKED),
+    (SinePulse(amplitude=0.49 * G, omega=6.0, half_cycles=2), Outcome.AT_REST),
+    (SinePulse(amplitude=2.0 * G, omega=2.0, half_cycles=2), Outcome.OVERTURNED),
+]
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -37,16 +42,17 @@ def test_order_along_a_response_with_impacts(method, order, model):
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("model", MODELS)
-def test_default_settings_keep_the_papers_outcomes(method, model):
-    reference = simulate(BLOCK, PULSE, model)
-    response = integrate(BLOCK, PULSE, model, method=method)
+@pytest.mark.parametrize(("motion", "outcome"), ANSWERED)
+def test_default_settings_keep_the_papers_outcomes(motion, outcome, method, model):
+    reference = simulate(BLOCK, motion, model)
+    response = integrate(BLOCK, motion, model, method=method)
     assert response.outcome is reference.outcome
-    if response.outcome is Outcome.ROCKED:
-        # the event tolerance 1e-6 rad ends an excursion up to 1e-6/velocity late
-        assert response.peak_ratio == pytest.approx(reference.peak_ratio, rel=3e-4)
-        assert len(response.impacts) == len(
-            [i for i in reference.impacts if i.time < PULSE.duration]
-        )
+    assert response.outcome is outcome or model != "exact"
+    # the event tolerance 1e-6 rad ends an excursion up to 1e-6/velocity late
+    assert response.peak_ratio == pytest.approx(reference.peak_ratio, rel=3e-4)
+    if outcome is Outcome.ROCKED is response.outcome:
+        struck = [impact for impact in reference.impacts if impact.time < motion.duration]
+        assert len(response.impacts) == len(struck)
 
 
 def test_the_event_tolerance_is_the_error_that_is_left():
@@ -68,11 +74,3 @@ def test_rest_and_uplift_again(method):
     response = integrate(block, pulse, method=method)
     assert response.uplifts == pytest.approx(exact.uplifts, rel=1e-9)
     assert len(response.rests) >= 2
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_at_rest_and_overturned(method):
-    quiet = SinePulse(amplitude=0.49 * G, omega=6.0, half_cycles=2)
-    assert integrate(BLOCK, quiet, method=method).outcome is Outcome.AT_REST
-    violent = SinePulse(amplitude=2 * G, omega=2.0, half_cycles=2)
-    assert integrate(BLOCK, violent, method=method).peak_ratio == math.inf

@@ -1,24 +1,21 @@
 """What the contract promises: what is declared, what is missing or refused, and what is a fault."""
 
-import importlib
 import math
-import os
-import subprocess
 import sys
 import time
 from dataclasses import replace
 from functools import partial
 
 import pytest
+from commanding import python
 from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
-from analytic import CartBlock, RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
+from analytic import CartBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import Ability, SideBySide
-from engines.parts.quiet import imported
 from engines.registry import OWN, VARIANTS
 from engines.run.drive import build, run, simulate_world
 from engines.world import Pose
@@ -173,55 +170,6 @@ def test_what_a_variant_sets_is_taken(engine):
         takes(engine, preset=variant.preset, settings=variant.settings, **variant.scene)
 
 
-def bullet_box(library):
-    client = library.connect(library.DIRECT)
-    size = {"halfExtents": (1, 1, 1), "physicsClientId": client}
-    box = library.createCollisionShape(library.GEOM_BOX, **size)
-    body = library.createMultiBody(1.0, box, physicsClientId=client)
-    friction = library.getDynamicsInfo(body, -1, physicsClientId=client)[1]
-    library.disconnect(client)
-    return friction
-
-
-def box2d_box(library):
-    shape = library.b2FixtureDef(shape=library.b2PolygonShape(box=(1, 1)))
-    world = library.b2World()  # a body does not outlive it
-    return world.CreateDynamicBody(fixtures=shape).fixtures[0].friction
-
-
-def rapier_box(library):
-    world, box = library.PhysicsWorld(), library.Collider.cuboid(1.0, 1.0, 1.0)
-    body = world.rigid_bodies[world.add_body(library.RigidBody.dynamic(), [box])]
-    return world.colliders[body.colliders[0]].friction
-
-
-def drake_box(_):
-    config = importlib.import_module("pydrake.geometry").SceneGraphConfig()
-    return config.default_proximity_properties.dynamic_friction
-
-
-BARE = {
-    "pybullet": bullet_box,
-    "box2d": box2d_box,
-    "rapier": rapier_box,
-    "drake": drake_box,
-    "pymunk": lambda library: library.Poly.create_box(library.Body(1.0, 1.0)).friction,
-    "physx": lambda library: library.physx.get_default_material().static_friction,
-}
-"""The friction of a box of which nothing is said, in each library."""
-
-
-@pytest.mark.parametrize("engine", [name for name in HERE if HERE[name].preset("naive").own])
-def test_what_is_called_a_library_s_own_is_what_it_makes_by_itself(engine):
-    """And a squat block slides at it."""
-    own = BARE[engine](imported(HERE[engine].library))
-    assert HERE[engine].preset("naive").own == {"friction": pytest.approx(own, rel=1e-7)}
-    cube, sine = RigidBlock(width=0.5, height=0.5), SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
-    assert simulate(cube, sine).friction_needed > own
-    response = rocked(engine, sine, system=cube, preset="naive", settings={"friction": own})
-    assert response.reason is Reason.SLID
-
-
 @pytest.mark.parametrize("engine", HERE)
 def test_an_engine_is_imported_when_named_and_says_nothing(engine):
     own = {HERE[engine].library, "numpy", *HERE[engine].packages}  # it may be built on another
@@ -237,10 +185,8 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine):
         f"run({engine!r}, Scene(system=block, motion=pulse))\n"
         f"assert not {libraries - own!r} & set(sys.modules)\n"
     )
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    command = [sys.executable, "-c", script]
-    done = subprocess.run(command, capture_output=True, env=environment)
-    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+    done = python("-c", script, path=sys.path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 def test_faults_are_asked_while_a_run_goes_on():

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from known import Bare
 from uses import HERE
 
 from analytic import RollingCylinder, Still
@@ -13,7 +14,7 @@ from engines import ENGINES
 from engines.layouts import Ability
 from engines.physx.cylinder import PhysxCylinder
 from engines.registry import OWN
-from engines.space import _untaken, axes, roll, rotated
+from engines.space import axes, roll, rotated
 from studies import respond
 from studies.sources.rolling import space_scene
 
@@ -137,14 +138,18 @@ def test_the_cylinder_of_physx_has_32_sides():
 
 
 def test_a_start_that_is_not_taken_is_a_fault():
-    body = space_scene(FLAT, Still()).cylinder
+    class Slow(Bare):
+        def __init__(self, scene, settings, dt_s):
+            it = scene.cylinder
+            self.read = it.place, it.turn, it.velocity, np.zeros(3)
 
-    class Slow:
         def state(self):
-            return body.place, body.turn, body.velocity, (0.0, 0.0, 0.0)
+            return self.read
 
-    problem = _untaken(Slow(), body)
-    assert problem.reason is Reason.FAULT and problem.message.startswith("spin was set to (-3.1")
+    slow = replace(ENGINES["mujoco"], builders={Ability.CYLINDER: Slow})
+    track = roll(slow, replace(space_scene(FLAT, Still(), duration=0.1), preset="fixed"))
+    assert track.problem.reason is Reason.FAULT
+    assert track.problem.message.startswith("spin was set to (-3.1")
 
 
 @pytest.mark.skipif("rapier" not in HERE, reason="Rapier is not installed")

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, SHAKEN, agreed, error, rocked, scene
+from uses import BLOCK, HERE, agreed, error, rocked, scene
 
 from analytic import simulate
 from analytic.response import Outcome, Reason
@@ -13,8 +13,6 @@ from engines.drake import build as drake
 from engines.parts.shapes import NO_JAM
 from engines.run.drive import LAG, build
 from studies.cases.paper import sweep_cases
-from studies.kit.executors import Local
-from studies.kit.jobs import Job
 
 pytestmark = pytest.mark.skipif("drake" not in HERE, reason="pydrake is not installed")
 
@@ -92,16 +90,6 @@ def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(monkeypat
     assert response.reason is Reason.FAULT
     assert "condition" in response.message
     assert "\n" not in response.message
-
-
-@pytest.mark.processes
-def test_a_step_that_does_not_end_is_ended_by_the_limit():
-    """Steps of its own may become as short as they like within one call of the library."""
-    endless = {"settings": {"accuracy": 1e-300}, "step": 10.0}
-    job = Job(labels={}, block=BLOCK, motion=SHAKEN, source="drake", options=endless)
-    [(_, response)] = Local(1, 5.0)([job])
-    assert response.reason is Reason.UNDECIDED
-    assert "time limit of 5 s" in response.message
 
 
 def test_settings_are_read_back(monkeypatch):

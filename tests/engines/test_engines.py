@@ -12,6 +12,7 @@ import pytest
 from declared import equal_to
 from given import BLOCK, all_but_times, pulse
 from uses import (
+    CORE,
     FIXED,
     HERE,
     MIRRORED,
@@ -170,7 +171,7 @@ def test_geometry_can_be_put_back(engine, preset):
     plane, space = (
         rocked(engine, preset=preset, settings=settings, start=start) for settings in ({}, free)
     )
-    within = 1e-3 if preset == "fixed" else 2e-4
+    within = {"fixed": 1e-3, "landing": 2e-4 if engine in CORE else 1e-5}.get(preset, 1e-3)
     assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=within + equal_to(engine))
     assert space.peak_ratio != plane.peak_ratio
 
@@ -205,7 +206,9 @@ def test_repeats_bit_by_bit(engine, preset):
 
 @pytest.mark.parametrize("engine", HERE)
 def test_worlds_at_once_do_not_disturb_each_other(engine):
+    """Nor take both what an earlier one gave back."""
     asked = scene(preset="fixed")
+    build(HERE[engine], asked).close()
     first, second = (build(HERE[engine], asked) for _ in range(2))
     before = np.array(second.state())
     take_a_step(first, asked, engine)

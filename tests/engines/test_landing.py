@@ -20,6 +20,7 @@ from analytic.response import Outcome
 from engines import FRAMES, core_engines
 from engines.hints import TRUE, Hints
 from engines.scene import ACCURACIES
+from studies.cases.drawn import draw
 
 
 def within(engine):
@@ -88,28 +89,18 @@ def test_the_whole_sweep(engine, accuracy, median, largest):
     assert max(errors) < largest
 
 
-def random_case(draw):
-    """Return a block of any size and slenderness, and a pulse of 1 to 4 onsets."""
-    width = 0.02 * 500.0 ** draw.uniform()
-    block = RigidBlock(width=width, height=width * draw.uniform(1.2, 12.0))
-    onsets, omega = 1.02 * (4.0 / 1.02) ** draw.uniform(), 0.3 * 40.0 ** draw.uniform()
-    return block, pulse(onsets, omega, int(draw.integers(1, 5)), block)
-
-
-@pytest.mark.parametrize("number", [30, pytest.param(500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [60, pytest.param(500, marks=pytest.mark.slow)])
 def test_random_cases(engine, number):
-    """In which the pivot stays on the base; an error in anything is amplified by the condition."""
-    draw, errors = np.random.default_rng(2), []
-    while number:
-        block, motion = random_case(draw)
-        if simulate(block, motion).min_normal > 0.2:
-            number -= 1
-            exact, response = agreed(engine, motion, system=block)
-            if exact.outcome is Outcome.ROCKED:
-                missed = abs(response.peak_ratio / exact.peak_ratio - 1.0)
-                errors.append(missed / max(abs(conditioning(block, motion)[0]), 1.0))
-    assert np.median(errors) < 1e-5
-    assert max(errors) < 2e-4
+    """The scheme's (p dt)^2 = 2.5e-5, amplified by the condition."""
+    errors = []
+    for case in itertools.islice(draw(2), number):
+        exact, response = agreed(engine, case.motion, system=case.block)
+        if exact.outcome is Outcome.ROCKED:
+            missed = abs(response.peak_ratio / exact.peak_ratio - 1.0)
+            errors.append(missed / max(abs(conditioning(case.block, case.motion)[0]), 1.0))
+    assert len(errors) > number // 4
+    assert np.median(errors) < 2.5e-6
+    assert max(errors) < 2.5e-5
 
 
 def test_second_order(engine):
@@ -118,18 +109,6 @@ def test_second_order(engine):
         np.median(errors_of_sweep(engine, every=23, step=1.0 / steps)) for steps in (50, 200)
     )
     assert 1.7 < math.log(coarse / fine, 4.0) < 2.3
-
-
-@pytest.mark.parametrize("aspect", [1.5, 2.0, 3.0, 4.0, 6.0, 10.0])
-def test_velocity_ratio_of_an_impact(engine, aspect):
-    """Housner's ratio comes out of the engine's contact.
-
-    The velocities are extrapolated over two steps of 1/200 by parabolas: 1e-4 at most.
-    """
-    block = RigidBlock(width=1.0, height=aspect)
-    motion = pulse(1.4, 3.0, 1, block)
-    response = rocked(engine, motion, system=block, duration=6.0 / block.p)
-    assert response.impacts[0].ratio == pytest.approx(block.restitution, abs=1e-4)
 
 
 def test_velocity_ratio_of_small_swings(engine):

@@ -1,13 +1,12 @@
 """One look a step: compiled or not, from Python or from a compiled loop, to the same bit."""
 
-import os
-import subprocess
 import sys
 from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from commanding import python
 from given import BLOCK, all_but_times
 from uses import HERE, rocked, scene
 
@@ -99,14 +98,7 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine):
         f"found = rocked({engine!r}, accuracy='loose', times={TIMES!r})\n"
         "print(found.driver, all_but_times(found), sep='\\n')\n"
     )
-    places = os.pathsep.join(path for path in sys.path if path)
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": places, "NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = python("-c", code, path=filter(None, sys.path), env={"NUMBA_DISABLE_JIT": "1"})
     compiled = rocked(engine, accuracy="loose", times=TIMES)
     assert compiled.outcome is Outcome.ROCKED
     driver = "python: numba is switched off"

@@ -45,33 +45,35 @@ def released(engine, start, **options):
 
 STARTS = {
     # the first impact comes after a quarter period, the next after two of what energy leaves
-    "released": (STILL, (0.4, 0.0), 1.0),
+    "released": (STILL, (0.4, 0.0), 1.0, 0.0),
     # the rate says about which corner: the block rises as far as its energy carries it
-    "turning while upright": (STILL, (0.0, 0.5), 1.0),
+    "turning while upright": (STILL, (0.0, 0.5), 1.0, 1e-3),
     # the start is the peak before the impact, and what it leaves comes after
-    "inward": (STILL, (0.4, -0.55), 1.0),
+    "inward": (STILL, (0.4, -0.55), 1.0, 1e-3),
     # a pulse shakes it on
-    "then a pulse": (pulse(-0.9, 2.0, 2), (0.2, 0.1), 2.0),
+    "then a pulse": (pulse(-0.9, 2.0, 2), (0.2, 0.1), 2.0, 1e-3),
     # a cosine lifts the block with the first step, in which it must have its own inertia
-    "lifted at once": (LIFTING, (0.0, 0.0), 1.0),
+    "lifted at once": (LIFTING, (0.0, 0.0), 1.0, 1e-3),
 }
-"""Motion, start in units of alpha and p alpha, and how many bands it may miss the exact solution:
-by the peak, the times between impacts, the first one's velocities, and the history."""
+"""Motion, start in units of alpha and p alpha, how many bands the peak, the times between impacts
+and the history may be off, and by what part at least the first impact's velocities."""
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("case", STARTS)
 @pytest.mark.parametrize(("engine", "preset", "frame"), LANDING_IN_FRAMES)
 def test_any_start(engine, preset, frame, case, side):
-    motion, (tilt, rate), bands = STARTS[case]
+    motion, (tilt, rate), bands, part = STARTS[case]
     start = (side * tilt * BLOCK.alpha, side * rate * BLOCK.p * BLOCK.alpha)
     shaken = motion if motion is STILL else replace(motion, amplitude=side * motion.amplitude)
     end = 8.0 / BLOCK.p
     times = np.linspace(0.0, motion.duration or end, 200).tolist()
     asked = {"start": start, "duration": end, "times": times}
     exact, found = agreed(engine, shaken, preset=preset, frame=frame, **asked)
-    nearly, coarsely = bands * band(engine), max(1e-3, speed_band(engine))
-    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=nearly)
+    nearly, coarsely = bands * band(engine), max(part, speed_band(engine))
+    # a peak that is the start is where it was put, as the engine's numbers have it
+    within = rounding(engine) if math.isclose(exact.peak_ratio, tilt) else nearly
+    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=within)
     assert found.crossed == exact.crossed
     assert found.uplifts == pytest.approx(exact.uplifts, abs=1e-9)
     gaps, known = (np.diff([0.0, *(i.time for i in it.impacts[:5])]) for it in (found, exact))
@@ -103,24 +105,22 @@ def test_steps_are_of_second_order_from_the_first_on(engine):
         assert abs(fine - 1.0) < part * abs(coarse - 1.0)
 
 
+PAST = 1.2
+BARRIER = math.sqrt(2.0 * (1.0 - math.cos((PAST - 1.0) * BLOCK.alpha))) / BLOCK.alpha
+"""Rate, in p alpha, that just brings a block back from there."""
+
+
+@pytest.mark.parametrize(
+    ("tilt", "rate"), [(PAST, -1.1 * BARRIER), (PAST, -0.9 * BARRIER), (PAST, 0.0), (1e-3, 0.0)]
+)
 @pytest.mark.parametrize("engine", HERE)
-def test_beyond_alpha_and_back(engine):
+def test_beyond_alpha_and_hardly_tilted(engine, tilt, rate):
     """A block past its balance that moves inward fast enough comes back; one at rest falls."""
-    tilt = 1.2 * BLOCK.alpha
-    barrier = BLOCK.p * math.sqrt(2.0 * (1.0 - math.cos(BLOCK.alpha - tilt)))
-    back = released(engine, (tilt, -1.1 * barrier))
-    assert (back.outcome, back.crossed) == (Outcome.ROCKED, True)
-    assert back.peak_ratio == pytest.approx(1.2, rel=rounding(engine))
-    for rate in (0.0, -0.9 * barrier):
-        assert released(engine, (tilt, rate)).outcome is Outcome.OVERTURNED
-
-
-@pytest.mark.parametrize("engine", HERE)
-def test_a_small_release_comes_to_rest(engine):
-    response = released(engine, (1e-3 * BLOCK.alpha, 0.0))
-    assert response.outcome is Outcome.ROCKED
-    assert response.peak_ratio == pytest.approx(1e-3, rel=rounding(engine))
-    assert response.uplifts == ()
+    start = (tilt * BLOCK.alpha, rate * BLOCK.p * BLOCK.alpha)
+    exact, found = agreed(engine, STILL, start=start, duration=8.0 / BLOCK.p)
+    assert (found.crossed, found.uplifts) == (exact.crossed, ())
+    if exact.outcome is Outcome.ROCKED:
+        assert found.peak_ratio == pytest.approx(tilt, rel=rounding(engine))
 
 
 def test_a_balanced_block_may_be_shaken():
