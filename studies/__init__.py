@@ -127,19 +127,31 @@ def side_by_side(
     >>> list(side_by_side(block, pulse, ["exact", "housner"])["outcome"])
     ['rocked', 'overturned']
     """
-    from studies.compare.study import frame
+    import pandas as pd
+
+    from studies.compare.records import records
+    from studies.compare.study import compare, in_this_process, window_of
     from studies.kit.arguments import BadInputError
     from studies.kit.options import Yours
+    from studies.kit.posing import Posed, refuse_endless
 
     if isinstance(sources, str) or not sources:
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
-    yours = Yours(friction=friction, dt=dt)
     try:
-        return frame(
-            block, motion, sources, start=start, duration=duration, yours=yours, estimate=estimate
+        window = window_of(block, motion, duration)
+        refuse_endless(block, window, duration=duration, dt=dt)
+        rows = compare(
+            block,
+            Posed(motion, start),
+            sources,
+            window,
+            executor=in_this_process,
+            yours=Yours(friction=friction, dt=dt),
+            estimate=estimate,
         )
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
+    return pd.DataFrame(records(rows))
 
 
 def table(response: Response) -> pd.DataFrame:

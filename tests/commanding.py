@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from studies.__main__ import run
@@ -57,6 +58,19 @@ def python(*arguments, before=None, path=(), **options):
         timeout=PATIENCE_S,
         **options,
     )
+
+
+HEAD = 2
+"""Lines of a journal before its rows, where one source made them all."""
+
+
+def wait_for_rows(folder, process, count):
+    """Wait until the journal of a run in another process holds so many rows."""
+    journal, deadline = folder / "journal.jsonl", time.monotonic() + PATIENCE_S
+    while not journal.exists() or len(journal.read_bytes().splitlines()) < HEAD + count:
+        assert process.poll() is None, process.stderr and process.stderr.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
 
 
 ALONE = """

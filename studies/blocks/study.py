@@ -46,6 +46,11 @@ NO_SCALE = 0.0
 """Of a row that is about all factors on a record."""
 FACTS = ("kappa", "sensitivity", "min_normal", "friction_needed")
 """Columns of the exact solution, which all sources of a case are read beside."""
+FOUND = ("lifts", "margin", "islands")
+"""Columns of a block under a record, at whatever factor."""
+CASE = ["name", "record", "scale"]
+OF_A_BLOCK = CASE[:2]
+"""Columns that name a case, and all cases of a block under a record."""
 
 
 def command(
@@ -181,30 +186,17 @@ def joined(rows: Sequence[Row]) -> pd.DataFrame:
     A factor that was asked for and overturns counts for the margin, too: it may lie in a sliver
     that the search did not see.
     """
-    of_exact = (ANSWERS, "exact")
-    facts = {_case(row): row for row in rows if (row["table"], row.get("source")) == of_exact}
-    margins = {_case(row)[:2]: row for row in rows if row["table"] == MARGINS}
-    falls: dict[tuple[Any, ...], float] = {}
-    for (name, record, scale), row in facts.items():
-        if row["outcome"] == Outcome.OVERTURNED.value:
-            falls[name, record] = min(scale, falls.get((name, record), math.inf))
-    table = []
-    for row in rows:
-        if row["table"] == MARGINS:
-            continue
-        name, record, _ = case = _case(row)
-        found = margins[name, record]
-        table.append(
-            {
-                **{key: value for key, value in row.items() if key not in ("table", *FACTS)},
-                **{column: facts[case][column] for column in FACTS},
-                "lifts": found["lifts"],
-                "margin": min(found["margin"], falls.get((name, record), math.inf)),
-                "islands": found["islands"],
-            }
-        )
-    return pd.DataFrame(table)
-
-
-def _case(row: Row) -> tuple[Any, ...]:
-    return row["name"], row["record"], row["scale"]
+    table = pd.DataFrame(rows)
+    answers, margins = (table[table["table"] == kind] for kind in (ANSWERS, MARGINS))
+    exact = answers[answers["source"] == "exact"]
+    fallen = exact[exact["outcome"] == Outcome.OVERTURNED.value]
+    asked = fallen.groupby(OF_A_BLOCK, as_index=False).agg(asked=("scale", "min"))
+    whole = (
+        answers.drop(columns=["table", *FACTS, *FOUND])
+        .merge(exact[[*CASE, *FACTS]], on=CASE)
+        .merge(margins[[*OF_A_BLOCK, *FOUND]], on=OF_A_BLOCK)
+        .merge(asked, on=OF_A_BLOCK, how="left")
+        .fillna({"asked": math.inf})
+    )
+    whole["margin"] = whole[["margin", "asked"]].min(axis=1, skipna=False)
+    return whole.drop(columns="asked")

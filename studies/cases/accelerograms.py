@@ -10,7 +10,7 @@ from analytic.accelerograms.units import UNITS, Units
 from analytic.record import Record
 from studies.cases.refusal import BadInputError
 
-__all__ = ["UNITS", "Baseline", "Units", "baseline_note", "corrected", "read_record", "recorded"]
+__all__ = ["UNITS", "Baseline", "Units", "baseline_note", "read_record", "recorded"]
 
 Baseline = Literal["none", "constant", "linear"]
 """How a record is corrected: not at all, or by what its samples lose."""
@@ -19,46 +19,40 @@ DRIFT = 1e-6
 """Part of its largest velocity up to which a base that comes to rest may miss it, by rounding."""
 
 
-def read_record(path: Path, units: str | None = None, argument: str = "--record") -> Record:
-    """Read a recorded ground acceleration, as `Record.read` does.
+def read_record(
+    path: Path,
+    units: str | None = None,
+    baseline: Baseline | None = None,
+    argument: str = "--record",
+) -> Record:
+    """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
 
     Parameters
     ----------
     path : Path
     units : str, optional
         One of UNITS; needed where the file does not state its own.
+    baseline : {"none", "constant", "linear"}, optional
+        What is taken away: nothing, the mean, or the line that fits best.
     argument : str, optional
         What a refusal names.
 
     Raises
     ------
     BadInputError
-        Where that raises ValueError.
+        If it cannot be read, or is nothing but its trend.
     """
     try:
-        return Record.read(path, units)
+        record = Record.read(path, units)
     except ValueError as error:
         problem = str(error).removeprefix("path").replace("; units must", "; --units must")
         raise BadInputError(f"{argument}{problem}") from error
-
-
-def corrected(record: Record, baseline: Baseline | None) -> Record:
-    """Return a record without its mean or its linear trend, or as it is.
-
-    Parameters
-    ----------
-    record : Record
-    baseline : {"none", "constant", "linear"} or None
-        The mean is taken away, or the line that fits best; None is "none".
-
-    Raises
-    ------
-    ValueError
-        If nothing but rounding is left.
-    """
     if baseline is None or baseline == "none":
         return record
-    return record.detrended(baseline)
+    try:
+        return record.detrended(baseline)
+    except ValueError as error:
+        raise BadInputError(f"{argument} is {str(path)!r}; {error}") from error
 
 
 def recorded(
@@ -67,40 +61,19 @@ def recorded(
     baseline: Baseline | None = None,
     argument: str = "--records",
 ) -> list[Record]:
-    """Read records, all of the same units where they state none, and correct them.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-    units : str or None
-        One of UNITS; needed where a file does not state its own.
-    baseline : {"none", "constant", "linear"}, optional
-        As for `corrected`.
-    argument : str, optional
-        What a refusal names.
-
-    Returns
-    -------
-    list of Record
-        Acceleration [m/s2] over time [s], in the order of the paths.
+    """Read records that move, in the order of their paths; the rest is as for `read_record`.
 
     Raises
     ------
     BadInputError
-        If one cannot be read, does not move, or is nothing but its trend.
+        Also if one is zero throughout.
     """
-    motions = []
-    for path in paths:
-        motion = read_record(path, units, argument)
-        if motion.peak == 0.0:
-            raise BadInputError(
-                f"{argument} is {str(path)!r}; it is zero throughout, and must not be"
-            )
-        try:
-            motions.append(corrected(motion, baseline))
-        except ValueError as error:
-            raise BadInputError(f"{argument} is {str(path)!r}; {error}") from error
-    return motions
+    records = [read_record(path, units, baseline, argument) for path in paths]
+    for path, record in zip(paths, records, strict=True):
+        if record.peak == 0.0:
+            words = "it is zero throughout, and must not be"
+            raise BadInputError(f"{argument} is {str(path)!r}; {words}")
+    return records
 
 
 def baseline_note(record: Record, baseline: str | None) -> str:

@@ -150,25 +150,6 @@ def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
     )
 
 
-def slip_error(response: Response, exact: Response) -> float:
-    """Return the largest difference of a slip from the exact one, over the largest exact slip.
-
-    Parameters
-    ----------
-    response, exact : Response
-        Of the same sliding block.
-
-    Returns
-    -------
-    float
-        Relative, not negative; nan where their numbers of slips differ, or there is no slip.
-    """
-    if not exact.slips or len(response.slips) != len(exact.slips):
-        return math.nan
-    pairs = zip(response.slips, exact.slips, strict=True)
-    return max(abs(one - other) for one, other in pairs) / max(map(abs, exact.slips))
-
-
 def _slips(response: Response) -> str:
     shown = [f"{slip:+.6f}" for slip in response.slips[:4]]
     more = len(response.slips) - len(shown)

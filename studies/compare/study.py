@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from statistics import median
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from analytic import RigidBlock, RockingFrame, frame_faults, simulate
 from analytic.cart import CartBlock
@@ -21,7 +20,7 @@ from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.records import as_lines, records
-from studies.compare.rendering import draw, slip_error, table_text
+from studies.compare.rendering import draw, table_text
 from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
     BadInputError,
@@ -32,7 +31,7 @@ from studies.kit.arguments import (
     refuse_given,
     required,
 )
-from studies.kit.executors import Executor
+from studies.kit.executors import Answers, Executor
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.naming import Sources
@@ -46,9 +45,10 @@ from studies.kit.options import (
     slides,
 )
 from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
+from studies.kit.refusing import say
 from studies.kit.runner import exit_code, run_jobs
 from studies.kit.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width
-from studies.kit.unusual import note_unusual
+from studies.kit.unusual import unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
 from studies.sources.registry import DEFAULT_EFFORT, Effort, core_sources
@@ -126,7 +126,7 @@ def command(
     posed = standing.pose(block, excitation)
     motion = posed.motion
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
-    window = _window(block, motion, duration)
+    window = window_of(block, motion, duration)
     refuse_endless(block, window, duration=duration, step=effort.step, dt=yours.dt)
     rows = compare(
         block,
@@ -146,7 +146,8 @@ def command(
         print(table_text(block, posed, window, rows, note, edge, degrees=excitation.degrees))
     if plot:
         draw(rows, block, motion, plot)
-    note_unusual(width, height, excitation, motion)
+    for words in unusual(width, height, excitation, motion):
+        say(f"note: {words}")
     return exit_code(rows)
 
 
@@ -195,7 +196,14 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     return motion
 
 
-def _window(block: System, motion: Motion, duration: float | None) -> float:
+def window_of(block: System, motion: Motion, duration: float | None) -> float:
+    """Return for how long a block is watched [s], by default the motion and 8/p of free rocking.
+
+    Raises
+    ------
+    BadInputError
+        If a given duration [s] is shorter than the motion.
+    """
     if duration is None:
         return free_rocking_window(block, motion)
     if duration < motion.duration:
@@ -271,39 +279,7 @@ def _faults(block: System, posed: Posed, friction: float | None) -> tuple[str, .
     return frame_faults(block, posed.motion, posed.start, **sizes, friction=friction)
 
 
-def frame(
-    block: System,
-    motion: Motion,
-    sources: Sequence[str],
-    *,
-    start: tuple[float, float],
-    duration: float | None,
-    yours: Yours,
-    estimate: bool = False,
-) -> pd.DataFrame:
-    """Return what `rocking compare --json` tells, as a table; see `studies.side_by_side`.
-
-    Parameters
-    ----------
-    block, motion, sources, start, duration, estimate
-        As there.
-    yours : Yours
-        Its friction and its step [s].
-
-    Raises
-    ------
-    BadInputError
-        If a value is not allowed, or a source cannot be asked so.
-    studies.sources.registry.UnknownSourceError
-        If there is no such source.
-    """
-    window, posed = _window(block, motion, duration), Posed(motion, start)
-    refuse_endless(block, window, duration=duration, dt=yours.dt)
-    rows = compare(block, posed, sources, window, executor=_here, yours=yours, estimate=estimate)
-    return pd.DataFrame(records(rows))
-
-
-def _here(jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
+def in_this_process(jobs: Sequence[Job]) -> Answers:
     """Run jobs in this process: from a reader's script others may not be startable."""
     for number, job in enumerate(jobs):
         yield number, ask(job, job.asked)
@@ -322,10 +298,18 @@ def _beside(response: Response, exact: Response, block: System) -> dict[str, Any
     both = response.outcome is Outcome.ROCKED is exact.outcome
     error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
     return {
-        "error": slip_error(response, exact) if exact.slips else error,
+        "error": _slip_error(response, exact) if exact.slips else error,
         "impact_error": _impact_error(response, exact) * block.p,
         "exact": exact,
     }
+
+
+def _slip_error(response: Response, exact: Response) -> float:
+    """Return the largest error of a slip over the largest exact one; nan where one is missing."""
+    if len(response.slips) != len(exact.slips):
+        return math.nan
+    pairs = zip(response.slips, exact.slips, strict=True)
+    return max(abs(one - other) for one, other in pairs) / max(map(abs, exact.slips))
 
 
 def _impact_error(response: Response, exact: Response) -> float:

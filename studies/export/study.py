@@ -3,6 +3,7 @@
 import inspect
 import math
 import sys
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from engines.run import ground
 from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, Step, refuse_both
-from studies.kit.drafts import write_all
+from studies.kit.drafts import draft_place
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
@@ -99,7 +100,9 @@ def command(
     )
     out.mkdir(parents=True, exist_ok=True)
     texts = files(what)
-    write_all(out, texts)
+    with ExitStack() as places:  # the script takes its place when all others have theirs
+        for name, text in texts.items():
+            places.enter_context(draft_place(out / name)).write_bytes(text.encode())
     for name in texts:
         print(out / name)
     if standing.rocks:

@@ -15,11 +15,12 @@ import logging
 import multiprocessing
 import platform
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import TYPE_CHECKING, Any
@@ -28,7 +29,7 @@ from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.executors import Ask, Local, batches
+from studies.kit.executors import Answers, Ask, Local, batches
 from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool
@@ -157,7 +158,7 @@ class Cluster:
         with self._client():
             pass
 
-    def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
+    def __call__(self, jobs: Sequence[Job]) -> Answers:
         """Run the jobs."""
         if not jobs:
             return
@@ -181,7 +182,8 @@ class Cluster:
         if self.ask is ask and batches(jobs, 1):
             threads = sum(self._answer(client, client.nthreads).values())
             together = batches(jobs, max(threads, 1))
-        return together + [[number] for number in jobs.keys() - set().union(*together)]
+        taken = set(chain.from_iterable(together))
+        return together + [[number] for number in jobs if number not in taken]
 
     @contextmanager
     def _client(self) -> Iterator["Client"]:

@@ -1,8 +1,8 @@
 """Files written in one piece: each is complete, or it is still the one before."""
 
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -45,23 +45,3 @@ def draft_place(path: Path) -> Iterator[Path]:
         if isinstance(error, OSError) and error.errno:
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise
-
-
-def write_all(folder: Path, texts: Mapping[str, str]) -> None:
-    """Write several files, the first of which takes its place when all others have theirs.
-
-    Parameters
-    ----------
-    folder : Path
-        One that there is.
-    texts : mapping
-        Name of a file in it -> its text, written in UTF-8.
-
-    Raises
-    ------
-    OSError
-        As `draft_place` does; unless all of them were written, the first is still the one before.
-    """
-    with ExitStack() as places:
-        for name, text in texts.items():
-            places.enter_context(draft_place(folder / name)).write_bytes(text.encode())

@@ -99,7 +99,7 @@ def take(other: Elsewhere, jobs: Sequence[Job], journal: Journal, makers: Makers
     here, _ = sorted_rows(jobs, journal.kept, makers, journal.folder)
     taken = [key for key, row in valid.items() if key not in here and _is_wanted(row)]
     for key in taken:
-        row, then = valid[key], other.kept.maker_of(key)
+        row, then = other.kept[key]
         journal.append(key, row, then)
         engine = resolve(row["source"]).engine
         versions |= {name: then[name] for name in (ENGINES[engine].packages if engine else ())}

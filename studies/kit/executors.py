@@ -11,7 +11,7 @@ from concurrent.futures import CancelledError, Future, as_completed
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 from analytic.kernels.compiled import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
@@ -64,7 +64,7 @@ def batches(jobs: Mapping[int, Job], workers: int) -> list[list[int]]:
     return [part for part in parts if len(part) > 1]
 
 
-def ask_together(jobs: Sequence[Job]) -> list[Response]:
+def _ask_together(jobs: Sequence[Job]) -> list[Response]:
     """Put the jobs of a batch to their source, in a process of its own."""
     compile_all()
     scenes = [scene for job in jobs if (scene := _scene(job)) is not None]
@@ -90,16 +90,10 @@ _loaded: set[str] = set()
 """Sources whose kernels this process has loaded."""
 
 
-def compile_ahead(pool: Pool, ask_: Ask, jobs: Iterable[Job]) -> None:
+def _compile_ahead(pool: Pool, ask_: Ask, jobs: Iterable[Job]) -> None:
     """Compile what the engines of jobs need on a machine, before any time limit holds.
 
-    Parameters
-    ----------
-    pool : Pool
-        One of its processes compiles, once for each source; the others load what was compiled.
-    ask_ : callable
-        How a job is put to its source.
-    jobs : iterable of Job
+    One process of the pool does so, once for each source; the others load what was compiled.
     """
     tasks: list[Future[Any]] = []
     with pool.preparing:  # who asks meanwhile waits for what it needs, too
@@ -112,31 +106,17 @@ def compile_ahead(pool: Pool, ask_: Ask, jobs: Iterable[Job]) -> None:
                 tasks.append(pool.schedule(compile_monitor, (), COMPILING_S))
             pool.prepared.add(job.source)
             if source.declared.compiles:
-                tasks.append(pool.schedule(ask_apart, (ask_, short(job), True), COMPILING_S))
+                tasks.append(pool.schedule(_ask_apart, (ask_, short(job), True), COMPILING_S))
         for task in tasks:
             with suppress(Exception):  # the cases will say what is wrong
                 task.result()
 
 
-def ask_apart(ask_: Ask, job: Job, many: bool) -> Response:
-    """Put a job to its source: what is called in the process of a pool.
+def _ask_apart(ask_: Ask, job: Job, many: bool) -> Response:
+    """Put a job to its source, in a process of a pool that need not have registered it.
 
     Where jobs are many, the kernels are compiled first, and those of a model or solver loaded by a
     short question, as a long one is not asked twice.
-
-    Parameters
-    ----------
-    ask_ : callable
-        How a job is put to its source.
-    job : Job
-        The process need not have registered its source.
-    many : bool
-        Whether the jobs are so many that compiling is worth its time.
-
-    Returns
-    -------
-    Response
-        Where memory ran out, its message says how much a process may take.
     """
     if many:
         compile_all()
@@ -150,23 +130,8 @@ def ask_apart(ask_: Ask, job: Job, many: bool) -> Response:
     return response
 
 
-def outcome_of(task: Future[Response], time_limit_s: float) -> Response:
-    """Return what came of a job in a process: its response, or a failed one that says why.
-
-    Parameters
-    ----------
-    task : Future
-        From `studies.kit.pool.Pool.schedule`; waited for.
-    time_limit_s : float
-        That of the task [s], as its failure names it.
-
-    Raises
-    ------
-    concurrent.futures.CancelledError
-        If the pool was stopped meanwhile.
-    studies.kit.pool.StartError
-        If no process could be started.
-    """
+def _outcome_of(task: Future[Response], time_limit_s: float) -> Response:
+    """Return what came of a job in a process: its response, or a failed one that says why."""
     try:
         return task.result()
     except (CancelledError, StartError):
@@ -182,11 +147,11 @@ FEW = 32
 """Jobs up to which to interpret what they need takes less time than to compile or to load it."""
 
 
-class Executor(Protocol):
-    """Where jobs are run: yields the number of each job with its response, in any order."""
+Answers: TypeAlias = Generator[tuple[int, Response], None, None]
+"""The number of each job with its response, in any order."""
 
-    def __call__(self, jobs: Sequence[Job]) -> Generator[tuple[int, Response], None, None]:
-        """Run the jobs."""
+Executor: TypeAlias = Callable[[Sequence[Job]], Answers]
+"""Where jobs are run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,9 +180,7 @@ class Local:
     ask: Ask = ask
     at_once: bool = False
 
-    def __call__(
-        self, jobs: Sequence[Job], pool: Pool | None = None
-    ) -> Generator[tuple[int, Response], None, None]:
+    def __call__(self, jobs: Sequence[Job], pool: Pool | None = None) -> Answers:
         """Run the jobs.
 
         Parameters
@@ -227,6 +190,7 @@ class Local:
             Whose processes are used, and may be again; by default new ones, which end.
         """
         slow: dict[int, Job] = {}
+        loaded = pool.loaded if pool else set[str]()
         many = not self.at_once or len(jobs) > FEW
         if many:
             compile_all()
@@ -236,22 +200,20 @@ class Local:
             if job.needs_process:
                 slow[number] = job
                 continue
-            if many and job.source not in _loaded:
+            if many and job.source not in loaded:
                 # loading the compiled kernels is no part of the first case's run time
-                _loaded.add(job.source)
+                loaded.add(job.source)
                 self.ask(job, job.asked)
             yield number, self.ask(job, job.asked)
         if slow:
             with nullcontext(pool) if pool else Pool(min(self.workers, len(slow))) as processes:
                 yield from self._in_processes(processes, slow, many)
 
-    def _in_processes(
-        self, pool: Pool, jobs: Mapping[int, Job], many: bool
-    ) -> Generator[tuple[int, Response], None, None]:
+    def _in_processes(self, pool: Pool, jobs: Mapping[int, Job], many: bool) -> Answers:
         if many:
             if Kernel.tell is not None and not are_compiled(PACKAGE):
                 Kernel.tell("compiling what engines need, once: some 10 to 40 s")
-            compile_ahead(pool, self.ask, jobs.values())
+            _compile_ahead(pool, self.ask, jobs.values())
         pending = dict(jobs)
         try:
             if many and self.ask is ask:
@@ -259,22 +221,20 @@ class Local:
                     del pending[number]
                     yield number, response
             tasks = {
-                pool.schedule(ask_apart, (self.ask, job, many), self.time_limit_s): number
+                pool.schedule(_ask_apart, (self.ask, job, many), self.time_limit_s): number
                 for number, job in pending.items()
             }
             for task in as_completed(tasks):
-                yield tasks[task], outcome_of(task, self.time_limit_s)
+                yield tasks[task], _outcome_of(task, self.time_limit_s)
         except StartError as error:
             raise OSError(f"a process could not be started ({error})") from error
 
-    def _in_batches(
-        self, pool: Pool, jobs: Mapping[int, Job]
-    ) -> Generator[tuple[int, Response], None, None]:
+    def _in_batches(self, pool: Pool, jobs: Mapping[int, Job]) -> Answers:
         """Run what can be run at once, each batch as long as its jobs may take one by one."""
         tasks = {}
         for numbers in batches(jobs, self.workers):
             limit_s = self.time_limit_s * len(numbers)
-            task = pool.schedule(ask_together, ([jobs[n] for n in numbers],), limit_s)
+            task = pool.schedule(_ask_together, ([jobs[n] for n in numbers],), limit_s)
             tasks[task] = numbers
         for task in as_completed(tasks):
             answers: list[Response] = []

@@ -186,14 +186,13 @@ def sorted_rows(
     stale = []
     for job in jobs:
         key = job.key
-        if key not in kept.entries:
+        if key not in kept:
             continue
-        row = kept.entries[key].row
+        row, then = kept[key]
         if not job.has_made(row):
             problem = f"its {JOURNAL} has a row of something else under the key {key}"
             raise FolderError(folder, problem)
-        then, now = kept.maker_of(key), makers.of(job)
-        if changed(then, now):
+        if changed(then, now := makers.of(job)):
             stale.append((job.source, then, now))
         else:
             valid[key] = row

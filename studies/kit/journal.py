@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from studies.kit.drafts import draft
 
@@ -48,21 +48,14 @@ class FolderError(Exception):
 
 
 class Entry(NamedTuple):
-    """A finished row, and the name of what made it."""
+    """A finished row, and what made it."""
 
     row: Row
-    made: str
+    maker: Maker
 
 
-class Kept(NamedTuple):
-    """What a journal holds: entries by the keys of their jobs, what made them by its name."""
-
-    entries: dict[str, Entry]
-    makers: dict[str, Maker]
-
-    def maker_of(self, key: str) -> Maker:
-        """Return what made the row of a key; KeyError if there is none."""
-        return self.makers[self.entries[key].made]
+Kept: TypeAlias = dict[str, Entry]
+"""What a journal holds, by the keys of its jobs."""
 
 
 class Journal:
@@ -77,6 +70,8 @@ class Journal:
 
     def __init__(self, path: Path, kept: Kept) -> None:
         self.folder, self.kept = path.parent, kept
+        makers = {id(entry.maker): entry.maker for entry in kept.values()}
+        self._named = set(map(named, makers.values()))
         self._path = path
         self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW)
 
@@ -90,11 +85,11 @@ class Journal:
         """
         self.check()
         made = named(maker)
-        if made not in self.kept.makers:
+        if made not in self._named:
             _write(self._descriptor, {"made": made, "of": dict(maker)})
-            self.kept.makers[made] = maker
+            self._named.add(made)
         _write(self._descriptor, {"key": key, "made": made, "row": row})
-        self.kept.entries[key] = Entry(row, made)
+        self.kept[key] = Entry(row, maker)
 
     def check(self) -> None:
         """Raise FolderError if the folder, or the journal in it, is no longer there."""
@@ -205,12 +200,11 @@ def _unpack(path: Path) -> None:
 def _finished(path: Path, identity: Mapping[str, Any]) -> Kept:
     """Read the finished rows, and cut off a last line that a killed run left incomplete."""
     content = path.read_bytes()
-    entries, makers = rows_of(path, content, identity, "it must be new, or hold")
+    kept = rows_of(path, content, identity, "it must be new, or hold")
     whole = content.rfind(b"\n") + 1
     if whole < len(content):
         os.truncate(path, whole)
-    good = {key: entry for key, entry in entries.items() if entry.row["outcome"] != "failed"}
-    return Kept(good, makers)
+    return {key: entry for key, entry in kept.items() if entry.row["outcome"] != "failed"}
 
 
 def rows_of(
@@ -260,7 +254,7 @@ def rows_in(folder: Path, content: bytes) -> Kept:
     FolderError
         If one that was completed is damaged.
     """
-    entries: dict[str, Entry] = {}
+    kept: Kept = {}
     makers: dict[str, Maker] = {}
     for number, line in enumerate(content.split(b"\n")[1:-1], start=2):
         found = _entry(folder, number, line)
@@ -273,9 +267,9 @@ def rows_in(folder: Path, content: bytes) -> Kept:
             raise _damage(folder, number)
         if not isinstance(row, dict) or "outcome" not in row:
             raise _damage(folder, number)
-        entries.pop(key, None)
-        entries[key] = Entry(row, made)
-    return Kept(entries, makers)
+        kept.pop(key, None)
+        kept[key] = Entry(row, makers[made])
+    return kept
 
 
 def named(maker: Maker) -> str:

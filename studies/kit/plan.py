@@ -138,7 +138,7 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     subject = provenance.subject(study.name, **plan.settings)
     others = [elsewhere.read(folder, subject) for folder in running.also or ()]
     with open_journal(out, subject, study.products) as journal:
-        _refuse_a_part(out, [entry.row for entry in journal.kept.entries.values()], plan.growing)
+        _refuse_a_part(out, [entry.row for entry in journal.kept.values()], plan.growing)
         path = out / PROVENANCE
         asked = {
             column: str(values) if isinstance(values, range) else list(values)
@@ -217,7 +217,7 @@ def _going_on(journal: Journal, folder: Path, count: int) -> Iterator[None]:
         journal.check()
         if not count:
             raise
-        kept = f"{len(journal.kept.entries)} of {count} rows are kept in {str(folder)!r}"
+        kept = f"{len(journal.kept)} of {count} rows are kept in {str(folder)!r}"
         words = f"{stop}; " if str(stop) else ""
         text = f"{words}{kept}; the same command goes on from there"
         if isinstance(stop, KeyboardInterrupt):

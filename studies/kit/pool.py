@@ -54,10 +54,12 @@ class Pool:
         Held by who compiles what its processes need.
     prepared : set of str
         Names of the sources for which that is done.
+    loaded : set of str
+        Names of the sources whose kernels this process itself has loaded meanwhile.
     """
 
     def __init__(self, workers: int) -> None:
-        self.preparing, self.prepared = Lock(), set[str]()
+        self.preparing, self.prepared, self.loaded = Lock(), set[str](), set[str]()
         # a thread for each process: who starts one must live as long
         self._threads = ThreadPoolExecutor(workers)
         self._idle: list[_Worker] = []

@@ -13,7 +13,7 @@ from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
 from engines.layouts import System
-from studies.cases.accelerograms import Baseline, Units, corrected, read_record
+from studies.cases.accelerograms import Baseline, Units, read_record
 from studies.cases.paper import PULSES
 from studies.kit.arguments import (
     BadInputError,
@@ -134,9 +134,8 @@ class Excitation:
 
     def _recorded(self, path: Path) -> Record:
         refuse_both(scale=self.scale, pga=self.pga)
-        record = read_record(path, self.units)
+        record = read_record(path, self.units, self.baseline)
         with as_bad_input("--record: "):
-            record = corrected(record, self.baseline)
             if self.pga is not None:
                 return record.scaled_to(self.pga * GRAVITY)
             return record.scaled(1.0 if self.scale is None else self.scale)

@@ -7,7 +7,6 @@ from analytic.block import GRAVITY
 from analytic.motion import Motion
 from analytic.record import Record
 from studies.kit.posing import Excitation
-from studies.kit.refusing import say
 
 SMALL_M, LARGE_M = 0.005, 20.0
 """Sizes [m] beyond which a block is unusual."""
@@ -19,23 +18,18 @@ SLOW_RAD_S = 1.0
 """Frequency of a pulse [rad/s] below which it is unusual: its period is more than 6 s."""
 
 
-def note_unusual(width: float, height: float, excitation: Excitation, motion: Motion) -> None:
-    """Say on stderr which values are unusual, and what they are in another unit.
+def unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
+    """Say which values are unusual, and what they are in another unit.
 
     Parameters
     ----------
     width, height : float
         Full sizes of the block or of each column [m].
-    excitation : Excitation
+    given : Excitation
         What was given of the motion and the start.
     motion : Motion
         What that means; of a `Record` the largest acceleration [m/s2] is looked at.
     """
-    for words in _unusual(width, height, excitation, motion):
-        say(f"note: {words}")
-
-
-def _unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
     for name, size in (("width", width), ("height", height)):
         if size > LARGE_M:
             less = 1e-3 * size

@@ -1,14 +1,20 @@
-"""Recorded accelerograms in a comparison: scaled, corrected, and what is said of them."""
+"""Recorded accelerograms: each form is read as its header says, scaled, corrected, and told."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
 from commanding import BLOCK, compared, refused
-from records import write_record
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, SAMPLES, TITLE, write_record
+from scipy.constants import g as standard_gravity
 from scipy.signal import detrend
 
+import studies
 from analytic import GRAVITY, Record, RigidBlock, simulate
 from studies.__main__ import run
-from studies.cases.accelerograms import read_record
+from studies.cases.accelerograms import UNITS, read_record
 
 ASKED = [*BLOCK, "--sources", "exact", "housner", "--record"]
 
@@ -73,4 +79,156 @@ def test_nothing_but_a_trend_is_refused(tmp_path, capsys):
     path = tmp_path / "motion.txt"
     path.write_text("# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n")
     asked = ["compare", *ASKED, path, "--baseline", "constant", "--pga", "1"]
-    refused(capsys, asked, "--record: the record is its own constant trend")
+    refused(capsys, asked, "--record is", "the record is its own constant trend")
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return what writes a text into a file, its line ends as they are."""
+
+    def write(text, name="motion.txt"):
+        path = tmp_path / name
+        path.write_bytes(text.encode())
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("form", AT2)
+def test_an_at2_file_needs_no_units(form, written):
+    record = read_record(written(AT2[form], "motion.AT2"))
+    assert record.dt == 0.005
+    assert record.samples == pytest.approx(9.81 * SAMPLES, rel=1e-15)
+    assert record == read_record(written(AT2[form], "motion.AT2"), "g")
+
+
+@pytest.mark.parametrize(
+    ("stated", "unit"),
+    [
+        ("IN UNITS OF CM/SEC/SEC", "cm/s2"),
+        ("IN UNITS OF CM/S**2", "cm/s2"),
+        ("IN UNITS OF CM/SEC2.", "cm/s2"),
+        ("IN UNITS OF M / S^2", "m/s2"),
+        ("(M/S/S)", "m/s2"),
+        ("IN MM/S2", "mm/s2"),
+        ("UNITS: mm/s^2", "mm/s2"),
+        ("in mg", "mg"),
+        ("[milli-g], UNITS=MG", "mg"),
+        ("(Gal)", "gal"),
+        ("UNITS ARE GALS", "gal"),
+        ("IN cm s-2", "cm/s2"),
+        ("(m s^-2)", "m/s2"),
+    ],
+)
+def test_units_are_read_as_the_header_states_them(stated, unit, written):
+    head = f"{TITLE}ACCELERATION TIME HISTORY {stated}\nNPTS= 7, DT= .005 SEC\n"
+    record = read_record(written(head + COLUMNS))
+    assert record.samples == pytest.approx(UNITS[unit] * SAMPLES, rel=1e-15)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_an_asc_file_of_esm_or_itaca(end, written):
+    text = (ASC_HEADER + ASC_COLUMN).replace("\n", end)
+    record = read_record(written(text, "XX.ABC..HNE.D.19990102.030405.C.ACC.ASC"))
+    assert record.dt == 0.005
+    assert record.samples == pytest.approx(0.01 * SAMPLES, rel=1e-15)
+    raw = ASC_HEADER.replace("ACCELERATION\n", "UNPROCESSED ACCELERATION\n")
+    assert read_record(written(raw + ASC_COLUMN), "gal") == record
+
+
+SPELLED = {"m/s²": "m/s2", "cm/s^2": "cm/s2", "CM/SEC/SEC": "cm/s2", "Gal": "gal"}
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "Time [sec], Acceleration [m/s²]",
+        "# units: cm/s^2",
+        "% UNITS OF CM/SEC/SEC",
+        "time (s) acceleration (Gal)",
+        "# Time [s], Acceleration [g]",
+        "time_s,acc_g",
+        "Time in seconds, acc in g",
+        "t / s,a / g",
+        "t,a (g)",
+        "Elapsed time (sec),Ground acceleration N-S (g)",
+        '"Time (sec.)","Acceleration (g)"',
+        "% t (s)   acc (g)",
+    ],
+)
+def test_names_above_the_columns_say_time_and_acceleration_with_its_unit(names, written):
+    rows = "".join(f"{5 * i},{a}\n" for i, a in enumerate(SAMPLES))
+    record = read_record(written(f"{names}\n{rows}"))
+    unit = next((unit for word, unit in SPELLED.items() if word in names), "g")
+    assert record.dt == 5.0
+    assert record.samples == pytest.approx(UNITS[unit] * SAMPLES, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,a (g)\n0,1\n1,2\n2,4\n",
+        "t,a (g)\n0,1\n1,2\n2,3\n",
+        "# units: g\n0, 1\n1, 2\n2, 4\n",
+        "# units: g\n0;1\n1;2\n2;4\n",
+        "# units: g\n0 1\n1 2\n2 4\n",
+        "El Centro, NS, units: g\n0 1\n1 2\n# a remark\n\n2 4\n",
+        "# integrated from: velocity\nTime Acceleration(g)\n0 1\n1 2\n2 4\n",
+        "\ufefft [s];a [g];\n0;1;\n1;2;\n2;4;\n",
+    ],
+)
+def test_tables_that_leave_no_doubt(text, written):
+    record = read_record(written(text))
+    assert record.dt == 1.0
+    assert record.samples[:2].tolist() == [9.81, 19.62]
+
+
+def test_times_printed_in_few_decimals_are_equal_steps(written):
+    rows = "".join(f"{i / 256:.4f} {i % 3}\n" for i in range(600))
+    assert read_record(written(rows), "m/s2").dt == pytest.approx(1 / 256, rel=1e-4)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    samples=st.lists(st.floats(-1e3, 1e3), min_size=3, max_size=40),
+    unit=st.sampled_from(list(UNITS)),
+    columns=st.integers(1, 9),
+    end=st.sampled_from(["\n", "\r\n", "  \n"]),
+    form=st.sampled_from(["at2", "asc", "comma", "semicolon", "blank"]),
+)
+def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_factory):
+    """Any samples in any form, unit and layout, to the last digit that is printed."""
+    words = [repr(sample) for sample in samples]
+    count = len(samples)
+    if form == "at2":
+        rows = [" ".join(words[at : at + columns]) for at in range(0, count, columns)]
+        said = [f"ACCELERATION IN UNITS OF {unit.upper()}", f"NPTS= {count}, DT= .0050 SEC"]
+    elif form == "asc":
+        kind, step = "DATA_TYPE: ACCELERATION", "SAMPLING_INTERVAL_S: 0.005"
+        said, rows = [kind, f"NDATA: {count}", f"UNITS: {unit}", step], words
+    else:
+        mark = {"comma": ",", "semicolon": ";", "blank": " "}[form]
+        said = [f"t (s){mark}a ({unit})"]
+        rows = [f"{at * 0.005:.4f}{mark}{word}" for at, word in enumerate(words)]
+    path = tmp_path_factory.getbasetemp() / "form.txt"
+    path.write_bytes("".join(f"{line}{end}" for line in (*said, *rows)).encode())
+    record = read_record(path)
+    assert record.dt == pytest.approx(0.005, rel=1e-12)
+    assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()
+
+
+def test_which_g_is_meant_is_said_wherever_it_is_asked(tmp_path, capsys):
+    """A record in g is of the blocks' g, and no name calls that the standard one."""
+    path = tmp_path / "record.csv"
+    path.write_text("time_s,acceleration_g\n0,0\n0.1,1\n0.2,0\n")
+    assert read_record(path, None).peak == GRAVITY == RigidBlock(width=1.0, height=2.0).gravity
+    guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
+    words = f"g is {GRAVITY} m/s²"
+    assert words in guide
+    over = 100.0 * (GRAVITY / standard_gravity - 1.0)
+    assert f"{standard_gravity}, so that" in guide
+    assert f"{over:.3f} % stronger" in guide
+    assert run(["compare", "--help"]) == 0
+    text = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert words in text
+    assert f"[g of {GRAVITY} m/s²]" in text

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from analytic.response import Reason, Response
 from studies.__main__ import COMMANDS, run
-from studies.kit import plan
+from studies.kit import app, plan
 from studies.kit.app import make_app
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
@@ -209,20 +209,22 @@ def test_any_text_for_any_option(arguments, place):
     check(arguments)
 
 
-COLUMNS = 100
-
-
-@pytest.mark.parametrize("study", COMMANDS, ids=lambda study: study.name)
-def test_every_command_has_its_help(study, capsys, monkeypatch):
-    """Its words, its options, and no line that a terminal would break."""
-    monkeypatch.setenv("COLUMNS", str(COLUMNS))
-    assert run([study.name, "--help"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert study.help.splitlines()[0] in " ".join(lines)
-    assert max(map(len, lines)) <= COLUMNS
-    # "│ * --option kind ...", the asterisk where it is required
-    rows = [line.replace("*", " ", 1).split()[1:] for line in lines if line.startswith("│")]
-    told = {row[0]: row for row in rows if row}
-    for name in OPTIONS[study.name]:
-        # the option and its kind, then at least a word of what it is
-        assert len(told[name]) > 3, name
+@pytest.mark.parametrize("columns", ["100", "1", "1000000000", "0", "-1", "wide", ""])
+def test_every_command_has_its_help_in_a_terminal_of_any_width(columns, monkeypatch, capsys):
+    """All of them in ordinary and extreme ones; what is no width is settled alike for each."""
+    monkeypatch.setenv("COLUMNS", columns)
+    app.settle_environment()
+    for study in COMMANDS if columns in ("100", "1", "1000000000") else COMMANDS[:3]:
+        assert run([study.name, "--help"]) == 0
+        output = capsys.readouterr()
+        assert output.err == ""
+        lines = output.out.splitlines()
+        assert lines[0].startswith(f"Usage: rocking {study.name}")
+        assert max(map(len, lines)) <= int(os.environ["COLUMNS"])
+        if columns == "100":
+            assert study.help.splitlines()[0] in " ".join(lines)
+            # "│ * --option kind ...", the asterisk where it is required
+            rows = [line.replace("*", " ", 1).split()[1:] for line in lines if "│" in line[:1]]
+            told = {row[0]: row for row in rows if row}
+            # the option and its kind, then at least a word of what it is
+            assert [name for name in OPTIONS[study.name] if len(told[name]) <= 3] == []

@@ -15,6 +15,7 @@ from pathlib import Path
 import dask
 import pandas as pd
 import pytest
+from commanding import wait_for_rows
 from dask_station import (
     exits,
     half_held,
@@ -170,9 +171,7 @@ def test_a_killed_scheduler_loses_nothing_and_is_one_line(tmp_path, monkeypatch)
         working(address),
         sweeping(*arguments, "--cluster", address) as study,
     ):
-        while not journal.exists() or len(journal.read_text().splitlines()) < 4:
-            assert study.poll() is None
-            time.sleep(0.05)
+        wait_for_rows(folder, study, 2)
         running.kill()
         (line,) = study.communicate()[1].splitlines()
     assert study.returncode == 2

@@ -37,7 +37,7 @@ def fill(folder):
 
 def kept(folder):
     with open_journal(folder, SUBJECT, ()) as journal:
-        return {key: entry.row for key, entry in journal.kept.entries.items()}
+        return {key: entry.row for key, entry in journal.kept.items()}
 
 
 def test_no_flipped_bit_gives_another_row(tmp_path):
@@ -119,9 +119,9 @@ def test_a_line_without_its_fields_is_damaged(line, tmp_path):
 def test_what_made_a_row_is_written_once_and_read_back(tmp_path):
     path = fill(tmp_path)
     with open_journal(tmp_path, SUBJECT, ()) as journal:
-        made = {key: journal.kept.maker_of(key) for key in ROWS}
+        made = {key: journal.kept[key].maker for key in ROWS}
         journal.append("key 0", ROWS["key 1"], MAKERS[1])
-        assert journal.kept.maker_of("key 0") == MAKERS[1]
+        assert journal.kept["key 0"].maker == MAKERS[1]
     assert list(made.values()) == [MAKERS[0], MAKERS[0], MAKERS[1]]
     assert sum(b'"of"' in line for line in path.read_bytes().splitlines()) == len(MAKERS)
     assert kept(tmp_path) == ROWS | {"key 0": ROWS["key 1"]}

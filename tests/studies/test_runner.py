@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import PATIENCE_S
+from commanding import HEAD, PATIENCE_S, wait_for_rows
 from given import BLOCK, FULL_SINE
 
 from analytic import RigidBlock, SinePulse, simulate
@@ -40,8 +40,6 @@ ALONE = Running(jobs=1, time_limit=1.0)
 ANSWERED = []
 FREE = 30
 """Cases that the source `waits` answers before it waits."""
-HEAD = 2
-"""Lines of a journal before its rows, where one source made them all."""
 
 
 def waits(block, motion, *, duration, times):
@@ -152,16 +150,6 @@ def gate_of(folder):
     return folder.with_name(f"{folder.name}.gate")
 
 
-def wait_at_the_gate(folder, process, rows=FREE):
-    """Wait until so many rows are stored; the next one is not answered before the gate opens."""
-    journal = folder / "journal.jsonl"
-    deadline = time.monotonic() + PATIENCE_S
-    while not journal.exists() or len(lines_of(folder)) < HEAD + rows:
-        assert process.poll() is None, process.stderr.read()
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
-
-
 def keys_of(lines):
     return [unseal(line)["key"] for line in lines[HEAD:]]
 
@@ -186,7 +174,7 @@ def refusal_of(process):
 def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
     folder = tmp_path / "out"
     with start(folder) as first:
-        wait_at_the_gate(folder, first)
+        wait_for_rows(folder, first, FREE)
         first.kill()
     finished = lines_of(folder)
     assert len(finished) == HEAD + FREE
@@ -203,7 +191,7 @@ def test_a_killed_run_goes_on_where_it_stopped(tmp_path):
 def test_an_interrupted_run_says_how_to_go_on(number, tmp_path):
     folder = tmp_path / "out"
     with start(folder) as process:
-        wait_at_the_gate(folder, process)
+        wait_for_rows(folder, process, FREE)
         process.send_signal(number)
         output, errors = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 128 + number
@@ -236,7 +224,7 @@ def test_a_full_disk_loses_nothing_that_finished(tmp_path):
 def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
     folder = tmp_path / "out"
     with start(folder, plain_sweep) as first:
-        wait_at_the_gate(folder, first)
+        wait_for_rows(folder, first, FREE)
         with start(folder) as second:
             assert "in use by another run" in refusal_of(second)
         gate_of(folder).touch()
@@ -249,7 +237,7 @@ def test_a_second_run_is_refused_while_the_first_one_goes_on(tmp_path):
 def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
     folder = tmp_path / "out"
     with start(folder) as process:
-        wait_at_the_gate(folder, process)
+        wait_for_rows(folder, process, FREE)
         for path in folder.iterdir():
             path.unlink()
         if what == "the folder":

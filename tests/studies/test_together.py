@@ -3,14 +3,13 @@
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import rocking_batch
-from commanding import PATIENCE_S
+from commanding import HEAD, PATIENCE_S, wait_for_rows
 from dask_station import process, scheduler, wait_for_workers
 from declared import announced
 from given import BLOCK, pulse
@@ -142,20 +141,16 @@ def killed_run(folder, gate):
     known = os.pathsep.join(map(str, (HERE.parent / "plugin", HERE.parents[1])))
     command = [sys.executable, "-c", program, *VALIDATE, str(folder)]
     environment = {**os.environ, "PYTHONPATH": known, rocking_batch.GATE: str(gate)}
-    journal, deadline = folder / "journal.jsonl", time.monotonic() + PATIENCE_S
     with subprocess.Popen([*command, "--jobs", "1"], env=environment) as process:
-        while not journal.exists() or len(journal.read_bytes().splitlines()) < 2 + 5:
-            assert process.poll() is None
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        wait_for_rows(folder, process, 5)
         process.kill()
-    return journal.read_bytes().splitlines()
+    return (folder / "journal.jsonl").read_bytes().splitlines()
 
 
 def test_a_run_that_is_killed_in_a_batch_loses_that_batch_alone(tmp_path, note):
     folder, whole = tmp_path / "out", tmp_path / "whole"
     kept = killed_run(folder, tmp_path / "gate")
-    assert len(kept) == 2 + 5
+    assert len(kept) == HEAD + 5
     note.unlink()
     for place in (folder, whole):
         assert run([*VALIDATE, str(place), "--jobs", "2"]) == 0

@@ -246,6 +246,7 @@ def test_a_release_that_answers_nothing_is_passed_over():
     lines, changes = tables_of(found)
     assert lines["message"].to_list() == ["", "AttributeError: x", ""]
     assert changes[["before", "release"]].to_numpy().tolist() == [["3.0.0", "3.2.0"]]
+    assert lines["turned"].iloc[-1] == 0 and lines["moved"].iloc[-1] == pytest.approx(0.25)
 
 
 def test_notes_are_of_the_releases_after_one_up_to_another():
