@@ -182,8 +182,7 @@ def posed(
 
 def friction_needed(case: pd.Series[Any]) -> float:
     """Return the friction without which the block would slide; inf if it would lift off."""
-    found = simulate(*posed(*case[CASE[:-1]]))
-    return found.friction_needed if found.min_normal > 0.0 else math.inf
+    return simulate(*posed(*case[CASE[:-1]])).friction_needed
 
 
 def friction_of(source: str) -> float:

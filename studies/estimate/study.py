@@ -136,27 +136,22 @@ CONFIDENCE = 0.95
 """Of the interval of a factor."""
 
 
-def survivors(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
-    """Yield without end the random cases in which the exact solution rocks and survives."""
-    kept = (
-        drawn
-        for drawn in draw(seed, scene)
-        if simulate(drawn.block, drawn.motion).outcome is Outcome.ROCKED
-    )
-    for number, drawn in enumerate(kept):
-        yield replace(drawn, case=number)
-
-
 def both_sets(
     cases: int, tests: int, seed: int, scene: Drawn = "block"
 ) -> Iterator[tuple[str, RandomCase]]:
     """Yield so many cases that test and so many that calibrate, each with what it is for.
 
-    Those that test are drawn with the seed, those that calibrate with the next one.
+    Those that test are drawn with the seed, those that calibrate with the next one; kept are cases
+    in which the exact solution rocks and survives.
     """
     for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
-        for case in islice(survivors(first, scene), count):
-            yield use, case
+        kept = (
+            drawn
+            for drawn in draw(first, scene)
+            if simulate(drawn.block, drawn.motion).outcome is Outcome.ROCKED
+        )
+        for number, drawn in enumerate(islice(kept, count)):
+            yield use, replace(drawn, case=number)
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:

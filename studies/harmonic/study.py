@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -31,6 +31,8 @@ from studies.sources.registry import resolve
 __all__ = ["command", "finding", "report"]
 
 Over = Literal["frequency", "amplitude"]
+SWEPT = {"frequency": "omega_over_p", "amplitude": "onsets"}
+"""What of a motion is swept."""
 RANGES = {"frequency": (1.0, 8.0), "amplitude": (0.4, 3.0)}
 """Of ω/p, and of a_p over g tan α."""
 FIXED = {"frequency": 1.5, "amplitude": 4.0}
@@ -113,13 +115,9 @@ def command(
     refuse_excess(asked, count * POINT_BYTES)
     refuse_days(asked, count * (each**2 + FOLLOWED) * cycles * PERIOD_S, yes)
 
+    held = Shaking(block=block, onsets=fixed, omega_over_p=fixed)
     grid = np.linspace(begin, end, count).tolist()
-    shaken = [
-        Shaking(block=block, onsets=fixed, omega_over_p=x)
-        if over == "frequency"
-        else Shaking(block=block, onsets=x, omega_over_p=fixed)
-        for x in grid
-    ]
+    shaken = [replace(held, **{SWEPT[over]: x}) for x in grid]
 
     @cache
     def branches() -> list[Branch]:
@@ -148,16 +146,11 @@ def command(
     return carry_out(STUDY, plan, out, running, report)
 
 
-def abscissa(shaking: Shaking, over: Over) -> float:
-    """Return what of a motion is swept."""
-    return shaking.omega_over_p if over == "frequency" else shaking.onsets
-
-
 def row_of(branch: Branch, over: Over, starts: int) -> Row:
     """Return a branch as a row of harmonic.csv, of so many starts in all."""
     shaking, found = branch
     return {
-        "x": abscissa(shaking, over),
+        "x": getattr(shaking, SWEPT[over]),
         "onsets": shaking.onsets,
         "omega_over_p": shaking.omega_over_p,
         "outcome": found.outcome,
@@ -185,7 +178,7 @@ def engine_job(branch: Branch, over: Over, source: str) -> Job:
     return Job(
         labels={
             "table": "engines",
-            "x": abscissa(shaking, over),
+            "x": getattr(shaking, SWEPT[over]),
             "larger_exact": exact.right / shaking.block.alpha,
             "smaller_exact": exact.left / shaking.block.alpha,
             "period_exact": exact.period,

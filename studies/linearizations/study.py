@@ -21,7 +21,7 @@ from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.tables import read_table
 from studies.linearizations import STUDY
-from studies.measures.claims import TABLE, Finding, read_findings, tally, write_findings
+from studies.measures.claims import TABLE, claim, read_findings, tally, write_findings
 from studies.measures.differences import posed_cases
 from studies.measures.words import out_of
 
@@ -167,7 +167,7 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
     table, errors = STUDY.read(folder, "linearizations"), all_errors()
-    write_findings(folder, conclusions(table, errors))
+    write_findings(folder, [each.finding(errors) for each in CONCLUSIONS])
     tables = {
         "What the paper concludes": read_table(folder / TABLE),
         **{f"On the {name} grid": table.loc[table["grid"] == name, SHOWN] for name in GRIDS},
@@ -183,9 +183,10 @@ def finding(folder: Path) -> str:
     return tally(read_findings(folder), "the paper's conclusions about the linearizations")
 
 
-def frequency_matters(table: pd.DataFrame) -> tuple[bool, str]:
+@claim("(a) p√cos α in place of p brings a linearization closer, other things being equal")
+def frequency_matters(errors: pd.DataFrame) -> tuple[bool, str]:
     """Change the frequency alone, with either onset and either saddle."""
-    lines = table.set_index(["grid", "changed"])["median_error"]
+    lines = errors["error"].abs().groupby([errors["grid"], errors["changed"]]).median()
     pairs = itertools.product(GRIDS, "01", "01")
     closer = [
         lines[g, f"{onset}1{saddle}"] < lines[g, f"{onset}0{saddle}"] for g, onset, saddle in pairs
@@ -194,6 +195,7 @@ def frequency_matters(table: pd.DataFrame) -> tuple[bool, str]:
     return all(closer), f"the median error falls in {words} comparisons"
 
 
+@claim("(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more")
 def maps_mislead(errors: pd.DataFrame) -> tuple[bool, str]:
     """Count what Housner's linearization overturns falsely, also where H/B is 3 or more."""
     housner = errors[errors["changed"] == "000"]
@@ -225,6 +227,7 @@ def by_slenderness(errors: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([part.add_suffix(f" {word}") for word, part in found.items()], axis=1)
 
 
+@claim("(c) The modified linearization is closer than Housner's at every slenderness tried")
 def modified_is_better(errors: pd.DataFrame) -> tuple[bool, str]:
     """Compare median errors and wrong outcomes at every slenderness."""
     found = by_slenderness(errors)
@@ -236,19 +239,5 @@ def modified_is_better(errors: pd.DataFrame) -> tuple[bool, str]:
     )
 
 
-def conclusions(table: pd.DataFrame, errors: pd.DataFrame) -> list[Finding]:
-    """Hold the paper's conclusions (a), (b) and (c) against the numbers."""
-    return [
-        Finding(
-            "(a) p√cos α in place of p brings a linearization closer, other things being equal",
-            *frequency_matters(table),
-        ),
-        Finding(
-            "(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more",
-            *maps_mislead(errors),
-        ),
-        Finding(
-            "(c) The modified linearization is closer than Housner's at every slenderness tried",
-            *modified_is_better(errors),
-        ),
-    ]
+CONCLUSIONS = (frequency_matters, maps_mislead, modified_is_better)
+"""What the paper concludes of the linearizations."""

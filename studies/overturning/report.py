@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -87,19 +86,14 @@ def finding(lines: pd.DataFrame) -> str:
     words = f"Of an overturning map is wrong: {listed(shares)}"
     if engines.empty:
         return f"{words}."
-    presets = engines["source"].map(preset_of)
+    # the falls are parts of the map, the other kinds are counts
+    falls = (engines["cells"] * (engines["false"] + engines["missed"])).round()
+    engines, presets = engines.assign(**{FALL: falls}), engines["source"].map(preset_of)
     cells = []
     for name in in_order(presets):
         group = engines[presets == name]
-        counts = pd.DataFrame(map(_kinds, group.to_dict("records")))
-        cells.append(f"{in_words(name)} {between(counts, group['source'])}")
+        cells.append(f"{in_words(name)} {between(group, group['source'])}")
     return f"{words}. Of {engines['cells'].max():.0f} cells of a coarse grid: {'; '.join(cells)}."
-
-
-def _kinds(line: Mapping[Any, Any]) -> dict[str, int]:
-    """Return how many cells an engine gets wrong of each kind; the falls are parts of the map."""
-    fall = round(float(line["cells"]) * float(line["false"] + line["missed"]))
-    return {FALL: fall, REST: int(line[REST]), NO_ANSWER: int(line[NO_ANSWER])}
 
 
 def differences(areas: pd.DataFrame, engines: pd.DataFrame, window: Window) -> pd.DataFrame:

@@ -7,6 +7,8 @@ import resource
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -19,7 +21,7 @@ from engines.run.drive import run
 from studies.cases.paper import sweep_cases
 from studies.kit.executors import COMPILING_S
 from studies.kit.pool import Pool
-from studies.precision.repeats import enough
+from studies.precision.repeats import interleaved
 
 WORLDS, QUICK_WORLDS = 48, 4
 """Cases of the paper's figure 6 that are run, in equal distances."""
@@ -82,11 +84,11 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
     together = _together(name, groups.values())
     grown, first_s = _most_kib() - before, time.perf_counter() - started
     alone = [run(name, scene) for group in groups.values() for scene in group]
-    spent: dict[str, list[float]] = {AT_ONCE: [], ONE_BY_ONE: []}
-    began = time.perf_counter()
-    while not spent[AT_ONCE] or not enough(spent[AT_ONCE], time.perf_counter() - began, budget_s):
-        spent[AT_ONCE].append(_cpu_s(lambda: _together(name, groups.values())))
-        spent[ONE_BY_ONE].append(_cpu_s(lambda: [run(name, scene) for scene in scenes]))
+    actions = (
+        partial(_together, name, groups.values()),
+        lambda: [run(name, scene) for scene in scenes],
+    )
+    timed = interleaved([partial(_clocked, action) for action in actions], 0.5 * budget_s)
     steps = sum(response.steps for response in alone)
     return [
         {
@@ -97,8 +99,8 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
             "worlds": len(scenes),
             "batches": len(groups) if way is AT_ONCE else 0,
             "world_steps": steps,
-            "runs": len(spent[way]),
-            "cpu_s": min(spent[way]) / steps,
+            "runs": best.runs,
+            "cpu_s": best.wall_s / steps,
             "first_s": first_s if way is AT_ONCE else math.nan,
             "added_kib": grown / len(scenes) if way is AT_ONCE else math.nan,
             "other_outcomes": sum(
@@ -106,7 +108,7 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
             ),
             "largest_change": max(_changes(found, alone), default=math.nan),
         }
-        for way, found in ((AT_ONCE, together), (ONE_BY_ONE, alone))
+        for way, found, best in zip((AT_ONCE, ONE_BY_ONE), (together, alone), timed, strict=True)
     ]
 
 
@@ -114,10 +116,11 @@ def _together(name: str, groups: Iterable[Sequence[Scene]]) -> list[Response]:
     return [response for group in groups for response in run_together(name, group)]
 
 
-def _cpu_s(action: Callable[[], object]) -> float:
+def _clocked(action: Callable[[], Sequence[Response]]) -> Response:
+    """Return a response whose run time is the CPU time [s] that all of them took."""
     began = time.process_time()
-    action()
-    return time.process_time() - began
+    first = action()[0]
+    return replace(first, wall_s=time.process_time() - began)
 
 
 def _changes(found: Sequence[Response], others: Sequence[Response]) -> Iterator[float]:

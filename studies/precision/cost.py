@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
+from timeit import repeat
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,9 @@ from studies.precision.starts import start_table
 
 BUDGET_S, QUICK_BUDGET_S = 5.0, 0.15
 """Time [s] spent at most on timing one scene, in the mean of an engine's."""
+
+RUNS = 30
+"""Of what the exact solution is timed with, of which the shortest counts."""
 
 SCENES = 20
 """Scenes built at once to see what memory one takes."""
@@ -195,18 +198,9 @@ def reference_table() -> pd.DataFrame:
         ],
     }
     return pd.DataFrame(
-        {"scene": name, "wall_s": shortest(action)} for name, action in actions.items()
+        {"scene": name, "wall_s": min(repeat(action, number=1, repeat=RUNS))}
+        for name, action in actions.items()
     )
-
-
-def shortest(action: Callable[[], Any], runs: int = 30) -> float:
-    """Return the shortest of several run times [s]."""
-    times = []
-    for _ in range(runs):
-        began = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - began)
-    return min(times)
 
 
 def report(folder: Path) -> str:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ from engines.run.drive import build, run
 from engines.run.monitor import Monitor
 from engines.world import World
 from studies.cases.paper import HISTORIES
-from studies.precision.repeats import best_of, enough
+from studies.precision.repeats import best_of
 
 CASE = HISTORIES[5][1]
 """Figure 5-b: one impact before the peak, κ about 5."""
@@ -78,14 +79,16 @@ def _shares(engine: str, budget_s: float) -> Iterator[dict[str, Any]]:
 
 def least_clocked(engine: str, scene: Scene, budget_s: float) -> tuple[Response, dict[str, float]]:
     """Run with clocks around the parts; return the run that was disturbed least, and its sums."""
-    began = time.perf_counter()
-    found: list[tuple[Response, dict[str, float]]] = []
-    times: list[float] = []
-    while not times or not enough(times, time.perf_counter() - began, budget_s):
+    sums: dict[float, dict[str, float]] = {}
+
+    def clocked() -> Response:
         with clocks(engine) as spent:
-            found.append((run(engine, scene), spent))
-        times.append(found[-1][0].wall_s)
-    return min(found, key=lambda pair: pair[0].wall_s)
+            response = run(engine, scene)
+        sums[response.wall_s] = spent
+        return response
+
+    least = best_of(clocked, budget_s)
+    return least, sums[least.wall_s]
 
 
 DRIVERS = ("Python", "compiled")
@@ -132,7 +135,6 @@ def clocks(engine: str) -> Iterator[dict[str, float]]:
     if ENGINES[engine].own_step:
         places["engine"] = own_step(engine)
     spent = dict.fromkeys(places, 0.0)
-    kept = {part: getattr(owner, name) for part, (owner, name) in places.items()}
 
     def timed(part: str, call: Callable[..., Any]) -> Callable[..., Any]:
         def measured(*arguments: Any, **named: Any) -> Any:
@@ -144,10 +146,8 @@ def clocks(engine: str) -> Iterator[dict[str, float]]:
 
         return measured
 
-    try:
+    with contextlib.ExitStack() as clocked:
         for part, (owner, name) in places.items():
-            setattr(owner, name, timed(part, kept[part]))
+            watched = timed(part, getattr(owner, name))
+            clocked.enter_context(patch.object(owner, name, watched))
         yield spent
-    finally:
-        for part, (owner, name) in places.items():
-            setattr(owner, name, kept[part])

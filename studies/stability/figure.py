@@ -15,8 +15,9 @@ from matplotlib.patches import Patch, Rectangle
 
 from studies.drawing.facets import key
 from studies.drawing.styles import engine_title
-from studies.measures.presets import in_order, in_words, is_engine, preset_of, told
+from studies.measures.presets import in_order, in_words, preset_of, told
 from studies.measures.verdicts import ACCEPTED, Verdict
+from studies.stability.study import scores
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,14 +187,12 @@ def _label_cases(axes: Axes, cases: pd.DataFrame, across: int) -> None:
 
 def _message(rows: pd.DataFrame) -> str:
     """Say how many valid cases engines get right as they come and at best."""
-    asked = rows[rows["source"].map(is_engine) & (rows["verdict"] != Verdict.INVALID.value)]
-    right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"].map(preset_of))
-    good, total = right.sum().to_dict(), right.size().to_dict()
-    if not total:
+    found = scores(rows).groupby("preset")[["right", "valid"]].sum()
+    if found.empty:
         return "Extreme cases: what each method's answer is worth"
-    names = in_order(map(str, total))
+    names = in_order(found.index)
     words = [
-        f"{in_words(name)} {good[name]:.0f} of {total[name]}"
+        f"{in_words(name)} {found['right'][name]} of {found['valid'][name]}"
         for name in dict.fromkeys((names[0], names[-1]))
     ]
     return f"Right answers of engines to extreme cases:\n{', '.join(words)}"

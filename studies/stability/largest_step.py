@@ -81,12 +81,10 @@ def step_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
 
 def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
     """Return the contact times [s] to try a source with; nan for one that has none of its own."""
-    asked = resolve(source)
-    if asked.kind != "engine":
-        return (math.nan,)
     if is_sprung(source):
         return (math.nan, OWN_CONTACT / case.block.p)
-    return (asked.used.contact_s,)
+    asked = resolve(source)
+    return (asked.used.contact_s if asked.engine else math.nan,)
 
 
 def is_sprung(source: str) -> bool:

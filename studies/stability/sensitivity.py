@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import pandas as pd
 
@@ -70,25 +71,21 @@ def sensitivity_jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     """
     cases = [case for case in CASES if not quick or case.name in QUICK]
     deltas = (0.0, *(QUICK_DELTAS if quick else DELTAS))
-    return [
-        _job(case, source, quantity, delta)
-        for case in cases
-        for source in sources
-        for quantity in QUANTITIES
-        if quantity != "friction" or resolve(source).kind == "engine"
-        for delta in deltas
-    ]
-
-
-def _job(case: Extreme, source: str, quantity: str, delta: float) -> Job:
-    changed = perturbed(case, quantity, delta)
-    return Job(
-        labels={"table": "sensitivity", "case": case.name, "quantity": quantity, "delta": delta},
-        block=changed.block,
-        motion=changed.motion,
-        source=source,
-        options=changed.options(source),
-    )
+    jobs = []
+    for case, source, quantity, delta in product(cases, sources, QUANTITIES, deltas):
+        if quantity != "friction" or resolve(source).kind == "engine":
+            changed = perturbed(case, quantity, delta)
+            labels = {"case": case.name, "quantity": quantity, "delta": delta}
+            jobs.append(
+                Job(
+                    labels={"table": "sensitivity", **labels},
+                    block=changed.block,
+                    motion=changed.motion,
+                    source=source,
+                    options=changed.options(source),
+                )
+            )
+    return jobs
 
 
 def reduce_sensitivity(job: Job, response: Response) -> Row:

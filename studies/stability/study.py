@@ -262,30 +262,34 @@ def finding(matrix: pd.DataFrame) -> str:
 
     Cases beyond what the reference is valid for are in no count.
     """
-    valid = matrix["verdict"] != Verdict.INVALID.value
-    asked = matrix[matrix["source"].map(is_engine) & valid]
-    if asked.empty:
+    found = scores(matrix)
+    if found.empty:
         return "No engine was put to the extreme cases."
-    right = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
-    counts: dict[str, list[tuple[int, int]]] = {}
-    for source, good in right:
-        counts.setdefault(preset_of(str(source)), []).append((int(good.sum()), len(good)))
-    engines = list(dict.fromkeys(map(engine_of, asked["source"])))
+    engines = list(dict.fromkeys(map(engine_of, found["source"])))
     named = listed(engines) if len(engines) <= NAMED else f"{len(engines)} engines"
     verb = "get" if len(engines) > 1 else "gets"
     parts = [
-        f"{in_words(name)} {_counted(counts[name], len(engines))}" for name in in_order(counts)
+        f"{in_words(name)} {_counted(found[found['preset'] == name], len(engines))}"
+        for name in in_order(found["preset"])
     ]
     return f"Of extreme cases {named} {verb} right: {', '.join(parts)}."
 
 
-def _counted(pairs: list[tuple[int, int]], engines: int) -> str:
+def scores(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return of each engine source, preset, and how many valid cases there are and it has right."""
+    valid = matrix["verdict"] != Verdict.INVALID.value
+    asked = matrix[matrix["source"].map(is_engine) & valid]
+    good = (asked["verdict"] == Verdict.GOOD.value).groupby(asked["source"], sort=False)
+    table = good.agg(right="sum", valid="size").reset_index()
+    return table.assign(preset=table["source"].map(preset_of))
+
+
+def _counted(lines: pd.DataFrame, engines: int) -> str:
     """Return how many are right of how many, of each engine or of all; and of how many engines."""
-    right, total = zip(*pairs, strict=True)
-    if len(pairs) <= NAMED:
-        return each_out_of(right, total)
-    few = f" ({len(pairs)} engines)" if len(pairs) < engines else ""
-    return f"{out_of(sum(right), sum(total))}{few}"
+    if len(lines) <= NAMED:
+        return each_out_of(lines["right"].tolist(), lines["valid"].tolist())
+    few = f" ({len(lines)} engines)" if len(lines) < engines else ""
+    return f"{out_of(lines['right'].sum(), lines['valid'].sum())}{few}"
 
 
 def failures(matrix: pd.DataFrame) -> pd.DataFrame:

@@ -25,6 +25,7 @@ from studies.measures.findings import findings
 from studies.measures.posed import posed
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.words import alike, between, capital, in_kinds, part
+from studies.measures.wrongness import KINDS
 from studies.sources.registry import Effort, core_sources, resolve
 from studies.sweep import STUDY
 from studies.sweep.ports import port_table, same_physics
@@ -157,33 +158,29 @@ def over_all(summary: pd.DataFrame) -> pd.DataFrame:
     return lines.reset_index(drop=True)
 
 
-def engines_by_preset(lines: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Return the engines' lines of a summary, by preset, in the order in which these get better."""
-    rows = lines.assign(preset=lines["source"].map(preset_of))
-    rows = rows[rows["preset"] != ""]
-    return {name: rows[rows["preset"] == name] for name in in_order(rows["preset"])}
-
-
 def finding_of(lines: pd.DataFrame) -> str:
     """Say what the first and the best of the presets, and each linearization, are off by."""
-    groups = engines_by_preset(lines)
-    parts = [
-        _wrong_by_up_to(preset, groups[preset]["max_error"], groups[preset])
-        for preset in dict.fromkeys([*groups][:1] + [*groups][-1:])
-    ]
+    parts = _ends(preset_table(lines))
     models = [f"{row['source']} {in_kinds(row)}" for _, row in linearized(lines).iterrows()]
     parts += [f"by linearization: {'; '.join(models)}"] if models else []
     return capital("; ".join(parts)) + "."
 
 
-def _wrong_by_up_to(preset: str, errors: pd.Series[float], lines: pd.DataFrame) -> str:
+def _ends(table: pd.DataFrame) -> list[str]:
+    """Say what the first and the best of the presets have wrong and are off by, at worst."""
+    names = in_order(table["preset"]) if len(table) else []
+    ends = dict.fromkeys([*names[:1], *names[-1:]])
+    return [_wrong_by_up_to(name, table[table["preset"] == name]) for name in ends]
+
+
+def _wrong_by_up_to(preset: str, lines: pd.DataFrame) -> str:
     """Say of a preset what is wrong, source by source or between which counts, and how far."""
     cases = alike([f"{count:.0f}" for count in lines["cases"]])
     said = between(lines, lines["source"].map(engine_title))
     engines = f"{len(lines)} engines get" if len(lines) > 1 else "one engine gets"
     return (
         f"{in_words(preset)}, {engines} {said} of {cases} cases{' each' * (len(lines) > 1)}, and "
-        f"peaks off by up to {part(errors.max())}"
+        f"peaks off by up to {part(lines['max'].max())}"
     )
 
 
@@ -195,16 +192,19 @@ def linearized(lines: pd.DataFrame) -> pd.DataFrame:
 
 def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each preset and engine: outcomes, errors of the peak, time of a case."""
-    groups = engines_by_preset(lines)
+    rows = lines.assign(preset=lines["source"].map(preset_of))
+    groups = [rows[rows["preset"] == name] for name in in_order(rows["preset"]) if name]
     if not groups:
         return pd.DataFrame()
-    found = pd.concat(groups.values(), ignore_index=True)
-    return found.assign(
+    found = pd.concat(groups, ignore_index=True)
+    errors = ["median", "p90", "max"]
+    lines = found.assign(
         engine=found["source"].map(engine_of),
         right=found["agree"],
-        **{name: found[f"{name}_error"] for name in ("median", "p90", "max")},
+        **{name: found[f"{name}_error"] for name in errors},
         ms=1e3 * found["wall_s"] / found["cases"],
     )
+    return lines[["preset", "engine", "source", "right", *KINDS, "cases", *errors, "ms"]]
 
 
 def verdict(table: pd.DataFrame) -> str:
@@ -215,7 +215,4 @@ def verdict(table: pd.DataFrame) -> str:
     table : DataFrame
         From `preset_table`, of one folder or several.
     """
-    names = in_order(table["preset"])
-    ends = {name: table[table["preset"] == name] for name in (names[0], names[-1])}
-    parts = [_wrong_by_up_to(name, lines["max"], lines) for name, lines in ends.items()]
-    return " ".join(f"{capital(words)}." for words in parts)
+    return " ".join(f"{capital(words)}." for words in _ends(table))

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -65,25 +66,42 @@ def points(window: Window, count: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), onsets.ravel()
 
 
+COLUMNS = (
+    *("pulse", "source", "threads", "cases", "seconds", "cases_a_second"),
+    *("us_a_case_and_core", "busy", "steps", "wrong", "times_exact"),
+)
+"""Of throughput.csv."""
+
+
 def timings(window: Window, count: int, peers: int, threads: int) -> pd.DataFrame:
     """Return a row for each model, on all threads and on one, and for each peer."""
     x, onsets = points(window, count)
-    rows = []
+    rows: list[Timing] = []
     for used in dict.fromkeys((threads, 1)):
         peaks, spent = timed(partial(window.peaks, x, onsets, used))
-        wrong = int(np.isnan(peaks).sum())
-        rows.append(_row(window, PEAKS, used, len(x), spent, wrong))
-    for model in MODELS:
-        for used in dict.fromkeys((threads, 1)):
-            found, spent = timed(partial(window.modes, x, onsets, model, used))
-            failed, steps = int((found.mode == FAILED).sum()), float(found.steps.mean())
-            rows.append(_row(window, model, used, len(x), spent, failed, steps))
+        rows.append((PEAKS, used, len(x), *spent, math.nan, int(np.isnan(peaks).sum())))
+    for model, used in product(MODELS, dict.fromkeys((threads, 1))):
+        found, spent = timed(partial(window.modes, x, onsets, model, used))
+        failed = int((found.mode == FAILED).sum())
+        rows.append((model, used, len(x), *spent, float(found.steps.mean()), failed))
     for name, ask in peer_solvers().items():
         rows += _peer_rows(window, name, ask, peers)
-    table = pd.DataFrame(rows)
-    alone = (table["source"] == "exact") & (table["threads"] == 1)
-    us = table["us_a_case_and_core"]
-    return table.assign(times_exact=us / us[alone].iloc[0])
+    names = ["source", "threads", "cases", "seconds", "busy", "steps", "wrong"]
+    table = pd.DataFrame(rows, columns=names)
+    core_s = table["seconds"] * table["threads"]
+    us = 1e6 * core_s / table["cases"]
+    alone = us[(table["source"] == "exact") & (table["threads"] == 1)].iloc[0]
+    return table.assign(
+        pulse=window.pulse,
+        cases_a_second=table["cases"] / table["seconds"],
+        us_a_case_and_core=us,
+        busy=table["busy"] / core_s,
+        times_exact=us / alone,
+    )[[*COLUMNS]]
+
+
+Timing = tuple[str, int, int, float, float, float, int]
+"""Source, threads, cases, both times [s] of `Spent`, steps and wrong outcomes."""
 
 
 class Spent(NamedTuple):
@@ -104,30 +122,6 @@ def timed(solve: Callable[[], Found], runs: int = RUNS) -> tuple[Found, Spent]:
         solve()
         times.append(Spent(time.perf_counter() - began, time.process_time() - busy))
     return found, min(times)
-
-
-def _row(
-    window: Window,
-    name: str,
-    threads: int,
-    cases: int,
-    spent: Spent,
-    wrong: int,
-    steps: float = math.nan,
-) -> dict[str, object]:
-    seconds = spent.wall_s
-    return {
-        "pulse": window.pulse,
-        "source": name,
-        "threads": threads,
-        "cases": cases,
-        "seconds": seconds,
-        "cases_a_second": cases / seconds,
-        "us_a_case_and_core": 1e6 * seconds * threads / cases,
-        "busy": spent.busy_s / (seconds * threads),
-        "steps": steps,
-        "wrong": wrong,
-    }
 
 
 Overturns = Callable[[Window, FloatArray, FloatArray], Sequence[bool]]
@@ -154,19 +148,16 @@ def by_scipy(window: Window, x: FloatArray, onsets: FloatArray) -> list[bool]:
     return [response.outcome is Outcome.OVERTURNED for response in responses]
 
 
-def _peer_rows(
-    window: Window, name: str, ask: Overturns, count: int
-) -> Iterator[dict[str, object]]:
+def _peer_rows(window: Window, name: str, ask: Overturns, count: int) -> Iterator[Timing]:
     """Yield a peer's row, and another of its integrator alone where that is known."""
     x, onsets = points(window, count)
     before = _integrating_s(ask)
     found, spent = timed(partial(ask, window, x, onsets), runs=1)
     alone = (_integrating_s(ask) - before) / 2
     wrong = int((np.array(found) != (window.modes(x, onsets).mode >= 0)).sum())
-    yield _row(window, name, 1, len(x), spent, wrong)
+    yield name, 1, len(x), *spent, math.nan, wrong
     if not math.isnan(alone):
-        own = f"{name}, its integrator alone"
-        yield _row(window, own, 1, len(x), Spent(alone, alone), wrong)
+        yield f"{name}, its integrator alone", 1, len(x), alone, alone, math.nan, wrong
 
 
 def _integrating_s(ask: Overturns) -> float:

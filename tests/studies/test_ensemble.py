@@ -12,6 +12,7 @@ from scipy.stats import CensoredData, binomtest, lognorm, norm
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies import respond
 from studies.__main__ import run
+from studies.ensemble import study
 from studies.ensemble.agreement import (
     BOUNDS,
     DIGITS,
@@ -25,23 +26,14 @@ from studies.ensemble.agreement import (
     settled,
     share_bounds,
 )
-from studies.ensemble.study import (
-    FAMILIES,
-    curves,
-    drawn,
-    ensemble_jobs,
-    finding,
-    recorded,
-    stripes,
-)
 from studies.kit.arguments import BadInputError
 
 LEVELS = np.array([1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", study.FAMILIES)
 def test_a_family_is_reproducible_and_of_unit_peak(family):
-    one, again, other = (FAMILIES[family](seed) for seed in (5, 5, 6))
+    one, again, other = (study.FAMILIES[family](seed) for seed in (5, 5, 6))
     assert isinstance(one, Record)
     assert one == again
     assert one != other
@@ -49,14 +41,15 @@ def test_a_family_is_reproducible_and_of_unit_peak(family):
 
 
 def test_cases_are_scaled_to_their_intensity():
-    jobs = list(ensemble_jobs("near-fault", drawn("near-fault", 3, 1), ["exact"]))
+    jobs = list(study.ensemble_jobs("near-fault", study.drawn("near-fault", 3, 1), ["exact"]))
     assert len(jobs) == 2 * 3 * 3 * 6
     for job in jobs[::7]:
         onset = 9.81 * math.tan(job.block.alpha)
         peak = job.labels["strength"] * job.labels["intensity"] * onset
         assert job.motion.peak == pytest.approx(peak, rel=1e-12)
     assert [job.labels["strength"] for job in jobs[:4]] == [1.0, 1.01] * 2
-    gentle = next(ensemble_jobs("noise", drawn("noise", 1, 1), ["exact"], intensities=[0.999]))
+    noise = study.drawn("noise", 1, 1)
+    gentle = next(study.ensemble_jobs("noise", noise, ["exact"], intensities=[0.999]))
     assert simulate(gentle.block, gentle.motion).outcome is Outcome.AT_REST
 
 
@@ -239,7 +232,7 @@ def test_failed_rows_count_as_failed_and_not_as_survivors():
     # its capacity is held against the exact one of the same 175 cases
     assert (row["capacity_ratio"], row["ratio_low"], row["ratio_high"]) == (1.0, 1.0, 1.0)
     assert row["predicted"] == pytest.approx(175 / 180)
-    table = stripes(rows).set_index(["source", "intensity"])
+    table = study.stripes(rows).set_index(["source", "intensity"])
     assert table.loc[("other", 4.0), "cases"] == 25
     assert table["share_low"].le(table["share"]).all()
     assert table["share_high"].ge(table["share"]).all()
@@ -265,31 +258,17 @@ def test_a_bound_beyond_the_intensities_is_marked():
 
 def test_curves_rise_between_their_bounds():
     rows = made_up(lambda peak, _: peak)
-    table = curves(rows, fragilities(rows, 200))
+    table = study.curves(rows, fragilities(rows, 200))
     for _, curve in table.groupby("source"):
         assert (np.diff(curve["probability"]) >= 0).all()
         assert (curve["low"] <= curve["probability"] + 1e-9).all()
         assert (curve["high"] >= curve["probability"] - 1e-9).all()
 
 
-def test_the_command_writes_its_tables_and_draws_again(tmp_path, capsys):
-    arguments = ["ensemble", "--out", str(tmp_path), "--quick", "--motions", "3", "--jobs", "1"]
-    assert run([*arguments, "--sources", "modified"]) == 0
-    text = capsys.readouterr().out
-    assert text.startswith("Over many records, tests tell from the exact statistics those of ")
-    assert text == (tmp_path / "findings.txt").read_text()
-    assert len(pd.read_csv(tmp_path / "ensemble.csv")) == 3 * 3 * 3
-    for name in ("stripes", "curves", "agreement", "confusion"):
-        assert len(pd.read_csv(tmp_path / f"{name}.csv")) > 1
-    (tmp_path / "ensemble.png").unlink()
-    assert run(["redraw", str(tmp_path)]) == 0
-    assert (tmp_path / "ensemble.png").stat().st_size > 7_000
-
-
 def test_records_of_the_users_own(tmp_path, capsys):
     paths = []
     for seed in (1, 2):
-        motion = FAMILIES["ricker"](seed)
+        motion = study.FAMILIES["ricker"](seed)
         table = np.column_stack([motion.breakpoints, motion.samples])
         paths.append(str(tmp_path / f"{seed}.csv"))
         np.savetxt(paths[-1], table, header="units: m/s2", fmt="%.12g")
@@ -301,7 +280,7 @@ def test_records_of_the_users_own(tmp_path, capsys):
     rows = pd.read_csv(tmp_path / "out" / "ensemble.csv")
     block = RigidBlock(width=0.5, height=1.5)
     first = rows[(rows["source"] == "exact") & (rows["strength"] == 1)].iloc[0]
-    motion = FAMILIES["ricker"](1).scaled_to(first["intensity"] * 9.81 / 3)
+    motion = study.FAMILIES["ricker"](1).scaled_to(first["intensity"] * 9.81 / 3)
     # the file holds twelve digits
     assert first["peak_ratio"] == pytest.approx(simulate(block, motion).peak_ratio, rel=1e-6)
 
@@ -309,11 +288,11 @@ def test_records_of_the_users_own(tmp_path, capsys):
 def test_records_are_corrected_by_a_named_method(tmp_path):
     path = tmp_path / "motion.csv"
     path.write_text("t (s),a (m/s2)\n0,1\n0.1,3\n0.2,2\n0.3,4\n")
-    assert recorded([path], None)[0].samples.tolist() == [1.0, 3.0, 2.0, 4.0]
-    assert recorded([path], None, "constant")[0].samples.tolist() == [-1.5, 0.5, -0.5, 1.5]
+    assert study.recorded([path], None)[0].samples.tolist() == [1.0, 3.0, 2.0, 4.0]
+    assert study.recorded([path], None, "constant")[0].samples.tolist() == [-1.5, 0.5, -0.5, 1.5]
     path.write_text("t (s),a (m/s2)\n0,1\n0.1,1\n0.2,1\n")
     with pytest.raises(BadInputError, match=r"--records is .* its own constant trend"):
-        recorded([path], None, "constant")
+        study.recorded([path], None, "constant")
 
 
 def test_the_help_names_no_empty_default(capsys):
@@ -347,8 +326,8 @@ def test_bad_input_is_one_clear_line(options, words, tmp_path, capsys):
 def test_a_block_that_leans_in_a_soft_contact_comes_to_rest():
     """It lay with both corners 1e-8 m deep in MuJoCo's base, taken for a swing: 500 000 steps.
     A record of 1201 samples should take some steps of 1/200 p each, and some tens an impact."""
-    (motion,) = drawn("noise", 17, 1)[16:]
-    (job, *_) = ensemble_jobs("noise", [motion], ["mujoco"], [(1.0, 2.0)], [1.5])
+    (motion,) = study.drawn("noise", 17, 1)[16:]
+    (job, *_) = study.ensemble_jobs("noise", [motion], ["mujoco"], [(1.0, 2.0)], [1.5])
     response = respond("mujoco", job.block, job.motion)
     exact = simulate(job.block, job.motion)
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-4)
@@ -364,6 +343,6 @@ def test_whose_statistics_are_told_from_the_exact_ones_where_all_or_none_are():
         }
     )
     none = "no test tells the statistics of housner and modified from the exact ones."
-    assert finding(agreed).endswith(none)
+    assert study.finding(agreed).endswith(none)
     off = agreed.assign(ratio_low=1.1, ratio_high=1.3)
-    assert finding(off).endswith("the exact statistics those of housner and modified.")
+    assert study.finding(off).endswith("the exact statistics those of housner and modified.")

@@ -2,27 +2,16 @@
 
 import json
 import math
-from itertools import islice
 
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 from given import BLOCK, PULSE
 
 from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
 from studies.estimate import study
-from studies.estimate.study import (
-    CALIBRATE,
-    TEST,
-    beside_errors,
-    both_sets,
-    factors,
-    interval,
-    survivors,
-)
 from studies.kit.jobs import Job
 from studies.measures.halving import (
     ELSEWHERE,
@@ -86,7 +75,7 @@ def test_an_estimate_is_the_difference_of_two_runs(whole, half, found):
     assert estimate(*rows) == pytest.approx(found, nan_ok=True)
 
 
-def random_rows(errors, differences, use=CALIBRATE):
+def random_rows(errors, differences, use=study.CALIBRATE):
     """Return rows of one case each whose errors and estimates are given."""
     exact = respond("exact", BLOCK, PULSE).peak_ratio
     place = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
@@ -101,17 +90,17 @@ def random_rows(errors, differences, use=CALIBRATE):
 
 def test_factors_are_the_quantiles_of_error_over_estimate():
     # errors of 1 to 20 estimates of a thousandth
-    lines = beside_errors(random_rows([1e-3 * n for n in range(1, 21)], [1e-3] * 20))
+    lines = study.beside_errors(random_rows([1e-3 * n for n in range(1, 21)], [1e-3] * 20))
     assert lines["over"].to_numpy() == pytest.approx(range(1, 21), rel=1e-6)
-    line = factors(lines).iloc[0]
+    line = study.factors(lines).iloc[0]
     assert line[["factor_50", "factor_95", "factor_all"]].to_list() == pytest.approx([10, 19, 20])
     assert line[["within_3", "within_10"]].to_list() == pytest.approx([0.15, 0.5], abs=0.051)
 
 
 def test_the_cases_that_test_a_factor_are_not_those_that_gave_it():
-    drawn = [*both_sets(12, 8, seed=5)]
+    drawn = [*study.both_sets(12, 8, seed=5)]
     uses = [use for use, _ in drawn]
-    assert (uses.count(CALIBRATE), uses.count(TEST)) == (12, 8)
+    assert (uses.count(study.CALIBRATE), uses.count(study.TEST)) == (12, 8)
     assert len({(case.aspect, case.width_m, case.amplitude_g) for _, case in drawn}) == 20
     outcomes = {respond("exact", case.block, case.motion).outcome.value for _, case in drawn}
     assert outcomes == {"rocked"}
@@ -122,7 +111,7 @@ def test_the_cases_that_test_a_factor_are_not_those_that_gave_it():
 )
 def test_the_upper_end_of_a_factor_is_one_of_the_values_or_there_is_none(count, last):
     """All of 71 values are below the 95 % quantile with 0.95^71 = 0.026 > 2.5 %."""
-    assert interval(pd.Series(np.arange(1.0, count + 1.0)), 0.95)[1] == last
+    assert study.interval(pd.Series(np.arange(1.0, count + 1.0)), 0.95)[1] == last
 
 
 @pytest.mark.slow
@@ -130,7 +119,7 @@ def test_the_interval_holds_the_factor_as_often_as_it_says():
     """Errors over estimates with a heavy tail, drawn 2000 times: 95 % or more, within 3 sigma."""
     generator = np.random.default_rng(1)
     for count in (100, 300):
-        ends = [interval(pd.Series(generator.pareto(1.0, count)), 0.95) for _ in range(2000)]
+        ends = [study.interval(pd.Series(generator.pareto(1.0, count)), 0.95) for _ in range(2000)]
         held = np.mean([low <= 19.0 < high for low, high in ends])
         assert 0.935 < held < 0.99
         assert np.mean([high > 19.0 for _, high in ends]) > 0.965
@@ -138,12 +127,12 @@ def test_the_interval_holds_the_factor_as_often_as_it_says():
 
 def test_a_factor_is_tried_on_other_cases_than_those_that_gave_it():
     found = random_rows([1e-3 * n for n in range(1, 101)], [1e-3] * 100)
-    other = random_rows([0.02, 0.2], [1e-3] * 2, use=TEST)
-    line = factors(beside_errors(pd.concat([found, other]))).iloc[0]
+    other = random_rows([0.02, 0.2], [1e-3] * 2, use=study.TEST)
+    line = study.factors(study.beside_errors(pd.concat([found, other]))).iloc[0]
     assert line["factor_95_low"] < line["factor_95"] == pytest.approx(95, rel=1e-6)
     assert line["factor_95_high"] > 95
     assert (line["cases"], line["tested"], line["bounded"]) == (100, 2, 1)
-    alone = factors(beside_errors(found)).iloc[0]
+    alone = study.factors(study.beside_errors(found)).iloc[0]
     assert alone.drop(["tested", "bounded"]).equals(line.drop(["tested", "bounded"]))
 
 
@@ -165,8 +154,8 @@ def test_above_thirty_estimates_there_is_no_bound():
 
 
 def test_an_error_that_is_none_needs_no_estimate():
-    assert beside_errors(random_rows([1e-11], [0.0]))["over"].to_list() == [0.0]
-    assert beside_errors(random_rows([1e-3], [0.0]))["over"].to_list() == [math.inf]
+    assert study.beside_errors(random_rows([1e-11], [0.0]))["over"].to_list() == [0.0]
+    assert study.beside_errors(random_rows([1e-3], [0.0]))["over"].to_list() == [math.inf]
 
 
 def test_published_factors_say_whose_estimates_are_trusted():
@@ -188,23 +177,20 @@ def test_published_factors_say_whose_estimates_are_trusted():
 def test_published_factors_follow_from_the_published_rows():
     kept = pd.read_csv(FACTORS)
     lines = pd.read_csv(FACTORS.parent / "estimates.csv", keep_default_na=False, na_values=["nan"])
-    pd.testing.assert_frame_equal(factors(lines), kept, check_dtype=False, rtol=1e-12)
+    pd.testing.assert_frame_equal(study.factors(lines), kept, check_dtype=False, rtol=1e-12)
 
 
-def test_the_study_makes_its_tables_and_goes_on(tmp_path, capsys):
+def test_cases_that_test_come_first_each_with_its_half(tmp_path):
     few = ["estimate", "--seed", "3", "--sources", "mujoco:naive", "--jobs", "1", "--tests", "2"]
     assert run([*few, "--cases", "4", "--out", str(tmp_path)]) == 0
-    assert study.STUDY.finding(tmp_path)[:80] in capsys.readouterr().out
     rows = pd.read_csv(tmp_path / "estimate.csv")
     assert list(rows["half"]) == [0, 1] * 6
-    assert list(rows["set"]) == [TEST] * 4 + [CALIBRATE] * 8
-    assert study.STUDY.finding(tmp_path).startswith("The difference from half the step")
-    assert (tmp_path / "estimate.png").stat().st_size > 7_000
+    assert list(rows["set"]) == [study.TEST] * 4 + [study.CALIBRATE] * 8
 
 
 def test_cases_that_do_not_rock_calibrate_nothing():
     overturned = random_rows([0.0], [0.0]).assign(outcome="overturned", peak_ratio=math.inf)
-    (line,) = factors(beside_errors(overturned)).to_dict("records")
+    (line,) = study.factors(study.beside_errors(overturned)).to_dict("records")
     assert line["survivors"] == 0
     assert math.isnan(line["factor_95"]) and line["factor_95_high"] == math.inf
 
@@ -213,8 +199,8 @@ def test_pairs_are_asked_at_another_step(tmp_path):
     few = ["estimate", "--seed", "3", "--sources", "mujoco", "--jobs", "1", "--cases", "1"]
     assert run([*few, "--tests", "1", "--step", "0.02", "--out", str(tmp_path)]) == 0
     rows = pd.read_csv(tmp_path / "estimate.csv")
-    rows = rows[rows["set"] == TEST].set_index(["case", "half"])
-    (case, *_) = islice(survivors(3), 1)
+    rows = rows[rows["set"] == study.TEST].set_index(["case", "half"])
+    ((_, case),) = study.both_sets(0, 1, 3)
     for half, step in ((0, 0.02), (1, 0.01)):
         answer = respond("mujoco", case.block, case.motion, step=step)
         assert rows.loc[(0, half), "peak_ratio"] == pytest.approx(answer.peak_ratio, rel=1e-12)
@@ -225,7 +211,7 @@ def test_frames_are_asked_at_half_their_steps_too(tmp_path, capsys):
     asked = ["--scene", "frame", "--cases", "2", "--tests", "1", "--sources", "mujoco:landing"]
     assert run(["estimate", "--out", str(tmp_path), *asked, "--jobs", "1"]) == 0
     lines = pd.read_csv(tmp_path / "estimates.csv")
-    assert set(lines["set"]) == {TEST, CALIBRATE}
+    assert set(lines["set"]) == {study.TEST, study.CALIBRATE}
     # of second order: half the step has a fourth of the error, the difference is three fourths
     assert lines["over"].to_numpy() == pytest.approx([4.0 / 3.0] * 3, rel=0.1)
 
@@ -268,8 +254,3 @@ def test_a_comparison_carries_estimates(capsys):
     own = [word for word in asked if word not in ("--step", "0.02")]
     assert run([*own, "--sources", "mujoco"]) == 0
     assert ELSEWHERE not in capsys.readouterr().out
-
-
-def test_sources_without_steps_to_halve_are_refused(tmp_path, capsys):
-    words = "--sources is 'exact'; it must be an engine with steps"
-    refused(capsys, ["estimate", "--sources", "exact", "--out", tmp_path / "a"], words)

@@ -122,5 +122,6 @@ def test_a_failed_source_has_no_errors(tmp_path, monkeypatch, capsys):
     source = resolve("exact")
     monkeypatch.setitem(SOURCES, "fails", type(source)("model", fails))
     rows = fill(STUDY, plan(["exact", "fails"], quick=True), tmp_path, Running(jobs=1))
+    assert len(rows) == 2 * 2 * 2
     assert {row["outcome"] for row in rows if row["source"] == "fails"} == {Outcome.FAILED.value}
     assert re.search(r"^fails .* - +- +-$", report(tmp_path), re.MULTILINE)

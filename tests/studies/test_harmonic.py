@@ -5,10 +5,8 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 from given import BLOCK
-from independent import angular_acceleration
-from scipy.integrate import solve_ivp
+from independent import swing
 
 from analytic import RigidBlock
 from studies.__main__ import run
@@ -37,21 +35,14 @@ def test_orbits_beside_the_one_that_is_followed_are_found(tmp_path, capsys):
 def carried(shaking, state, periods):
     """Return the state [rad, rad/s] after some periods, and the impacts, by SciPy's DOP853."""
     block, motion = shaking.block, shaking.motion(periods)
+
+    def ground(time):
+        return motion.amplitude * math.sin(motion.omega * time + motion.phase)
+
     t, s, impacts = 0.0, int(math.copysign(1, state[0] or state[1])), 0
     while t < motion.duration:
-
-        def equation(time, x, s=s):
-            a_g = motion.amplitude * math.sin(motion.omega * time + motion.phase)
-            return [x[1], angular_acceleration("exact", block, s, x[0], a_g)]
-
-        def contact(time, x, s=s):
-            return s * x[0]
-
-        contact.terminal, contact.direction = True, -1
-        path = solve_ivp(
-            equation, (t, motion.duration), state, "DOP853", rtol=1e-12, atol=1e-15,
-            events=contact, max_step=0.05 / block.p,
-        )  # fmt: skip
+        span = (t, motion.duration)
+        path = swing("exact", block, ground, s, span, state, max_step=0.05 / block.p)
         t, state = path.t[-1], path.y[:, -1]
         if path.t_events[0].size:
             s, state, impacts = -s, np.array([0.0, block.restitution * state[1]]), impacts + 1
@@ -145,18 +136,3 @@ def test_engines_stay_on_the_exact_orbit(tmp_path, capsys):
     lost, whole = engine_errors(engines).to_dict("records")
     assert (lost["orbits"] - lost["kept"], whole["orbits"] - whole["kept"]) == (1, 0)
     assert whole["median_error"] <= whole["max_error"] < 1e-3
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("--starts", "0"),
-        ("--starts", "100000000"),
-        ("--onsets", "2", "--over", "amplitude"),
-        ("--omega-over-p", "2"),
-        ("--low", "5", "--high", "4"),
-        ("--sources", "exact"),
-    ],
-)
-def test_bad_input_is_one_line(arguments, tmp_path, capsys):
-    refused(capsys, ["harmonic", "--out", tmp_path / "out", *arguments], arguments[0])

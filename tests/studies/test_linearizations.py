@@ -3,13 +3,11 @@
 import math
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic import MODELS, peak_ratios
 from studies.linearizations import study as linearizations
 from studies.linearizations.study import NAMED, VARIANTS, errors_on, grid
-from studies.page import redraw
 
 
 @pytest.mark.parametrize(("changed", "name"), NAMED.items())
@@ -55,17 +53,9 @@ def test_grids_have_no_copies_and_errors_are_against_the_exact_peak():
     assert row["difference"] == pytest.approx(peaks[0] - peaks[1])
 
 
-def test_the_page_and_its_figure(tmp_path, capsys):
-    assert linearizations.command(out=tmp_path) == 0
-    text = capsys.readouterr().out
-    assert (tmp_path / "findings.txt").read_text() == text
-    assert "(a)" in text and "(b)" in text and "(c)" in text
-    table = pd.read_csv(tmp_path / "linearizations.csv", dtype={"changed": str})
-    assert len(table) == 16
-    before = (tmp_path / "linearizations.png").read_bytes()
-    (tmp_path / "linearizations.png").unlink()
-    assert redraw.command(tmp_path) == 0
-    assert (tmp_path / "linearizations.png").read_bytes() == before
+def test_every_variant_is_summarized_on_both_grids():
+    lines = linearizations.summarize(linearizations.all_errors())
+    assert len(lines) == 16 and not lines.duplicated(["grid", "changed"]).any()
 
 
 def test_what_the_named_linearizations_miss_at_each_slenderness():
@@ -77,5 +67,5 @@ def test_what_the_named_linearizations_miss_at_each_slenderness():
     assert found["modified error"].iloc[3] == mine["error"].abs().median()
     assert found["modified wrong"].iloc[3] == mine["wrong"].mean()
     worse = errors.assign(wrong=errors["wrong"] | (errors["changed"] == "111"))
-    assert linearizations.modified_is_better(errors)[0]
-    assert not linearizations.modified_is_better(worse)[0]
+    assert linearizations.modified_is_better.finding(errors).holds
+    assert not linearizations.modified_is_better.finding(worse).holds

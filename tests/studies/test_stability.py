@@ -17,7 +17,7 @@ from studies.measures.differences import with_conditioning
 from studies.measures.energy import energy, growth
 from studies.measures.verdicts import Verdict, invalidity, judge
 from studies.sources.registry import resolve
-from studies.stability import STUDY
+from studies.stability import STUDY, study
 from studies.stability.figure import MARKS
 from studies.stability.largest_step import (
     FACTOR,
@@ -27,6 +27,7 @@ from studies.stability.largest_step import (
     largest_good,
     search,
     search_job,
+    step_jobs,
 )
 from studies.stability.remedies import NOTHING, answer, remedies
 from studies.stability.sensitivity import (
@@ -36,15 +37,6 @@ from studies.stability.sensitivity import (
     perturbed,
     sensitivity_jobs,
     with_growth,
-)
-from studies.stability.study import (
-    METHODS,
-    ask_for_table,
-    matrix_jobs,
-    plan,
-    reduce,
-    report,
-    without_result,
 )
 
 CASE = Extreme(name="plain", group="test")
@@ -58,7 +50,7 @@ def named(name):
 def job_of(name, source):
     return next(
         job
-        for job in matrix_jobs([source], False)
+        for job in study.matrix_jobs([source], False)
         if (job.labels["case"], job.source) == (name, source)
     )
 
@@ -169,6 +161,14 @@ def test_edge_is_found_within_its_factor(limit):
     assert math.isnan(largest_good(lambda step: step < SMALLEST_STEP, FACTOR))
 
 
+def test_a_search_is_tried_with_every_contact_time_of_a_source():
+    asked = step_jobs(["exact", "rk4", "mujoco:naive", "mujoco:fixed"], True)
+    assert [job.source for job in asked] == ["rk4", "mujoco:naive", *["mujoco:fixed"] * 2]
+    own = resolve("mujoco:naive").used.contact_s
+    times = [math.nan, own, math.nan, 0.01 / CASE.block.p]
+    assert [job.labels["contact_s"] for job in asked] == pytest.approx(times, nan_ok=True)
+
+
 def test_largest_accurate_step_is_accurate_and_the_next_is_not():
     case = Extreme(name="peak after an impact", group="steps")
     source = resolve("average-acceleration")
@@ -188,7 +188,7 @@ def test_a_coarse_step_is_mended_by_a_finer_one():
     assert found.remedy not in ("", NOTHING)
 
 
-@pytest.mark.parametrize("source", METHODS)
+@pytest.mark.parametrize("source", study.METHODS)
 def test_remedies_are_other_settings(source):
     case = named("contact of 1e-5/p")
     found = remedies(case, source)
@@ -223,8 +223,11 @@ def test_a_wider_block_keeps_its_height_and_its_pulse():
 
 def test_growth_of_the_exact_solution_is_its_kappa():
     jobs = sensitivity_jobs(["exact"], True)
-    rows = [{**job.labels, "source": "exact", **reduce(job, ask(job, job.asked))} for job in jobs]
-    pair = [row for row in rows if row["quantity"] == "amplitude" and row["delta"] in (0.0, 1e-6)]
+    pair = [
+        {**job.labels, "source": "exact", **study.reduce(job, ask(job, job.asked))}
+        for job in jobs
+        if job.labels["quantity"] == "amplitude" and job.labels["delta"] in (0.0, 1e-6)
+    ]
     moved = with_growth(pd.DataFrame(pair))
     # the second derivative of the peak is the error, some κ times the perturbation
     assert moved["growth_over_kappa"].iloc[1] == pytest.approx(1.0, rel=1e-4)
@@ -234,11 +237,11 @@ def test_growth_of_the_exact_solution_is_its_kappa():
     pd.testing.assert_frame_equal(with_growth(moved), moved)
 
 
-@pytest.mark.parametrize("source", METHODS)
+@pytest.mark.parametrize("source", study.METHODS)
 def test_every_method_has_a_row_and_so_has_one_that_was_given_up(source):
     job = job_of("ω/p 10", source)
-    answered = reduce(job, ask_for_table(job, resolve(source), time_limit_s=60.0))
-    given_up = reduce(job, Response.failure("no result within the time limit"))
+    answered = study.reduce(job, study.ask_for_table(job, resolve(source), time_limit_s=60.0))
+    given_up = study.reduce(job, Response.failure("no result within the time limit"))
     assert answered["outcome"] == "rocked"
     assert answered["verdict"] in [verdict.value for verdict in Verdict]
     assert given_up["verdict"] == Verdict.FAILED.value
@@ -250,7 +253,7 @@ def test_every_method_has_a_row_and_so_has_one_that_was_given_up(source):
 
 def test_a_search_that_was_given_up_is_a_row_too():
     job = search_job(PROBLEMS[0], "rk4", math.nan, True)
-    row = reduce(job, Response.failure("no result within the time limit"))
+    row = study.reduce(job, Response.failure("no result within the time limit"))
     assert row["outcome"] == "failed"
     assert math.isnan(row["largest_stable"])
 
@@ -267,18 +270,15 @@ def test_only_a_source_without_any_result_is_speechless():
         {"source": "a", "outcome": "rocked"},
         {"source": "b", "outcome": "failed"},
     ]
-    assert without_result(rows) == rows[2:]
+    assert study.without_result(rows) == rows[2:]
 
 
-def test_a_folder_holds_its_tables_figure_and_findings_and_goes_on(tmp_path):
-    fill(STUDY, plan(["exact"], True, 60.0), tmp_path, Running(jobs=1))
+def test_a_folder_goes_on_with_another_source(tmp_path):
+    fill(STUDY, study.plan(["exact"], True, 60.0), tmp_path, Running(jobs=1))
     kept = (tmp_path / "journal.jsonl").read_text().splitlines()
-    fill(STUDY, plan(["exact", "housner"], True, 60.0), tmp_path, Running(jobs=1))
+    fill(STUDY, study.plan(["exact", "housner"], True, 60.0), tmp_path, Running(jobs=1))
     assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
-    text = report(tmp_path)
-    assert report(tmp_path) == text
+    study.report(tmp_path)
     matrix = pd.read_csv(tmp_path / "stability.csv")
     assert set(matrix.loc[matrix["source"] == "exact", "verdict"]) == {"good"}
     assert set(matrix.loc[matrix["source"] == "housner", "verdict"]) != {"good"}
-    assert (tmp_path / "findings.txt").read_text() == report(tmp_path) + "\n"
-    assert (tmp_path / "stability.png").stat().st_size > 4_000

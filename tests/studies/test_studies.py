@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from declared import held_to
 from given import BLOCK, FULL_SINE
 
@@ -13,16 +14,13 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.disclosure import Deviation
 from studies import respond
+from studies.__main__ import run
 from studies.cases.paper import HISTORIES, sweep_cases
+from studies.catalogue import STUDIES
 from studies.histories import study as histories
 from studies.kit.journal import FolderError
 from studies.page import redraw
 from studies.sources.registry import SOURCES, Source, UnknownSourceError, resolve
-
-
-def raises(block, motion, *, duration, times):
-    raise RuntimeError("the engine\nsaid no")
-
 
 HERE = installed_engines()
 EVERY_NAME = [
@@ -96,12 +94,11 @@ def test_options_reach_the_source():
 def test_the_paper_has_960_cases():
     cases = list(sweep_cases((6, 7, 8, 9)))
     assert len(cases) == len(set(cases)) == 960
-    last = cases[-1]
+    last, pulse = cases[-1], cases[-1].motion
     assert (last.figure, last.pulse, last.aspect, last.width_m) == (9, "full-sine", 4, 1.0)
-    assert last.block.height == 4.0
-    assert last.motion.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
-    assert last.motion.omega == pytest.approx(4.0 * last.block.p)
-    assert last.motion.half_cycles == 2
+    assert (last.block.height, pulse.half_cycles) == (4.0, 2)
+    assert pulse.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
+    assert pulse.omega == pytest.approx(4.0 * last.block.p)
 
 
 @pytest.mark.slow
@@ -131,7 +128,90 @@ def test_histories_of_named_sources_can_be_run_again(tmp_path, capsys, monkeypat
 
 
 def test_a_history_that_failed_leaves_the_others(tmp_path, capsys, monkeypatch):
+    def raises(*_, **__):
+        raise RuntimeError("the engine\nsaid no")
+
     monkeypatch.setitem(SOURCES, "raises", Source("model", raises))
     assert histories.command(out=tmp_path, figure=(4,), sources=("raises", "exact")) == 1
     assert "failed" in capsys.readouterr().out
     assert set(pd.read_csv(tmp_path / "figure-4.csv")["source"]) == {"exact"}
+
+
+MADE = [
+    "ensemble --quick --motions 3 --sources modified",
+    "estimate --seed 3 --cases 4 --tests 2 --sources mujoco:naive",
+    "linearizations",
+    "overturning --quick --columns 20 --rows 40 --sources exact housner",
+    "stability --quick --sources exact housner",
+]
+AT_LENGTH = [
+    "defaults --quick --sources pybullet:naive",
+    "free --quick --sources exact housner",
+    "harmonic --quick --points 2 --low 4.5 --high 5",
+    "validate --cases 3 --sources exact mujoco",
+    "validity --quick --sources pybullet:fixed",
+]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [*MADE, *(pytest.param(asked, marks=pytest.mark.slow) for asked in AT_LENGTH)],
+    ids=lambda asked: asked.partition(" ")[0],
+)
+def test_a_study_is_told_as_it_is_kept_and_drawn_again_from_its_tables(asked, tmp_path, capsys):
+    name, *options = asked.split()
+    (study,) = (study for study in STUDIES if study.name == name)
+    assert run([name, "--out", str(tmp_path), *options]) == 0
+    text = capsys.readouterr().out
+    assert text == (tmp_path / "findings.txt").read_text()
+    assert " ".join(text.split()).startswith(study.finding(tmp_path)[:80])
+    drawn = {path: path.read_bytes() for path in tmp_path.glob("*.png")}
+    assert {path.stem for path in drawn} <= set(study.captions)
+    for path, picture in drawn.items():
+        assert len(picture) > 4_000
+        path.unlink()
+    assert run(["redraw", str(tmp_path)]) == 0
+    assert {path: path.read_bytes() for path in tmp_path.glob("*.png")} == drawn != {}
+
+
+# (command line, parts of what it is told)
+REFUSED = [
+    ("overturning --sources housner", "--sources", "exact"),
+    ("overturning --sources exact rk4", "'rk4'", "engines"),
+    ("overturning --onsets 0.5", "--onsets", "from 1.001 to 1000"),
+    ("overturning --low 3 --high 2", "--low", "smaller"),
+    ("overturning --low 2 --high 2.0000000000000004", "--low", "smaller"),
+    ("overturning --low 1e-300", "--low", "from 0.001 to 1000"),
+    ("overturning --high 1e300", "--high", "from 0.001 to 1000"),
+    ("overturning --over slenderness --high 2", "--high", "to 1.5"),
+    ("overturning --over size --pulse-hz 1e-300", "--pulse-hz", "from 0.0008 to 100"),
+    ("overturning --onsets 1e300", "--onsets", "to 1000"),
+    ("overturning --onsets 1.0000000000000002", "--onsets", "from 1.001"),
+    ("overturning --aspect 1e300", "--aspect", "from 0.1 to 100"),
+    ("overturning --over slenderness --omega-over-p 1e300", "--omega-over-p", "to 1000"),
+    ("overturning --over slenderness --aspect 3", "--aspect", "frequency or size"),
+    ("overturning --omega-over-p 3", "--omega-over-p", "only with --over slenderness"),
+    ("overturning --pulse-hz 2", "--pulse-hz", "only with --over size"),
+    ("overturning --columns 1000000000", "--columns", "GB"),
+    ("overturning --rows 1000000000", "--rows", "GB"),
+    ("overturning --columns 200000 --rows 1000000", "--columns", "--yes"),
+    ("overturning --over colour", "--over", "frequency"),
+    ("overturning --rows 0", "--rows", "positive"),
+    ("harmonic --starts 0", "--starts"),
+    ("harmonic --starts 100000000", "--starts"),
+    ("harmonic --onsets 2 --over amplitude", "--onsets"),
+    ("harmonic --omega-over-p 2", "--omega-over-p"),
+    ("harmonic --low 5 --high 4", "--low"),
+    ("harmonic --sources exact", "--sources"),
+    ("estimate --sources exact", "--sources is 'exact'; it must be an engine with steps"),
+    ("validate --scene slide", "--scene is 'slide'; it must be among block, frame"),
+    ("estimate --scene slide", "--scene is 'slide'; it must be among block, frame"),
+    ("validity --sources exact", "--sources names 'exact'; it must name engines"),
+]
+
+
+@pytest.mark.parametrize(("asked", "parts"), [(asked, parts) for asked, *parts in REFUSED])
+def test_what_no_study_takes_is_one_line(asked, parts, tmp_path, capsys):
+    command, *options = asked.split()
+    refused(capsys, [command, "--out", tmp_path / "new", *options], *parts)
+    assert not (tmp_path / "new").exists()

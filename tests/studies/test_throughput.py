@@ -25,6 +25,8 @@ def test_every_solver_answers_the_same_cases(tmp_path, monkeypatch, capsys):
     assert table["busy"].between(0.0, 1.1).all()
     rates = table["cases"] / table["seconds"]
     assert table["cases_a_second"].to_numpy() == pytest.approx(rates.to_numpy())
+    of_a_core = 1e-6 * table["us_a_case_and_core"] * rates
+    assert of_a_core.to_numpy() == pytest.approx(table["threads"].to_numpy())
 
 
 def test_points_fill_the_window():

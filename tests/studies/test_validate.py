@@ -8,7 +8,6 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 
 from analytic import frame_faults, simulate
 from engines.layouts import BEAM_DEPTH, SPACING
@@ -112,12 +111,6 @@ def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     found = {line["source"]: line["peak_ratio"] for line in lines}
     assert found["mujoco:landing"] / found["exact"] - 1.0 == pytest.approx(worst["error"], rel=1e-5)
-
-
-@pytest.mark.parametrize("command", ["validate", "estimate"])
-def test_random_slides_are_refused(command, tmp_path, capsys):
-    words = "--scene is 'slide'; it must be among block, frame"
-    refused(capsys, [command, "--scene", "slide", "--out", tmp_path / "out"], words)
 
 
 def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
