@@ -39,7 +39,7 @@ TABLES = (LADDER, *PAPER, EXTREME, SHAPES)
 """Tables without which there is no advice."""
 
 SETTINGS = ["engine", "preset", "value", "wall_s", "runs", "cases", "max_error"]
-"""Columns of `settings`."""
+"""Columns of `settings`, but for the driver."""
 
 
 def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
@@ -61,25 +61,19 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         coarse to fine.
     """
     found = pd.concat([along_steps(published, engines), of_paper(published, engines)])
+    found["driver"] = found.groupby(SETTING[:2])["driver"].transform("first")
     # where both tables know a setting, the ladder's time is the best of several
     lines = found.groupby(SETTING, sort=False, dropna=False, as_index=False).agg(
         wall_s=("wall_s", "first"),
         runs=("runs", "first"),
         cases=("cases", "sum"),
         max_error=("max_error", "max"),
+        driver=("driver", "first"),
     )
     uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
     steps = lines["value"].fillna(pd.Series(map(declared_step, uses)))
     preset = lines.groupby(SETTING[:2], sort=False).ngroup()
-    lines = lines.merge(drivers(published), how="left")
     return lines.iloc[np.lexsort((-steps, preset))].reset_index(drop=True)
-
-
-def drivers(published: Path) -> pd.DataFrame:
-    """Return who takes the steps of each engine and preset: Python, or a compiled loop."""
-    table = pd.read_csv(published / LADDER, usecols=["method", "driver"]).dropna()
-    table[["engine", "preset"]] = table["method"].str.extract(r"(\S+) ([^,]*)")
-    return table[["engine", "preset", "driver"]].drop_duplicates()
 
 
 def published_engines(published: Path) -> list[str]:
@@ -107,7 +101,7 @@ def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     )
     lines = joint(pd.read_csv(published / LADDER)).merge(uses, on="method")
     worst = lines["max_error"].where(lines["failed"] == 0, math.inf)
-    return lines.assign(max_error=worst)[SETTINGS]
+    return lines.assign(max_error=worst)[[*SETTINGS, "driver"]]
 
 
 def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
@@ -233,8 +227,8 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
     compared = with_reference(pd.DataFrame(rows))
     error = compared["error"].abs().where(compared["agrees"], math.inf).fillna(0.0)
     lines = compared[[*SETTING, "case"]].assign(condition=_condition(compared), error=error)
-    numbers = ["condition", "error"]
-    return lines.assign(**{name: lines[name].map(_short) for name in numbers})
+    numbers = lines[["condition", "error"]].map(f"{{:.{DIGITS}g}}".format).astype(float)
+    return lines.assign(condition=numbers["condition"], error=numbers["error"])
 
 
 def _condition(compared: pd.DataFrame) -> pd.Series[float]:
@@ -245,10 +239,6 @@ def _condition(compared: pd.DataFrame) -> pd.Series[float]:
     ]
     firm = pd.Series(np.isinf(nearby).all(axis=0), index=compared.index)
     return conditioning_of(compared).mask(falls & firm, 1.0).mask(falls & ~firm, math.inf)
-
-
-def _short(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}")
 
 
 def random_runs(published: Path) -> pd.DataFrame:

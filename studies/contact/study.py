@@ -89,8 +89,9 @@ def plan(engines: Sequence[str], quick: bool, scene: Drawn = "block") -> Plan:
     asked_about = cases(quick) if scene == "block" else frame_cases(quick)
     jobs = [
         job_of(variant, kind, case, quick, own_step)
-        for own_step, asked in ((False, all_variants), (True, of_defaults))
-        for variant in asked(engines)
+        for own_step in (False, True)
+        for variant in all_variants(engines)
+        if not own_step or has_own_step(variant)
         for kind, case in asked_about
         if scene == "block" or holds(variant, case)
     ]
@@ -116,10 +117,9 @@ def all_variants(engines: Sequence[str]) -> list[Variant]:
     return [variant for engine in engines for variant in variants(engine)]
 
 
-def of_defaults(engines: Sequence[str]) -> list[Variant]:
-    """Return the ways to set some engines that have a step of the library's own."""
-    found = [v for v in all_variants(engines) if v.preset == DEFAULT]
-    return [variant for variant in found if variant.factor != OWN_STEPS]
+def has_own_step(variant: Variant) -> bool:
+    """Say whether a way to set an engine is asked at the library's own step, too."""
+    return variant.preset == DEFAULT and variant.factor != OWN_STEPS
 
 
 @functools.cache

@@ -55,16 +55,9 @@ def outlines(system: System, at: float) -> FloatArray:
     return np.array(corners)
 
 
-def draw_block(width: float = 1.0, height: float = 2.2, theta: float = 0.22) -> Figure:
-    """Draw a block that rocks, with the names of its parts.
-
-    Parameters
-    ----------
-    width, height : float, optional
-        B and H, in units of the drawing, which is 2.95 wide and 3.1 high.
-    theta : float, optional
-        Rotation [rad], positive: the names are placed for a lean to the right.
-    """
+def draw_block() -> Figure:
+    """Draw a block that rocks to the right, with the names of its parts."""
+    width, height, theta = 1.0, 2.2, 0.22  # in units of the drawing, and in rad
     drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
     axes = drawing.subplots()
     axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6), aspect="equal")
@@ -199,7 +192,10 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
     panels = upper.subplots(1, len(others), sharey=True)
     for axes, (_, line) in zip(panels, others.iterrows(), strict=True):
         source = str(line["source"])
-        right, found = (_rotation_at(samples, name, instant) for name in ("exact", source))
+        right, found = (
+            float(np.interp(instant, points["time_s"], points["theta_ratio"]))  # or the last one
+            for points in (exact, samples[samples["source"] == source])
+        )
         _outlines(axes, block, right, found, style_of(source).colour)
         axes.set_title(_title(line), fontsize=10, fontweight="bold")
         axes.text(
@@ -207,12 +203,6 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
         )
     _histories(lower.subplots(), samples, lines, instant)
     return drawing
-
-
-def _rotation_at(samples: pd.DataFrame, source: str, instant: float) -> float:
-    """Return the rotation of a source over θcr at a time, the last one it has if that is before."""
-    points = samples[samples["source"] == source]
-    return float(np.interp(instant, points["time_s"], points["theta_ratio"]))
 
 
 def _title(line: pd.Series[Any]) -> str:

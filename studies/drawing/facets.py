@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
@@ -50,12 +50,25 @@ def panels(
     down = max(math.ceil(count / across), 1)
     size = (max(each[0] * across, NARROWEST), each[1] * down + extra)
     drawing = Figure(figsize=size, layout="constrained")
+    return drawing, in_rows(drawing, count, across, **shared)
+
+
+def in_rows(drawing: FigureBase, count: int, across: int, **shared: Any) -> list[Axes]:
+    """Return some panels in rows of a figure or of a part of one.
+
+    Parameters
+    ----------
+    drawing : Figure or SubFigure
+    count, across, shared
+        As for `panels`, but that across is at least 1 and at most count.
+    """
+    down = max(math.ceil(count / across), 1)
     grid = list(drawing.subplots(down, across, squeeze=False, **shared).flat)
     for axes in grid[count:]:
         axes.remove()
     for axes in grid[max(count - across, 0) : count]:
         axes.tick_params(labelbottom=True)
-    return drawing, grid[:count]
+    return grid[:count]
 
 
 def mark(error: float) -> str:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +143,59 @@ class Screen(Figure):
         fname.write(self._agg.buffer_rgba())
 
 
+def turns(block: System) -> bool:
+    """Say whether what is shown turns, and does not slide."""
+    return bool(layout_of(block, 1.0, None, (0.0, 0.0)).rocking)
+
+
+class Panel:
+    """One source: its bodies, the exact outline over them, and its verdict, above a ground.
+
+    Posts behind it pass as the ground moves.
+    """
+
+    def __init__(self, axes: Axes, block: System, row: Row, exact: FloatArray | None) -> None:
+        reach, top = axes.get_xlim()[1], axes.get_ylim()[1]
+        colour = style_of(row["source"]).colour
+        axes.set_axis_off()
+        axes.set_title(row["source"], fontsize=9)
+        self._block, self._top = block, top
+        self._spacing = 2.0 * reach / (POSTS - 1)
+        ground = Rectangle((-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach)
+        ground.set_color("#9a9a9a")
+        posts = axes.vlines(self._places(0.0), 0.0, top, color="#e4e4e4", linewidth=2, zorder=0)
+        self._posts: Any = posts
+        at_rest = [*outlines(block, 0.0)]
+        bodies = PolyCollection(at_rest, facecolor=colour, edgecolor="#222222", alpha=0.8, zorder=3)
+        axes.add_collection(bodies)
+        self._shown: list[tuple[Any, FloatArray]] = [(bodies, row["theta"])]
+        if exact is not None and row["source"] != "exact":
+            ghost = PolyCollection(at_rest, facecolor="none", edgecolor="#000000",
+                                   linestyle=(0, (3, 2)), linewidth=1.2, zorder=4)  # fmt: skip
+            axes.add_collection(ghost)
+            self._shown.append((ghost, exact))
+        self._told = verdict(row, exact, block.alpha) if turns(block) else ended(row, exact)
+        self._verdict = axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top",
+                                  fontsize=9, color=colour, fontweight="bold")  # fmt: skip
+        self.moving: list[Artist] = [
+            *(posts, axes.add_patch(ground)),  # the ground hides the feet of the posts
+            *(*(bodies for bodies, _ in self._shown), self._verdict),
+        ]
+
+    def _places(self, shift: float) -> FloatArray:
+        places = (np.arange(POSTS + 2, dtype=np.float64) - 0.5 * (POSTS + 1)) * self._spacing
+        moved: FloatArray = places - math.fmod(shift, self._spacing)
+        return moved
+
+    def show(self, frame: int, shift: float) -> None:
+        """Set the panel to a frame, in which the ground is off by a shift [m]."""
+        for bodies, theta in self._shown:
+            bodies.set_verts(outlines(self._block, float(theta[frame])))
+        self._posts.set_segments([[(x, 0.0), (x, self._top)] for x in self._places(shift)])
+        since, words = self._told
+        self._verdict.set_text(words if frame >= since else "")
+
+
 class Stage:
     """A figure that can show any time of the responses.
 
@@ -153,82 +205,40 @@ class Stage:
     def __init__(
         self, block: System, motion: Motion, times: FloatArray, rows: Sequence[Row]
     ) -> None:
-        self.block, self.times, self.rows = block, times, rows
-        self._rocks = bool(layout_of(block, 1.0, None, (0.0, 0.0)).rocking)
-        most = 0.0 if self._rocks else max(float(np.abs(row["theta"]).max()) for row in rows)
+        self.times, self._shift = times, motion.displacement(times)
+        most = 0.0 if turns(block) else max(float(np.abs(row["theta"]).max()) for row in rows)
         at_rest = outlines(block, 0.0).max(axis=(0, 1))
         spare = 1.15 * math.hypot(block.width, block.height)
-        self._reach = float(at_rest[0]) - 0.5 * block.width + spare + most
-        self._top = float(at_rest[1]) - block.height + 1.2 * spare
-        self.shift = motion.displacement(times)
+        reach = float(at_rest[0]) - 0.5 * block.width + spare + most
+        top = float(at_rest[1]) - block.height + 1.2 * spare
         self.drawing = Screen(figsize=(2.1 * max(len(rows), 3), 5.2), layout="constrained")
         halves = self.drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1))
         upper, lower = halves[:, 0]
-        panels = upper.subplots(1, len(rows), sharey=True, squeeze=False)[0]
-        self._posts, self._grounds = zip(
-            *(self._panel(axes, row) for axes, row in zip(panels, rows, strict=True)), strict=True
-        )
-        self._blocks = [
-            axes.add_collection(self._bodies(row)) for axes, row in zip(panels, rows, strict=True)
-        ]
-        exact: FloatArray | None = next(
-            (row["theta"] for row in rows if row["source"] == "exact"), None
-        )
-        self._right = np.zeros(len(times)) if exact is None else exact
-        self._ghosts = [
-            axes.add_collection(PolyCollection([*outlines(block, 0.0)], facecolor="none",
-                                               edgecolor="#000000", linestyle=(0, (3, 2)),
-                                               linewidth=1.2, zorder=4))
-            for axes, row in zip(panels, rows, strict=True)
-            if exact is not None and row["source"] != "exact"
-        ]  # fmt: skip
-        told = partial(verdict, alpha=block.alpha) if self._rocks else ended
-        self._told = [told(row, exact) for row in rows]
-        self._verdicts = [
-            axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top", fontsize=9,
-                      color=style_of(row["source"]).colour, fontweight="bold")
-            for axes, row in zip(panels, rows, strict=True)
-        ]  # fmt: skip
-        self._clock = self._graph(lower.subplots(), motion)
+        look = {"xlim": (-reach, reach), "ylim": (-0.25 * reach, top), "aspect": "equal"}
+        grid = upper.subplots(1, len(rows), sharey=True, squeeze=False, subplot_kw=look)[0]
+        exact = next((row["theta"] for row in rows if row["source"] == "exact"), None)
+        panels = zip(grid, rows, strict=True)
+        self._panels = [Panel(axes, block, row, exact) for axes, row in panels]
+        self._clock = self._graph(lower.subplots(), block, motion, rows)
 
     @property
     def moving(self) -> list[Artist]:
         """What differs from frame to frame, and the ground that hides the feet of the posts."""
-        blocks = [*self._blocks, *self._ghosts]
-        return [*self._posts, *self._grounds, *blocks, *self._verdicts, self._clock]
+        return [*(artist for panel in self._panels for artist in panel.moving), self._clock]
 
-    def _panel(self, axes: Axes, row: Row) -> tuple[Any, Rectangle]:
-        """Set up a panel; return its posts, and the ground that hides their feet."""
-        reach = self._reach
-        axes.set(xlim=(-reach, reach), ylim=(-0.25 * reach, self._top), aspect="equal")
-        axes.set_axis_off()
-        axes.set_title(row["source"], fontsize=9)
-        ground = Rectangle(
-            (-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach, color="#9a9a9a"
-        )
-        axes.add_patch(ground)
-        self._spacing = 2.0 * reach / (POSTS - 1)
-        posts = axes.vlines(
-            self._post_places(0.0), 0.0, self._top, color="#e4e4e4", linewidth=2, zorder=0
-        )
-        return posts, ground
+    def show(self, frame: int) -> None:
+        """Set the figure to a frame."""
+        for panel in self._panels:
+            panel.show(frame, float(self._shift[frame]))
+        self._clock.set_xdata([self.times[frame]] * 2)
 
-    def _post_places(self, shift: float) -> FloatArray:
-        places = (np.arange(POSTS + 2, dtype=np.float64) - 0.5 * (POSTS + 1)) * self._spacing
-        moved: FloatArray = places - math.fmod(shift, self._spacing)
-        return moved
-
-    def _bodies(self, row: Row) -> PolyCollection:
-        colour = style_of(row["source"]).colour
-        return PolyCollection([*outlines(self.block, 0.0)], facecolor=colour, edgecolor="#222222",
-                              alpha=0.8, zorder=3)  # fmt: skip
-
-    def _graph(self, axes: Axes, motion: Motion) -> Any:
-        for row in self.rows:
+    def _graph(self, axes: Axes, block: System, motion: Motion, rows: Sequence[Row]) -> Any:
+        rocks = turns(block)
+        for row in rows:
             style = style_of(row["source"])
             axes.plot(
                 self.times,
-                row["theta"] / (self.block.alpha if self._rocks else 1.0),
+                row["theta"] / (block.alpha if rocks else 1.0),
                 linestyle=line_of(row["source"]),
                 linewidth=style.width,
                 color=style.colour,
@@ -238,26 +248,14 @@ class Stage:
         axes.set_xlim(0.0, float(self.times[-1]))
         if motion.duration:
             axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
-        if self._rocks:
+        if rocks:
             axes.set_ylim(-1.6, 1.6)
             axes.axhline(1.0, color="#aaaaaa", linewidth=0.8)
             axes.axhline(-1.0, color="#aaaaaa", linewidth=0.8)
         axes.set_xlabel("time  [s]")
-        axes.set_ylabel("rotation  θ/θcr  [–]" if self._rocks else "place on the base  [m]")
+        axes.set_ylabel("rotation  θ/θcr  [–]" if rocks else "place on the base  [m]")
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
         return axes.axvline(0.0, color="#cc0000", linewidth=1.0)
-
-    def show(self, frame: int) -> None:
-        """Set the figure to a frame."""
-        for row, bodies, posts in zip(self.rows, self._blocks, self._posts, strict=True):
-            bodies.set_verts(outlines(self.block, float(row["theta"][frame])))
-            places = self._post_places(float(self.shift[frame]))
-            posts.set_segments([[(x, 0.0), (x, self._top)] for x in places])
-        for ghost in self._ghosts:
-            ghost.set_verts(outlines(self.block, float(self._right[frame])))
-        for text, (since, words) in zip(self._verdicts, self._told, strict=True):
-            text.set_text(words if frame >= since else "")
-        self._clock.set_xdata([self.times[frame]] * 2)
 
 
 def verdict(row: Row, exact: FloatArray | None, alpha: float) -> tuple[int, str]:

@@ -22,13 +22,7 @@ WIDTH = 99
 """Letters of a line of text."""
 
 
-def tell(
-    study: Study,
-    folder: Path,
-    tables: Mapping[str, pd.DataFrame],
-    finding: str = "",
-    name: str = "",
-) -> str:
+def tell(study: Study, folder: Path, tables: Mapping[str, pd.DataFrame], finding: str = "") -> str:
     """Write a study's figures and its text into its folder: what it found, and short tables.
 
     Parameters
@@ -39,15 +33,13 @@ def tell(
         Title -> table; those without rows are left out.
     finding : str, optional
         A sentence or a paragraph, by default the study's finding.
-    name : str, optional
-        Of the text's file, by default the first that the study writes besides.
 
     Returns
     -------
     str
         The text.
     """
-    return keep(study, folder, as_text(finding or study.finding(folder), tables), name)
+    return keep(study, folder, as_text(finding or study.finding(folder), tables))
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
@@ -64,8 +56,8 @@ def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
     return "\n\n".join([fill(finding, WIDTH), *shown])
 
 
-def keep(study: Study, folder: Path, text: str, name: str = "") -> str:
-    """Write a study's figures and its text into its folder.
+def keep(study: Study, folder: Path, text: str) -> str:
+    """Write a study's figures and its text, the first that it writes besides, into its folder.
 
     Parameters
     ----------
@@ -73,8 +65,6 @@ def keep(study: Study, folder: Path, text: str, name: str = "") -> str:
     folder : Path
         With the tables that the figures are drawn from.
     text : str
-    name : str, optional
-        Of the text's file, by default the first that the study writes besides.
 
     Returns
     -------
@@ -85,5 +75,5 @@ def keep(study: Study, folder: Path, text: str, name: str = "") -> str:
         from studies.drawing.figures import save_all
 
         save_all(drawn, folder)
-    write_text(folder / (name or study.others[0]), text + "\n")
+    write_text(folder / study.others[0], text + "\n")
     return text

@@ -166,7 +166,7 @@ def judge(figure: int, rows: Sequence[Row], samples: pd.DataFrame) -> Finding:
     """Test what the paper says about a figure, of the sources that answered in every panel."""
     failed = {row["source"] for row in rows if row["outcome"] == Outcome.FAILED.value}
     asked = samples if figure == 2 and len(samples) else pd.DataFrame(rows)
-    return CLAIMS[figure].finding(asked[~asked["source"].isin(failed)])
+    return CLAIMS[figure](asked[~asked["source"].isin(failed)])
 
 
 @claim(

@@ -167,36 +167,29 @@ def _without_option(block: System, motion: Motion, options: Mapping[str, Any]) -
 def _asked(block: System) -> System:
     """Return what the options of the command line make of a block."""
     options = _scene_of(block)
-    kind = KINDS.get(options.pop("scene", ""), RigidBlock)
+    kind, _ = SCENES[options.pop("scene", "")]
     asked: System = kind(**{name.replace("-", "_"): value for name, value in options.items()})
     return asked
 
 
-KINDS: Mapping[str, Any] = {
-    "frame": RockingFrame,
-    "slide": SlidingBlock,
-    "cart": CartBlock,
-    "cylinder": RollingCylinder,
+SCENES: Mapping[str, tuple[Any, tuple[str, ...]]] = {
+    "frame": (RockingFrame, ("columns", "load", "width", "height")),
+    "slide": (SlidingBlock, ("friction", "width", "height")),
+    "cart": (CartBlock, ("mass-ratio", "width", "height")),
+    "cylinder": (RollingCylinder, ("radius", "height", "tilt")),
+    "": (RigidBlock, ("width", "height")),
 }
-"""What `--scene` poses."""
+"""What `--scene` poses, by default one block, and its options."""
 
 
 def _scene_of(block: Any) -> dict[str, Any]:
     """Return the options that name a scene, none of one block, and its sizes."""
-    scene = next((name for name, kind in KINDS.items() if isinstance(block, kind)), "")
-    names = {"": ("width", "height"), **OPTIONS}[scene]
+    scene, names = next(
+        (name, of) for name, (kind, of) in SCENES.items() if isinstance(block, kind)
+    )
     spring = ("stiffness",) if scene == "cart" and block.stiffness else ()
     sizes = {name: getattr(block, name.replace("-", "_")) for name in (*names, *spring)}
     return {**({"scene": scene} if scene else {}), **sizes}
-
-
-OPTIONS = {
-    "frame": ("columns", "load", "width", "height"),
-    "slide": ("friction", "width", "height"),
-    "cart": ("mass-ratio", "width", "height"),
-    "cylinder": ("radius", "height", "tilt"),
-}
-"""Their options."""
 
 
 def _in_g(amplitude: float) -> float:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -50,32 +50,22 @@ Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
 """Says of a table whether a statement holds, and the numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class Claim:
-    """A statement with what tests it.
+def claim(statement: str, *needs: str) -> Callable[[Check], Callable[[pd.DataFrame], Finding]]:
+    """Return what makes of a check the test of a statement.
 
-    Attributes
+    Parameters
     ----------
     statement : str
-    check : callable
-    needs : tuple of str
-        Sources without which it cannot be tested.
+    *needs : str
+        Sources without which it cannot be tested, of those in a table's column source.
     """
 
-    statement: str
-    check: Check
-    needs: tuple[str, ...] = ()
+    def tested(check: Check, table: pd.DataFrame) -> Finding:
+        if needs and not set(table["source"]).issuperset(needs):
+            return Finding(statement, None, f"needs the sources {', '.join(needs)}")
+        return Finding(statement, *check(table))
 
-    def finding(self, table: pd.DataFrame) -> Finding:
-        """Test the statement on a table, whose column source names who was asked."""
-        if self.needs and not set(table["source"]).issuperset(self.needs):
-            return Finding(self.statement, None, f"needs the sources {', '.join(self.needs)}")
-        return Finding(self.statement, *self.check(table))
-
-
-def claim(statement: str, *needs: str) -> Callable[[Check], Claim]:
-    """Return what makes of a check the claim of a statement, which needs some sources."""
-    return lambda check: Claim(statement, check, needs)
+    return lambda check: partial(tested, check)
 
 
 def tally(items: Sequence[Finding], whose: str) -> str:
@@ -115,9 +105,10 @@ def write_findings(folder: Path, items: Sequence[Finding]) -> None:
 
 def read_findings(folder: Path) -> list[Finding]:
     """Read a folder's findings back."""
-    table = read_table(folder / TABLE)
+    table = read_table(folder / TABLE, "holds")
+    known = {"True": True, "False": False}
     return [
-        Finding(str(statement), None if _unknown(holds) else str(holds) == "True", *map(str, more))
+        Finding(str(statement), known.get(str(holds)), *map(str, more))
         for statement, holds, *more in table.to_numpy(object)
     ]
 
@@ -140,7 +131,3 @@ def said_once(items: Iterable[Finding]) -> list[Finding]:
         numbers = "; ".join(item.numbers for item in group) if shown else ""
         found.append(Finding(f"{statement}: {whom}" if sources else statement, holds, numbers))
     return found
-
-
-def _unknown(holds: object) -> bool:
-    return isinstance(holds, float) and math.isnan(holds)

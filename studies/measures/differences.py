@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -25,6 +25,9 @@ from studies.measures.wrongness import KINDS, counted, kinds_of, wrong_in
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
+
+OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_eta", "sensitivity")
+"""Columns of `with_reference_of_frames`."""
 
 SUMMARY_COLUMNS = [
     "figure",
@@ -60,7 +63,9 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     """
     peak, outcome = exact_peaks(rows)
     known = with_conditioning(rows)
-    joined = known.assign(exact_peak=peak, exact_outcome=[_word(item) for item in outcome])
+    joined = known.assign(
+        exact_peak=peak, exact_outcome=[str(getattr(it, "value", it)) for it in outcome]
+    )
     found, right = joined["outcome"], joined["exact_outcome"]
     both_rocked = (found == "rocked") & (right == "rocked")
     return joined.assign(
@@ -85,30 +90,13 @@ def with_reference_of_frames(rows: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         With exact_outcome, exact_peak, agrees, error, kappa, kappa_eta and sensitivity.
     """
-    frames = zip(rows["aspect"], rows["load"], strict=True)
-    kept = [RockingFrame(width=1.0, height=h, load=load).restitution for h, load in frames]
-    columns, back = _different(*posed_cases(rows), np.array(kept))
-    alpha, amplitude, omega, cycles, restitution = columns
-    posed = alpha, amplitude, omega, cycles
-    found = condition_numbers(*posed, restitution=restitution)
-    sensitive = sensitivities(*posed, restitution=restitution)
-    peaks, outcomes = peak_ratios(*posed, restitution=restitution)
-    peak, right = peaks[back], pd.Series([_word(item) for item in outcomes[back]], rows.index)
-    both_rocked = (rows["outcome"] == "rocked") & (right == "rocked")
-    return rows.assign(
-        exact_outcome=right,
-        exact_peak=peak,
-        agrees=kinds_of(rows["outcome"], right) == "",
-        error=(rows["peak_ratio"] / peak - 1.0).where(both_rocked),
-        kappa=found.amplitude[back],
-        kappa_eta=found.restitution[back],
-        sensitivity=sensitive[back],
-    )
+    return with_reference(rows)[[*rows, *OF_FRAMES]]
 
 
-def posed_cases(
-    cases: pd.DataFrame,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+Posed: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+
+
+def posed_cases(cases: pd.DataFrame) -> Posed:
     """Return the first four arguments of `peak_ratios`.
 
     The cases have columns aspect and omega_over_p, amplitude_g or excess_g, half_cycles or pulse.
@@ -126,15 +114,21 @@ def posed_cases(
 
 def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
     """Return the exact peaks and outcomes of the cases, each of which is solved once."""
-    (alpha, amplitude, omega, cycles), back = _different(*posed_cases(cases))
-    peak, outcome = peak_ratios(alpha, amplitude, omega, cycles)
+    posed, restitution, back = _different(cases)
+    peak, outcome = peak_ratios(*posed, restitution=restitution)
     return peak[back], outcome[back]
 
 
-def _different(*posed: FloatArray) -> tuple[list[FloatArray], NDArray[np.intp]]:
-    """Return what is posed without repeats, column by column, and where each row is among them."""
-    rows, back = np.unique(np.stack(posed, axis=1), axis=0, return_inverse=True)
-    return [np.ascontiguousarray(column) for column in rows.T], back
+def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[np.intp]]:
+    """Return what is posed without repeats, frames' restitution, and where each case is there."""
+    columns = [*posed_cases(cases)]
+    if "load" in cases:
+        frames = zip(cases["aspect"], cases["load"], strict=True)
+        found = [RockingFrame(width=1.0, height=h, load=load).restitution for h, load in frames]
+        columns.append(np.array(found))
+    rows, back = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)
+    alpha, amplitude, omega, cycles, *kept = (np.ascontiguousarray(each) for each in rows.T)
+    return (alpha, amplitude, omega, cycles), kept[0] if kept else None, back
 
 
 def conditioning_of_one(
@@ -172,9 +166,9 @@ def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
     errors of 1e-6 and 1e-4 (`analytic.sensitivities`): near the onset and near overturning it is
     much larger.
     """
-    (alpha, amplitude, omega, cycles), back = _different(*posed_cases(cases))
-    found = condition_numbers(alpha, amplitude, omega, cycles)
-    sensitive = sensitivities(alpha, amplitude, omega, cycles)
+    posed, restitution, back = _different(cases)
+    found = condition_numbers(*posed, restitution=restitution)
+    sensitive = sensitivities(*posed, restitution=restitution)
     return cases.assign(
         kappa=found.amplitude[back],
         kappa_eta=found.restitution[back],
@@ -200,10 +194,6 @@ def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
     worst = erring.loc[place.loc[order]]
     columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
     return worst[[*columns, "kappa", "kappa_eta", "sensitivity"]]
-
-
-def _word(outcome: object) -> str:
-    return str(getattr(outcome, "value", outcome))
 
 
 def summarize(compared: pd.DataFrame) -> pd.DataFrame:

@@ -20,7 +20,7 @@ def findings(compared: pd.DataFrame) -> list[Finding]:
     compared : DataFrame
         From `studies.measures.differences.with_reference`.
     """
-    tested = [each.finding(compared) for each in CONCLUSIONS]
+    tested = [test(compared) for test in CONCLUSIONS]
     return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
 
 

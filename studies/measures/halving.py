@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -174,20 +173,18 @@ class Trust(NamedTuple):
         return f"{NO_BOUND}: {needed} to bound {part}"
 
 
-def published_trust(source: str, path: Path = FACTORS) -> Trust | None:
+def published_trust(source: str) -> Trust | None:
     """Return what was published of a source's estimates.
 
     Parameters
     ----------
     source : str
         Its name; an engine's best preset may be named or not.
-    path : Path, optional
-        The table of factors.
 
     Returns
     -------
     Trust or None
-        None where the table has no line of it, or is not there.
+        None where FACTORS has no line of it, or is not there.
 
     Raises
     ------
@@ -196,12 +193,11 @@ def published_trust(source: str, path: Path = FACTORS) -> Trust | None:
     studies.sources.registry.UnknownSourceError
         If there is no such source.
     """
-    if not path.is_file():
+    if not FACTORS.is_file():
         return None
-    check(path.parent, [path.name], "the folder of the factors")
-    table = pd.read_csv(path)
+    check(FACTORS.parent, [FACTORS.name], "the folder of the factors")
     asked = resolve(source)
-    for line in table.to_dict("records"):
+    for line in pd.read_csv(FACTORS).to_dict("records"):
         known = resolve(str(line["source"]))
         if (known.engine, known.preset) == (asked.engine, asked.preset):
             return Trust(float(line["factor_95_high"]), int(line["survivors"]))

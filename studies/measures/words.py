@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import pandas as pd
 
@@ -15,6 +15,8 @@ NAMED = 2
 
 WHOLE = 0.1
 """From this part on a number is given in whole per cent."""
+
+Said = TypeVar("Said")
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -75,15 +77,20 @@ def alike(words: Sequence[str], joint: str = "and") -> str:
     return words[0] if len(set(words)) == 1 else listed(words, joint)
 
 
+def by_value(said: Iterable[tuple[str, Said]]) -> dict[Said, list[str]]:
+    """Return the names of whom the same is said, under what is said of them."""
+    names: dict[Said, list[str]] = {}
+    for name, value in said:
+        names.setdefault(value, []).append(name)
+    return names
+
+
 def gathered(said: Iterable[tuple[str, str]]) -> str:
     """Return names and what is said of each, once for all of whom the same is said.
 
     "a and b 7 of 10; c none of 10".
     """
-    names: dict[str, list[str]] = {}
-    for name, words in said:
-        names.setdefault(words, []).append(name)
-    return "; ".join(f"{listed(group)} {words}" for words, group in names.items())
+    return "; ".join(f"{listed(group)} {words}" for words, group in by_value(said).items())
 
 
 def power(value: float) -> str:

@@ -3,110 +3,159 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeAlias
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Preset, Stepping
+from engines.declaration import AT_REST, RECOMMENDED, Stepping
 from engines.disclosure import Help
-from engines.parts.factors import AS_BEST, BEST, DEFAULT
+from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS
 from engines.registry import OWN
-from engines.troubles import TROUBLES
 from studies import contact
-from studies.contact.told import changed, frames, name_of, prices, rules
+from studies.cases.variants import STILL
 from studies.measures.presets import preset_of, told
 from studies.measures.published import needed
-from studies.measures.words import capital, listed, part, right_of
-from studies.page.facts import table
+from studies.measures.words import by_value, capital, listed, part, right_of
 from studies.scenes.told import LATE_M
 
+Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
+"""A line of a table."""
 
-def helps(published: Path) -> str:
-    """Return what each engine's adapter does for landing, and the largest error without it."""
-    lines = _variants(published)
+TITLES = {name: ENGINES[name].title for name in OWN}
+
+
+def once(rows: Iterator[Sequence[str]]) -> list[list[str]]:
+    """Return rows whose first cell is left empty where it is that of the row before."""
+    found: list[list[str]] = []
+    before = ""
+    for first, *others in rows:
+        found.append(["" if first == before else first, *others])
+        before = first
+    return found
+
+
+def variants(published: Path) -> pd.DataFrame:
+    """Return the published variants of contacts: variants.csv."""
+    return contact.STUDY.read(published / "contact", "variants")
+
+
+def variant_of(
+    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
+) -> Line | None:
+    """Return the line of a preset, or of a variant of it; None where there is none."""
+    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
+    wanted &= lines["factor"] == factor
+    if level:
+        wanted &= lines["level"] == level
+    return lines[wanted].iloc[0] if wanted.any() else None
+
+
+def error_words(line: Line, columns: Sequence[str] = ("max_error",)) -> str:
+    """Return the largest or other errors, and how many of all cases are wrong, in few words."""
+    if line["failed"] == line["cases"]:
+        return "no result"
+    errors = ", ".join(part(line[name]) for name in columns)
+    broken = int(line["failed"]) + int(line["wrong"])
+    return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
+
+
+def prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
+    """Return the largest error of an engine's best preset without each of what it is helped by.
+
+    In words, by the name of a `Help`; by "" that of the preset as it is, by "STEPS" that with equal
+    steps.
+    """
+    best = ENGINES[engine].best.name
+    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
+    asked = mine[mine["factor"].isin(["", LEFT_OUT])]
+    found = {line["level"] if line["factor"] else "": line for _, line in asked.iterrows()}
+    words = {name.upper(): error_words(line) for name, line in found.items()}
+    equal = variant_of(lines, engine, BEST)
+    return words | ({} if equal is None else {"STEPS": error_words(equal)})
+
+
+def helps(lines: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
+    """Return heads, and what each adapter does for landing with the largest error without it."""
     engines = [name for name in OWN if ENGINES[name].best.stepping is Stepping.LANDING]
     helped = {name: ENGINES[name].best.helped_by for name in engines}
     price = {name: prices(lines, name) for name in engines}
+    heads = ["landing without", *map(TITLES.__getitem__, engines)]
+    whole = ["**All of it**", *(f"**{price[name].get('', '-')}**" for name in engines)]
     rows = [
-        (
+        [
             capital(each.value),
             *(
                 price[name].get(each.name, "yes") if each in helped[name] else "–"
                 for name in engines
             ),
-        )
+        ]
         for each in Help
+        if any(each in given for given in helped.values())
     ]
-    whole = ("**All of it**", *(f"**{price[name].get('', '-')}**" for name in engines))
-    heads = ("landing without", *(ENGINES[name].title for name in engines))
-    return table(heads, [whole, *(row for row in rows if set(row[1:]) != {"–"})])
+    return heads, [whole, *rows]
 
 
-def rules_of_engines(published: Path) -> str:
-    """Return what users of each engine should know first, and what it is worth."""
-    lines = _variants(published)
-    rows = [
-        (ENGINES[name].title if not place else "", rule.words, *errors)
-        for name in OWN
-        for place, (rule, *errors) in enumerate(rules(lines, name))
-    ]
-    return table(("engine", "rule", "error without it", "with it"), rows)
+def rules(lines: pd.DataFrame) -> Iterator[tuple[str, str, str, str]]:
+    """Yield the engine and each rule that helps, and the median and largest error without and with.
+
+    One helps if fewer outcomes are wrong with it, or as many and the median error is smaller. Rules
+    of which a variant was not run are left out.
+    """
+    for engine in OWN:
+        for rule in ENGINES[engine].rules:
+            plain = variant_of(lines, engine, rule.preset)
+            other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
+            if plain is not None and other is not None:
+                pair = (plain, other) if rule.kept else (other, plain)
+                wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
+                without, with_it = (error_words(one, ("median_error", "max_error")) for one in pair)
+                if kept < wrong:
+                    yield TITLES[engine], rule.words, without, with_it
 
 
-def own_tests(published: Path) -> str:
-    """Return what tests of engines' authors pass, the exact number, and what is found here."""
+def frames(lines: pd.DataFrame) -> Iterator[tuple[str, str, str]]:
+    """Yield what the defaults err by where a body force moves the block, and where the base."""
+    for engine in lines["engine"].unique():
+        still, moved = (
+            variant_of(lines, engine, DEFAULT, OWN_STEPS, level) for level in (STILL, OWN_STEP)
+        )
+        if still is not None and moved is not None:
+            yield ENGINES[engine].title, error_words(still), error_words(moved)
+
+
+def own_tests(published: Path) -> Iterator[list[str]]:
+    """Yield what tests of engines' authors pass, the exact number, and what is found here."""
     lines = pd.read_csv(published / "literature" / "peers.csv").fillna({"source": ""})
-    rows = []
     for test, group in lines.groupby("test", sort=False):
         line, low, high = group.iloc[0], group["low"].iloc[0], group["high"].iloc[0]
         passes = f"{low:.5g} or more" if math.isinf(high) else f"{low:.5g} to {high:.5g}"
         exact = f"{line['exact']:.5g}" + ("" if line["exact_passes"] else ", which fails")
-        found = "<br>".join(
-            f"`{row['source']}` {row['found']:.5g}" for _, row in group.iterrows() if row["source"]
-        )
-        rows.append((str(test), line["quantity"], passes, exact, found or "–", line["says"]))
-    return table(("test", "of", "passes", "exact", "here", "what else passes"), rows)
+        found = group.loc[group["source"] != "", ["source", "found"]].to_numpy().tolist()
+        here = "<br>".join(f"`{source}` {value:.5g}" for source, value in found)
+        yield [str(test), line["quantity"], passes, exact, here or "–", line["says"]]
 
 
-def frames_of_engines(published: Path) -> str:
-    """Return what the defaults err by where a body force moves the block, and where the base."""
-    rows = [(ENGINES[engine].title, *errors) for engine, *errors in frames(_variants(published))]
-    return table(("engine", "body force", "moving base"), rows) if rows else ""
-
-
-def _variants(published: Path) -> pd.DataFrame:
-    return contact.STUDY.read(published / "contact", "variants")
-
-
-def documented() -> str:
-    """Return what the documentation of each engine sets or recommends, and where it says so."""
-    rows = [
-        (f"{ENGINES[name].title} `:{use.name}`" if not place else "", *source)
-        for name in OWN
-        for use in ENGINES[name].presets
-        for place, source in enumerate(use.documented)
-    ]
-    return table(("engine and preset", "setting", "value", "where it says so"), rows)
+def documented() -> Iterator[tuple[str, ...]]:
+    """Yield what the documentation of each engine sets or recommends, and where it says so."""
+    for name in OWN:
+        for use in ENGINES[name].presets:
+            yield from ((f"{TITLES[name]} `:{use.name}`", *source) for source in use.documented)
 
 
 def beside_own() -> str:
     """Return which settings of "naive" are not the libraries' own, and what those would be."""
-    naive = {ENGINES[name].title: ENGINES[name].preset("naive") for name in OWN}
-    names = dict.fromkeys(name for preset in naive.values() for name in preset.own)
-    return "; ".join(_beside(name, naive) for name in names)
-
-
-def _beside(name: str, naive: Mapping[str, Preset]) -> str:
-    own = {title: preset for title, preset in naive.items() if name in preset.own}
-    (value,) = {getattr(preset.settings, name) for preset in own.values()}
-    titles: dict[Any, list[str]] = {}
-    for title, preset in own.items():
-        titles.setdefault(preset.own[name], []).append(title)
-    theirs = [f"{theirs} in {listed(group)}" for theirs, group in titles.items()]
-    return f"`{name}` is {value}, by itself {listed(theirs)}"
+    naive = {TITLES[name]: ENGINES[name].preset(DEFAULT) for name in OWN}
+    said = []
+    for name in dict.fromkeys(name for preset in naive.values() for name in preset.own):
+        own = {title: preset for title, preset in naive.items() if name in preset.own}
+        (value,) = {getattr(preset.settings, name) for preset in own.values()}
+        theirs = by_value((title, preset.own[name]) for title, preset in own.items())
+        words = [f"{other} in {listed(titles)}" for other, titles in theirs.items()]
+        said.append(f"`{name}` is {value}, by itself {listed(words)}")
+    return "; ".join(said)
 
 
 def random_fixed(published: Path) -> str:
@@ -120,75 +169,43 @@ def random_fixed(published: Path) -> str:
     return listed(words) if words else ""
 
 
-def troubles() -> str:
-    """Return what goes wrong in each engine, by which mechanism, and the script that shows it."""
-    rows = [
-        (
-            ENGINES[each.engine].title,
-            each.title,
-            each.kind,
-            each.mechanism,
-            f"[{each.script}](../../engines/troubles/{each.script})",
-        )
-        for each in sorted(TROUBLES, key=lambda each: list(ENGINES).index(each.engine))
-    ]
-    return table(("engine", "what happens", "kind", "mechanism", "script"), rows)
-
-
 SHOWN = 2
 """Single settings that are shown of each engine, of all that were tried."""
 
-Line = dict[str, Any]
 Tried = tuple[str, str, str, str]
 """What was tried, on which cases, and the errors without and with it."""
 
 
-def objections(published: Path, presets: pd.DataFrame) -> str:
-    """Return what was tried in favour of each engine as documented, as a table of Markdown.
+def objections(published: Path, presets: pd.DataFrame) -> Iterator[tuple[str, ...]]:
+    """Yield an engine's title and what was tried in its favour, beside it as documented.
 
-    Parameters
-    ----------
-    published : Path
-        The folders of the studies.
-    presets : DataFrame
-        A line for each preset over the paper's cases.
+    presets has a line for each preset over the paper's cases.
     """
-    variants = contact.STUDY.read(published / "contact", "own-steps")
+    own = contact.STUDY.read(published / "contact", "own-steps")
     steps = pd.read_csv(published / "precision" / "work-precision.csv")
     blocks = pd.read_csv(published / "scenes" / "block-summary.csv")
-    rows = []
     for engine in OWN:
-        found = [
+        for tried in (
             *_presets(presets, engine),
-            *_settings(variants, engine),
+            *_settings(own, engine),
             *_finest(steps, engine),
             *_floor(blocks, engine),
-        ]
-        title = ENGINES[engine].title
-        rows += [(title if not place else "", *tried) for place, tried in enumerate(found)]
-    heads = ("engine", "what its users would try", "on", "without it", "with it")
-    return table(heads, rows)
+        ):
+            yield TITLES[engine], *tried
 
 
 def slippery() -> str:
     """Return in how many of the paper's cases a block slides at each library's own friction."""
-    own: dict[float, list[str]] = {}
-    for engine in OWN:
-        friction = ENGINES[engine].preset(DEFAULT).own.get("friction")
-        if friction is not None:
-            own.setdefault(friction, []).append(ENGINES[engine].title)
-    said = [
+    own = [(TITLES[name], ENGINES[name].preset(DEFAULT).own.get("friction")) for name in OWN]
+    return "; ".join(
         f"{(needed() > friction).sum()} of {needed().size} in {listed(titles)} ({friction:g})"
-        for friction, titles in own.items()
-    ]
-    return (
-        "At the library's own friction a block slides before or while it rocks, by the exact "
-        f"solution's own forces: {'; '.join(said)}."
+        for friction, titles in by_value(own).items()
+        if friction is not None
     )
 
 
 def _presets(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
-    mine = {line["preset"]: line for line in _rows(lines[lines["engine"] == engine])}
+    mine = {line["preset"]: line for _, line in lines[lines["engine"] == engine].iterrows()}
     for name in (RECOMMENDED, AT_REST):
         if {name, DEFAULT} <= mine.keys():
             without, with_it = mine[DEFAULT], mine[name]
@@ -202,19 +219,20 @@ def _of_preset(line: Line) -> str:
 
 def _settings(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
     """Yield the single settings that lower the median error most without more wrong outcomes."""
-    plain = _rows(lines[(lines["engine"] == engine) & (lines["factor"] == "")])
-    if not plain:
+    without = variant_of(lines, engine, DEFAULT)
+    if without is None:
         return
-    (without,) = plain
-    varied = changed(lines, engine, DEFAULT)
+    mine = (lines["engine"] == engine) & (lines["preset"] == DEFAULT)
+    varied = lines[mine & (lines["factor"] != "") & (lines["trap"] == "")]
     better = varied[
         (varied["failed"] + varied["wrong"] <= without["failed"] + without["wrong"])
         & (varied["median_error"] < without["median_error"])
     ]
-    best = better[better["trap"] == ""].sort_values("median_error")
+    best = better.sort_values("median_error")
     alike = best["median_error"].map("{:.3e}".format)  # two names of one thing
-    for line in _rows(best[~alike.duplicated() & ~best["factor"].duplicated()].head(SHOWN)):
-        name = name_of(pd.Series(line)).replace(AS_BEST, f"as `:{BEST}`")
+    best = best[~alike.duplicated() & ~best["factor"].duplicated()]
+    for line in best.head(SHOWN).to_dict("records"):
+        name = f"{line['factor']}: {line['level']}".replace(AS_BEST, f"as `:{BEST}`")
         yield name, f"{without['cases']} of them", _of_variant(without), _of_variant(line)
 
 
@@ -227,7 +245,7 @@ def _finest(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
     mine = lines[(lines["method"] == f"{engine} {DEFAULT}") & (lines["set"] == "typical")]
     mine = mine[mine["median_error"].notna()].sort_values("value")
     if len(mine) > 1:
-        finest, *_, coarsest = _rows(mine)
+        finest, *_, coarsest = mine.to_dict("records")
         said = f"p dt = {finest['value']:g} instead of {coarsest['value']:g}"
         before, after = (
             _errors(each["median_error"], each["max_error"], each["failed"])
@@ -238,14 +256,10 @@ def _finest(lines: pd.DataFrame, engine: str) -> Iterator[Tried]:
 
 def _floor(blocks: pd.DataFrame, engine: str) -> Iterator[Tried]:
     """Yield what is left of the error where the floor's lag is not held against the engine."""
-    for line in _rows(blocks[blocks["source"] == f"{engine}:{DEFAULT}"]):
+    for line in blocks[blocks["source"] == f"{engine}:{DEFAULT}"].to_dict("records"):
         if line["floor_lag_m"] > LATE_M:
             tried, cases = "exact answer on the floor as it moved", f"{line['blocks']} pulses"
             yield tried, cases, part(line["median_error"]), part(line["median_own_error"])
-
-
-def _rows(lines: pd.DataFrame) -> list[Line]:
-    return cast(list[Line], lines.to_dict("records"))
 
 
 def _errors(median: float, largest: float, wrong: int) -> str:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,19 +21,11 @@ from studies.measures.claims import TABLE, Finding, read_findings, said_once
 from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
-from studies.measures.presets import engine_of, in_order, in_words, is_engine
+from studies.measures.presets import engine_of, in_order, is_engine
 from studies.measures.presets import told as as_told
-from studies.measures.words import (
-    duration,
-    in_kinds,
-    listed,
-    out_of,
-    part,
-    per_cent,
-)
-from studies.measures.wrongness import KINDS, WORDS
-from studies.precision import COST
-from studies.precision.choices import ALL, NEAR, TARGETS, TYPICAL, choices
+from studies.measures.words import duration, in_kinds, listed, out_of, part, per_cent
+from studies.measures.wrongness import KINDS
+from studies.precision.choices import NEAR, TYPICAL, choices
 from studies.sources.registry import grouped
 from studies.sweep.study import linearized, preset_table, whole
 from studies.sweep.study import read as read_sweep
@@ -42,41 +33,29 @@ from studies.sweep.study import read as read_sweep
 PRESETS_FROM = ("presets", "sweep")
 """Folders whose summaries hold the presets of the engines."""
 
-MOVING = "0.2.0"
-"""Version from which on an engine as documented stands on a floor that moves."""
 
+def chapter_of(published: Path, study: Study, chapter: Chapter) -> dict[str, Any]:
+    """Return a chapter in words, and the names of what it left in its folder.
 
-@dataclass(frozen=True, slots=True)
-class Told:
-    """A chapter in words: where it stands, its question, claim and command.
-
-    Its pictures are names of files, each with what is seen in it.
+    Returns
+    -------
+    dict
+        folder, question, claim, command; statements that were tested; pictures: names of files,
+        each with what is seen in it; texts: names of files.
     """
-
-    folder: str
-    question: str
-    claim: str
-    command: str
-    pictures: tuple[tuple[str, str], ...]
-    texts: tuple[str, ...]
-    statements: tuple[Finding, ...]
-
-
-def told(published: Path, study: Study, chapter: Chapter) -> Told:
-    """Return a chapter in words, and the names of what it left in its folder."""
     folder = published / chapter.folder
-    return Told(
-        folder=chapter.folder,
-        question=chapter.question,
-        claim=study.finding(folder),
-        command=" ".join(["rocking", *command_of(study, chapter, folder)]),
-        pictures=tuple(
+    return {
+        "folder": chapter.folder,
+        "question": chapter.question,
+        "claim": study.finding(folder),
+        "command": " ".join(["rocking", *command_of(study, chapter, folder)]),
+        "pictures": [
             (path.name, study.captions.get(path.stem, path.stem))
             for path in sorted(folder.glob("*.png"))
-        ),
-        texts=tuple(sorted(path.name for path in folder.glob("*.txt"))),
-        statements=told_of(folder),
-    )
+        ],
+        "texts": sorted(path.name for path in folder.glob("*.txt")),
+        "statements": statements_of(folder),
+    }
 
 
 def command_of(study: Study, chapter: Chapter, folder: Path) -> list[str]:
@@ -98,17 +77,18 @@ def command_of(study: Study, chapter: Chapter, folder: Path) -> list[str]:
     return [*words, f"--{option}", *(grouped(answered) if option == "sources" else answered)]
 
 
-def told_of(folder: Path) -> tuple[Finding, ...]:
+def statements_of(folder: Path) -> list[Finding]:
     """Return the statements that a study tested; what it could not test is no finding."""
     if not (folder / TABLE).is_file():
-        return ()
-    tested = [item for item in read_findings(folder) if item.holds is not None]
-    return tuple(said_once(tested))
+        return []
+    return said_once(item for item in read_findings(folder) if item.holds is not None)
 
 
-def chapters(published: Path) -> list[Told]:
+def chapters(published: Path) -> list[dict[str, Any]]:
     """Return every published chapter in words."""
-    return [told(published, *place) for place in CHAPTERS if is_published(published, place[1])]
+    return [
+        chapter_of(published, *place) for place in CHAPTERS if is_published(published, place[1])
+    ]
 
 
 def is_published(published: Path, chapter: Chapter) -> bool:
@@ -119,24 +99,6 @@ def is_published(published: Path, chapter: Chapter) -> bool:
 def missing(published: Path) -> list[str]:
     """Return the folders of the chapters without published results."""
     return [each.folder for _, each in CHAPTERS if not is_published(published, each)]
-
-
-def earlier(published: Path) -> str:
-    """Return the folders of an earlier version that hold what engines did as they were documented.
-
-    Until 0.2.0 that was on a base at rest.
-    """
-    return listed([f"`{each.folder}`" for _, each in CHAPTERS if _earlier(published / each.folder)])
-
-
-def _earlier(folder: Path) -> bool:
-    made = (
-        provenance.record_of(folder)["version"]
-        if (folder / "provenance.json").is_file()
-        else MOVING
-    )
-    tables = folder.glob("*.csv") if made < MOVING else ()
-    return any("naive" in table.read_text(encoding="utf-8") for table in tables)
 
 
 def presets(published: Path) -> pd.DataFrame:
@@ -161,8 +123,10 @@ def shared(lines: pd.DataFrame) -> list[str]:
     return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
 
 
-def by_preset(lines: pd.DataFrame, say: Callable[[float], str] = part) -> str:
-    """Return a table of Markdown: a row for each engine, a cell for each preset.
+def by_preset(
+    lines: pd.DataFrame, say: Callable[[float], str] = part
+) -> tuple[list[str], list[list[str]]]:
+    """Return heads, and a row for each engine with a cell for each preset.
 
     Parameters
     ----------
@@ -180,8 +144,8 @@ def by_preset(lines: pd.DataFrame, say: Callable[[float], str] = part) -> str:
         shown = [cells.get(name, "–") for name in names]
         if alone:
             shown[-1] = "<br>".join([*({shown[-1]} - {"–"}), *alone])
-        rows.append((f"**{ENGINES[str(engine)].title}**", *shown))
-    return table(("", *heads), rows)
+        rows.append([f"**{ENGINES[str(engine)].title}**", *shown])
+    return ["", *heads], rows
 
 
 def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
@@ -196,24 +160,9 @@ def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
     return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
 
 
-def presets_text(lines: pd.DataFrame) -> str:
-    """Return the presets as a table of Markdown: a row for each, with all that is known."""
-    heads = (
-        *("engine", "how it is used", "outcomes right", *WORDS.values()),
-        *("median", "p90", "max", "a case"),
-    )
-    rows = [
-        (
-            f"`{row['source']}`",
-            in_words(row["preset"]),
-            f"{row['right']} of {row['cases']}",
-            *(f"{row[kind]}" for kind in KINDS),
-            *(part(row[name]) for name in ("median", "p90", "max")),
-            duration(1e-3 * row["ms"]),
-        )
-        for _, row in lines.iterrows()
-    ]
-    return table(heads, rows)
+def records(published: Path, folder: str, name: str) -> list[dict[Any, Any]]:
+    """Return the rows of a published table; none where there is none."""
+    return table_in(published / folder, name).to_dict("records")
 
 
 def models(published: Path) -> dict[str, str]:
@@ -222,54 +171,14 @@ def models(published: Path) -> dict[str, str]:
     return {str(row["source"]): in_kinds(row) for _, row in lines.iterrows()}
 
 
-def ports(published: Path) -> str:
-    """Return how those that step another engine's models answer beside it, as Markdown."""
-    heads = (
-        *("source", "beside", "other outcomes", "peaks: median change", "nine tenths", "largest"),
-        "steps of all worlds",
-    )
-    rows = [
-        (
-            *(f"`{line['source']}`", f"`{line['beside']}`"),
-            out_of(line["other_outcomes"], line["cases"]),
-            *(part(line[f"{name}_change"]) for name in ("median", "p90", "largest")),
-            f"{line['world_steps']}",
-        )
-        for _, line in table_in(published / "ports", "ports").iterrows()
-    ]
-    return table(heads, rows)
-
-
-def starts(published: Path) -> str:
-    """Return how long a user waits for whole commands, as a table of Markdown; empty without any.
-
-    Over R, the time in which Python loads numba and pandas, so that it holds on any machine.
-    """
-    lines = table_in(published / COST.name, "starts")
-    if lines.empty:
-        return ""
-    heads = ("", "the first time", "later", "over R: first", "later")
-    rows = [
-        (
-            line["command"],
-            *(duration(line[name]) for name in ("cold_s", "warm_s")),
-            *(f"{line[name]:.2g}" for name in ("cold_ratio", "warm_ratio")),
-        )
-        for _, line in lines.iterrows()
-    ]
-    return f"R = {duration(lines['unit_s'].iloc[0])}:\n\n{table(heads, rows)}"
-
-
-def advised(published: Path) -> str:
-    """Return the cheapest advice for each error with each loop as a table of Markdown."""
-    lines = table_in(published / "advice", "advice")
-    heads = ("largest error", *(head for loop in LOOPS.values() for head in (loop, "a case")))
+def advised(published: Path) -> list[list[str]]:
+    """Return the cheapest advice for each error with each loop, a row for each error."""
     rows = []
-    for target, group in lines.groupby("target", sort=False):
+    for target, group in table_in(published / "advice", "advice").groupby("target", sort=False):
         best = best_by_driver(group)
         cells = [cell for loop in LOOPS for cell in _advice(best.get(loop))]
-        rows.append((per_cent(float(str(target))), *cells))
-    return table(heads, rows)
+        rows.append([per_cent(float(str(target))), *cells])
+    return rows
 
 
 def _advice(line: pd.Series[Any] | None) -> tuple[str, str]:
@@ -281,43 +190,10 @@ def _advice(line: pd.Series[Any] | None) -> tuple[str, str]:
     return (f"{at}; {off}" if off else at), cost_text(line["wall_s"], line["runs"])
 
 
-def choices_text(lines: pd.DataFrame) -> str:
-    """Return which setting for which accuracy as a table of Markdown, with what it errs by.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        The columns of work-precision.csv.
-    """
-    heads = (
-        *("largest error", "steps", "cheapest on typical cases", "a case", "its largest error"),
-        *("near overturning", "cheapest on all cases", "a case"),
-    )
-    found = {loop: choices(lines, loop) for loop in LOOPS}
-    rows = [
-        (
-            *(per_cent(target), words),
-            *_typical(found[loop].get((target, TYPICAL))),
-            *_cheapest(found[loop].get((target, ALL))),
-        )
-        for target in TARGETS
-        for loop, words in LOOPS.items()
-    ]
-    return table(heads, rows)
-
-
-def _cheapest(chosen: Mapping[str, Any] | None) -> tuple[str, str]:
-    if chosen is None:
-        return "none", "–"
-    return chosen["setting"], cost_text(chosen["wall_s"], chosen["runs"])
-
-
-def _typical(chosen: Mapping[str, Any] | None) -> tuple[str, str, str, str]:
-    if chosen is None:
-        return "none", "-", "-", "-"
-    near = chosen["near_error"]
-    wrong = "an outcome wrong" if near == float("inf") else part(near)
-    return (*_cheapest(chosen), part(chosen["typical_error"]), wrong)
+def choices_of(published: Path) -> dict[str, dict[tuple[float, str], dict[str, Any]]]:
+    """Return for each loop which setting for which accuracy, as of `choices`."""
+    lines = pd.read_csv(published / "precision" / "work-precision.csv")
+    return {loop: choices(lines, loop) for loop in LOOPS}
 
 
 def counts(published: Path) -> dict[str, int]:
@@ -384,16 +260,3 @@ def lasts(*records: Mapping[str, Any]) -> str:
 def minutes(full: bool) -> int:
     """Return about how many minutes a report takes on two cores."""
     return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a Markdown table.
-
-    Parameters
-    ----------
-    heads : sequence of str
-    rows : iterable of sequence of str
-        A cell for each head; a bar in it, which would end it, is shown as another sign.
-    """
-    lines = [list(heads), ["---"] * len(heads), *([*row] for row in rows)]
-    return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)

@@ -9,16 +9,18 @@ import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
-from analytic.response import Response
 from studies.cases.paper import free_rocking_window
 from studies.kit import provenance
 from studies.kit.jobs import Job, ask
+from studies.measures.samples import samples
 from studies.sources.registry import core_sources, resolve
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
 SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 SAMPLES = 401
+COLUMNS = ["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]
+DIGITS = {"time_s": 9, "theta_ratio": 9}
 
 
 def measure(path: Path) -> None:
@@ -29,28 +31,16 @@ def measure(path: Path) -> None:
     for name in SOURCES:
         source = resolve(name)
         job = Job(labels={}, block=BLOCK, motion=PULSE, source=name, duration=window, times=times)
-        parts.append(_samples(name, ask(job, source)))
+        response = ask(job, source)
+        labels = {"source": name, "peak_ratio": response.peak_ratio}
+        parts.append(samples(response, BLOCK, PULSE, labels)[COLUMNS].round(DIGITS))
     text = pd.concat(parts, ignore_index=True).to_csv(index=False, na_rep="nan")
     provenance.write_text(path, text)
 
 
-def _samples(name: str, response: Response) -> pd.DataFrame:
-    if response.history is None:
-        raise ValueError(f"{name} has no history: {response.message or response.outcome.value}")
-    return pd.DataFrame(
-        {
-            "source": name,
-            "outcome": response.outcome.value,
-            "peak_ratio": response.peak_ratio,
-            "time_s": response.history.time.round(9),
-            "theta_ratio": (response.history.theta / BLOCK.alpha).round(9),
-        }
-    )
-
-
-def summary(samples: pd.DataFrame) -> pd.DataFrame:
+def summary(histories: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source: its outcome, its peak and the error of that."""
-    lines = samples.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
+    lines = histories.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
     exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
     survived = lines["outcome"] == "rocked"
     return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))

@@ -7,7 +7,6 @@ import io
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,19 +26,11 @@ from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import capital, in_kinds, meant, part
 from studies.measures.wrongness import KINDS
-from studies.page.facts import asked, presets, shared, told_of
+from studies.page.facts import asked, presets, shared, statements_of
 from studies.sweep.study import verdict
 
 GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A cell of a table: what is shown, and what it is sorted by."""
-
-    text: str
-    key: str
 
 
 def write_page(path: Path, folder: Path, full: bool) -> None:
@@ -118,7 +109,7 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
         "folder": chapter.folder,
         "question": chapter.question,
         "claim": study.finding(folder),
-        "statements": told_of(folder),
+        "statements": statements_of(folder),
         "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
         "how": study.help,
         "weaker": chapter.weaker,
@@ -171,19 +162,19 @@ def _tables(chapter: Chapter, folder: Path, study: Any) -> Iterator[tuple[str, p
         yield WORST_AGAIN, study.again(folder)
 
 
-def table(rows: pd.DataFrame) -> tuple[list[str], list[list[Cell]]]:
-    """Return the heads and rows of a table as cells."""
+def table(rows: pd.DataFrame) -> tuple[list[str], list[list[tuple[str, str]]]]:
+    """Return the heads of a table, and its rows as cells."""
     return list(rows.columns), [[cell(value) for value in row] for row in rows.to_numpy(object)]
 
 
-def cell(value: Any) -> Cell:
-    """Return a value as a cell; a number is shown in four digits and sorted in full."""
+def cell(value: Any) -> tuple[str, str]:
+    """Return what is shown of a value, a number in four digits, and what it is sorted by."""
     if not isinstance(value, int | float) or isinstance(value, bool):
-        return Cell(str(value), str(value))
+        return str(value), str(value)
     if math.isnan(value):
-        return Cell("–", "")
+        return "–", ""
     small = 0.0 < abs(value) < SMALL
-    return Cell(f"{value:.3e}" if small else f"{value:.4g}", repr(value))
+    return f"{value:.3e}" if small else f"{value:.4g}", repr(value)
 
 
 def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:

@@ -3,25 +3,40 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from engines import ENGINES
+from engines.troubles import TROUBLES
+from studies import scenes
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.journal import PROVENANCE
 from studies.kit.provenance import check, seal
+from studies.measures.costs import LOOPS, cost_text
+from studies.measures.presets import in_words
 from studies.measures.published import dictionary
-from studies.measures.words import capital, meant
+from studies.measures.words import capital, duration, meant, out_of, part, per_cent
+from studies.measures.wrongness import WORDS
 from studies.page import engine_facts, facts, hero, scene_facts
-from studies.page.engine_facts import objections, slippery
 from studies.precision import COST
-from studies.scenes import STUDY as SCENES_STUDY
+from studies.precision.choices import TARGETS
 from studies.sweep.study import verdict
 
 PUBLISHED = Path("studies", "published")
+
+PAGES = {
+    Path("README.md"): "readme.md.jinja",
+    PUBLISHED / "README.md": "published.md.jinja",
+    PUBLISHED / "engines.md": "engines.md.jinja",
+    PUBLISHED / "scenes.md": "scenes.md.jinja",
+}
+"""Page -> its template."""
 
 
 def command(*, root: Path = Path()) -> int:
@@ -60,6 +75,16 @@ def command(*, root: Path = Path()) -> int:
     return 0
 
 
+def row(cells: Sequence[object]) -> str:
+    """Return a row of a Markdown table; a bar in a cell would end it, and is another sign."""
+    return f"| {' | '.join(str(cell).replace('|', '∣') for cell in cells)} |"
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[object]] = ()) -> str:
+    """Return a Markdown table, a cell of each row for each head."""
+    return "\n".join(map(row, (heads, ["---"] * len(heads), *rows)))
+
+
 def pages(root: Path) -> dict[Path, str]:
     """Return the text of each page that is made from the published tables."""
     published = root / PUBLISHED
@@ -70,46 +95,14 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    lines = facts.presets(published)
-    steps = pd.read_csv(published / "precision" / "work-precision.csv")
-    known = {
-        "chapters": facts.chapters(published),
-        "verdict": verdict(lines),
-        "wrong": meant(),
-        "asked": capital(facts.asked(published).words),
-        "missing": facts.missing(published),
-        "scenes": scene_facts.scenes(published),
-        "scenes_told": scene_facts.scenes_told(published),
-        "extreme_frames": scene_facts.extreme_frames(published),
-        "floors": scene_facts.floors(published),
-        "captions": SCENES_STUDY.captions,
-        "presets_all": facts.presets_text(lines),
-        "models": facts.models(published),
-        "advised": facts.advised(published),
-        "ports": facts.ports(published),
-        "starts": facts.starts(published),
-        "choices_all": facts.choices_text(steps),
-        "counts": facts.counts(published),
-        "made": facts.made(published),
-        "helps": engine_facts.helps(published),
-        "beside_own": engine_facts.beside_own(),
-        "documented": engine_facts.documented(),
-        "earlier": facts.earlier(published),
-        "frames": engine_facts.frames_of_engines(published),
-        "objections": objections(published, lines),
-        "slippery": slippery(),
-        "troubles": engine_facts.troubles(),
-        "own_tests": engine_facts.own_tests(published),
-        "rules": engine_facts.rules_of_engines(published),
-        "random_fixed": engine_facts.random_fixed(published),
-        "minutes": facts.minutes,
-    }
+    said = (capital, duration, in_words, engine_facts.once, part, per_cent, row)
+    environment.filters |= {function.__name__: function for function in said}
+    asked = (cost_text, engine_facts, facts, meant, out_of, scene_facts, table)
+    environment.globals |= {each.__name__.rpartition(".")[2]: each for each in asked}
+    environment.globals |= {"ENGINES": ENGINES, "LOOPS": LOOPS, "WORDS": WORDS}
+    environment.globals |= {"TARGETS": TARGETS, "infinite": math.inf, "verdict": verdict}
+    environment.globals |= {"TROUBLES": TROUBLES, "captions": scenes.STUDY.captions}
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
-        path: environment.get_template(name).render(known)
-        for path, name in (
-            (root / "README.md", "readme.md.jinja"),
-            (published / "README.md", "published.md.jinja"),
-            (published / "engines.md", "engines.md.jinja"),
-            (published / "scenes.md", "scenes.md.jinja"),
-        )
+        root / path: environment.get_template(name).render(published=published)
+        for path, name in PAGES.items()
     }

@@ -1,7 +1,5 @@
 """Draw a results folder again, from its CSVs alone."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
 
@@ -57,25 +55,10 @@ def draw(study: Study, folder: Path, suffix: str) -> list[Path]:
         for table in folder.glob(study.table):
             if table.read_bytes().count(b"\n") < 2:
                 raise ValueError(f"{table.name} has no rows")
-        with _no_words_for_numbers():
-            return save_all(study.pictures(folder), folder, suffix)
+        return save_all(study.pictures(folder), folder, suffix)
     except OSError:
         raise
     except Exception as error:
         # a table that was edited may break its drawing in any way
         problem = f"its results of `rocking {study.name}` cannot be drawn"
         raise BadInputError(f"FOLDER is {str(folder)!r}; {problem} ({one_line(error)})") from error
-
-
-@contextmanager
-def _no_words_for_numbers() -> Iterator[None]:
-    """Keep words from being drawn as if they were marks along an axis: no figure has any."""
-    from matplotlib import units
-
-    kept = dict(units.registry)
-    for kind in [kind for kind in kept if issubclass(kind, str | bytes)]:
-        del units.registry[kind]
-    try:
-        yield
-    finally:
-        units.registry.update(kept)

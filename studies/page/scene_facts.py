@@ -16,7 +16,7 @@ from studies.measures.again import worst_again
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
 from studies.measures.words import capital, duration, listed, part
 from studies.measures.wrongness import KINDS
-from studies.page.facts import by_preset, presets, table
+from studies.page.facts import by_preset, presets
 from studies.scenes.told import (
     SCENES,
     again,
@@ -25,12 +25,13 @@ from studies.scenes.told import (
     cases_of,
     floor_sentence,
     found_in,
+    ranked,
     sentence,
 )
 
 
-def scenes(published: Path) -> str:
-    """Return the scenes as a table of Markdown: a row for each engine, a cell for each scene.
+def scenes(published: Path) -> tuple[list[str], list[list[str]]]:
+    """Return heads, and a row for each engine with a cell for each scene.
 
     A cell has the median error and how many outcomes are wrong, as documented and then of the last
     of the engine's presets that were asked; the block has the time of a case, too.
@@ -46,17 +47,17 @@ def scenes(published: Path) -> str:
     ]
     engines = dict.fromkeys(engine_of(source) for _, lines, _ in held for source in lines["source"])
     rows = [
-        (f"**{ENGINES[name].title}**", *(_ends(lines, name, say) for _, lines, say in held))
+        [f"**{ENGINES[name].title}**", *(_ends(lines, name, say) for _, lines, say in held)]
         for name in engines
     ]
-    return table(("", *(head for head, _, _ in held)), rows)
+    return ["", *(head for head, _, _ in held)], rows
 
 
 def _posed(title: str, lines: pd.DataFrame) -> str:
     return f"{title}, {cases_of(lines)} cases"
 
 
-def scenes_told(published: Path) -> list[dict[str, str]]:
+def scenes_told(published: Path) -> list[dict[str, Any]]:
     """Return each scene in words: what was found, a table of engines and presets, the worst."""
     folder, sections = published / "scenes", []
     known = by_scene(folder)
@@ -73,56 +74,43 @@ def scenes_told(published: Path) -> list[dict[str, str]]:
                 "asked": told.asked,
                 "cases": cases_of(lines),
                 "table": by_preset(posed, told.words),
-                "worst": "\n".join(commands),
+                "worst": list(commands),
             }
         )
     return sections
 
 
-def extreme_frames(published: Path) -> dict[str, str]:
+def extreme_frames(published: Path) -> dict[str, Any]:
     """Return what engines make of the extreme frames, as `scenes` does; empty without any."""
     lines = found_in(published / "scenes" / "frame-extremes.csv")
     if lines.empty:
         return {}
     frames = list(lines.groupby(["columns", "load"], sort=False))
     say = partial(_outcome, say=part)
-    heads = [f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames]
+    heads = ["", *(f"{columns} columns, γ = {load:g}" for (columns, load), _ in frames)]
     rows = [
-        (f"**{ENGINES[name].title}**", *(_ends(mine, name, say) for _, mine in frames))
+        [f"**{ENGINES[name].title}**", *(_ends(mine, name, say) for _, mine in frames)]
         for name in dict.fromkeys(map(engine_of, lines["source"]))
         if name in ENGINES
     ]
     heaviest = lines[(lines["load"] == lines["load"].max()) & lines["source"].map(is_engine)]
     best = best_of(heaviest)
-    ranked = best.dropna(subset="median_error").sort_values("median_error")
-    found = [
-        f"{part(ranked['median_error'].iloc[end])} ({engine_title(ranked['source'].iloc[end])})"
-        for end in (0, -1)
-    ]
+    low, high = ranked(best.assign(source=best["source"].map(engine_of)), part)
     mute = best.loc[best["median_error"].isna(), "source"].map(engine_title)
     beside = f"; no peak at all from {listed(list(mute))}" if len(mute) else ""
     claim = (
         f"With a beam {lines['load'].max():g} times as heavy as its columns the peak is off, in "
-        f"the median and with each engine's best preset, by {found[0]} to {found[1]}{beside}."
+        f"the median and with each engine's best preset, by {low} to {high}{beside}."
     )
-    return {"claim": claim, "table": table(("", *heads), rows)}
+    return {"claim": claim, "table": (heads, rows)}
 
 
-def floors(published: Path) -> dict[str, str]:
-    """Return what is found of moving floors, and the table of them; empty without any."""
+def floors(published: Path) -> dict[str, Any]:
+    """Return what is found of moving floors, and the lines of them; empty without any."""
     lines = found_in(published / "scenes" / "floor-summary.csv")
     if lines.empty:
         return {}
-    heads = ("", "moved by", "carries", "after 1 s of rest")
-    ways = ("carried", "carried_after_rest")
-    rows = [
-        (
-            *(ENGINES[line["engine"]].title, line["floor"]),
-            *(f"{round(100.0 * line[name], 1) + 0.0:g} %" for name in ways),
-        )
-        for _, line in lines.iterrows()
-    ]
-    return {"claim": floor_sentence(lines), "table": table(heads, rows)}
+    return {"claim": floor_sentence(lines), "lines": lines.to_dict("records")}
 
 
 def _ends(lines: pd.DataFrame, engine: str, say: Callable[[pd.Series[Any]], str]) -> str:

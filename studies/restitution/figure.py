@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from textwrap import wrap
 
@@ -14,7 +13,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from studies.drawing.facets import cells
+from studies.drawing.facets import cells, in_rows
 from studies.drawing.styles import engine_style, title_of
 from studies.restitution.strikes import BASE, CORNER, RATE, Measure, lines
 
@@ -36,43 +35,21 @@ VARIATIONS = {
 """Column of deviations -> what is varied."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Shown:
-    """What a figure shows.
-
-    Attributes
-    ----------
-    measure : Measure
-    label : str
-        Of the ordinate.
-    low, top : float
-        Ends of the scale; what is above, or broken, stands at the top as a cross.
-    """
-
-    measure: Measure
-    label: str
-    low: float
-    top: float
-
-
-SPEEDS = Shown(measure=CORNER, label="Speed of the corner, after over before", low=-0.05, top=1.35)
-RATES = Shown(measure=RATE, label="Angular rate, after over before", low=-0.75, top=1.15)
-
 USUAL = f"p dt {BASE.step:.0e}, {BASE.rate:g} α p, in the engine's colour"
 VARIED = {"p_dt": ("p dt {:.0e}", "--"), "rate_over_alpha_p": ("{:.2g} α p", ":")}
 """What is varied, column -> what its value is written with, and the line it is drawn with."""
 
 
-def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
+def draw_restitution(rows: pd.DataFrame, shown: Measure) -> Figure:
     """Draw the largest deviation of each way to ask, and what comes out where it is partly kept.
 
     Parameters
     ----------
     rows : DataFrame
         The columns of restitution.csv.
-    shown : Shown
+    shown : Measure
     """
-    corner, off = lines(rows, CORNER)["off"], lines(rows, shown.measure)
+    corner, off = lines(rows, CORNER)["off"], lines(rows, shown)
     heard = (corner < IGNORED) | (corner == math.inf)
     partly = off[heard & ((corner > KEPT) | (off["off"] > KEPT))][["engine", "way"]]
     down = math.ceil(len(partly) / ACROSS)
@@ -90,7 +67,7 @@ def draw_restitution(rows: pd.DataFrame, shown: Shown) -> Figure:
     return drawing
 
 
-draw_corners, draw_rates = (partial(draw_restitution, shown=shown) for shown in (SPEEDS, RATES))
+draw_corners, draw_rates = (partial(draw_restitution, shown=shown) for shown in (CORNER, RATE))
 
 
 def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:
@@ -108,29 +85,23 @@ def _matrix(drawing: SubFigure, off: pd.DataFrame) -> None:
 
 
 def _partly(
-    drawing: SubFigure, rows: pd.DataFrame, ways: Sequence[tuple[str, str]], shown: Shown
+    drawing: SubFigure, rows: pd.DataFrame, ways: Sequence[tuple[str, str]], shown: Measure
 ) -> None:
-    across = min(ACROSS, len(ways))
-    grid = drawing.subplots(
-        math.ceil(len(ways) / across), across, sharex=True, sharey=True, squeeze=False
-    )
-    for axes in grid.flat[len(ways) :]:
-        axes.remove()
-    for place, (axes, (engine, way)) in enumerate(zip(grid.flat, ways, strict=False)):
+    grid = in_rows(drawing, len(ways), min(ACROSS, len(ways)), sharex=True, sharey=True)
+    for axes, (engine, way) in zip(grid, ways, strict=True):
         mine = rows[(rows["engine"] == engine) & (rows["way"] == way)]
         _panel(axes, mine, shown, engine_style(engine, "").colour)
         axes.set_title("\n".join(wrap(f"{title_of(engine)}: {way}", LETTERS)), fontsize=9.5)
-        axes.tick_params(labelbottom=place + across >= len(ways))
-    handles, labels = grid.flat[0].get_legend_handles_labels()
+    handles, labels = grid[0].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside upper center", ncols=len(labels), fontsize=8.5,
                    frameon=False)  # fmt: skip
     drawing.supylabel(shown.label, fontsize=9)
     drawing.supxlabel("coefficient of restitution that is wanted", fontsize=9)
 
 
-def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:
+def _panel(axes: Axes, group: pd.DataFrame, shown: Measure, colour: str) -> None:
     usual = group[group["varied"] == ""].groupby("wanted")
-    right, base = usual[shown.measure.right].first(), usual[shown.measure.found]
+    right, base = usual[shown.right].first(), usual[shown.found]
     axes.plot(right.index, right, color="#777777", linewidth=0.8, label="as it should be")
     low, middle, high = base.min(), base.median(), base.max()
     axes.fill_between(low.index, low, high, color=colour, alpha=0.35, linewidth=0.0)
@@ -139,7 +110,7 @@ def _panel(axes: Axes, group: pd.DataFrame, shown: Shown, colour: str) -> None:
     for column, (words, line) in VARIED.items():
         mine = group[(group["varied"] != "") & group["varied"].map(column.startswith)]
         for place, (value, rows) in enumerate(mine.groupby(column)):
-            found = rows.groupby("wanted")[shown.measure.found].median()
+            found = rows.groupby("wanted")[shown.found].median()
             kept, lost = found.where(found < shown.top), found[~(found < shown.top)]
             shade, label = shades(0.55 + 0.35 * place), words.format(float(str(value)))
             axes.plot(kept.index, kept, line, color=shade, linewidth=1.1, label=label)

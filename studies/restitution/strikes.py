@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import product
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -40,17 +41,22 @@ BROKEN = 10.0
 """A corner that comes off so many times as fast was thrown by a contact that is unstable."""
 
 
-@dataclass(frozen=True, slots=True)
-class Measure:
-    """What a strike is asked: the columns of what is found and of what is right."""
+class Measure(NamedTuple):
+    """What a strike is asked: columns of what is found and of what is right, and how it is drawn.
+
+    What is above the top, or broken, stands there as a cross.
+    """
 
     found: str
     right: str
+    label: str
+    low: float
+    top: float
 
 
-CORNER = Measure("corner_ratio", "wanted")
+CORNER = Measure("corner_ratio", "wanted", "Speed of the corner, after over before", -0.05, 1.35)
 """The speed of the corner after over before: the coefficient itself."""
-RATE = Measure("rate_ratio", "kept_ratio")
+RATE = Measure("rate_ratio", "kept_ratio", "Angular rate, after over before", -0.75, 1.15)
 """The angular rate of the block after over before, which follows from it."""
 
 

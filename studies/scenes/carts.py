@@ -1,12 +1,11 @@
-"""A block on a cart that feels it: cases, what of an answer is kept, and the tables of it."""
+"""A block on a cart that feels it: cases, and what of an answer is kept."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from itertools import product
 
 import numpy as np
-import pandas as pd
 
 from analytic import CartBlock, simulate
 from analytic.motion import SinePulse
@@ -14,7 +13,7 @@ from analytic.response import Outcome, Response
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.measures.carts import impact_ratio, place_error
-from studies.scenes.places import steps
+from studies.scenes.places import placed
 from studies.sources.registry import resolve
 
 CARTS = ((1e-3, 0.0), (0.1, 0.0), (0.5, 0.0), (0.9, 0.0), (0.5, 5.0), (0.3, 20.0))
@@ -28,18 +27,17 @@ No pivot needs more friction than 1.3, the least that a tuned preset has."""
 PHASES = 3
 """Places of the first impact in a step; one where the block falls, and more says nothing."""
 
-REFINED = (4.0, 2.0, 0.5)
-"""Steps over an engine's own at which one case is asked again: the first pulse on `ASKED_AGAIN`."""
-
-ASKED_AGAIN = (0.5, 0.0)
-
 OBSERVED = 5.0
 """How long a cart is observed after the motion, in units of 1/p."""
 
 TIMES = 31
 """Times at which the cart's place is compared."""
 
-LIKE = ["mass_ratio", "stiffness", "amplitude_g", "omega"]
+AGAIN = {"mass_ratio": 0.5, "stiffness": 0.0, "amplitude_g": 0.6, "omega": 20.0}
+"""The case that is asked in several steps, by its labels."""
+
+REFINED = (4.0, 2.0, 0.5)
+"""Steps over an engine's own at which it is asked again."""
 
 
 def carts(sources: Sequence[str], quick: bool) -> Iterator[Job]:
@@ -66,32 +64,25 @@ def carts(sources: Sequence[str], quick: bool) -> Iterator[Job]:
         If a source is neither exact nor an engine.
     """
     sources = [name for name in sources if not resolve(name).accurate]
-    for cart, pulse in ((cart, pulse) for cart in CARTS for pulse in PULSES):
-        again = cart == ASKED_AGAIN and pulse == PULSES[0]
-        phases = 1 if pulse == PULSES[-1] else PHASES
-        for refined in (1.0, *(REFINED if again and not quick else ())):
-            for source in sources if again or not quick else ():
-                yield from _jobs(cart, pulse, source, 2 if quick else phases, refined)
-
-
-def _jobs(
-    cart: tuple[float, float], pulse: tuple[float, float], source: str, phases: int, refined: float
-) -> Iterator[Job]:
-    block = CartBlock(width=0.5, height=1.5, mass_ratio=cart[0], stiffness=cart[1])
-    motion = SinePulse.in_g(pulse[0], omega=pulse[1], half_cycles=2)
-    end = motion.duration + OBSERVED / block.p
-    said = dict(zip(LIKE, (*cart, *pulse), strict=True))
-    for place, options in enumerate(steps(source, block, motion, phases, end)):
-        if options or refined == 1.0:
-            yield Job(
-                labels={"scene": "cart", **said, "refined": refined, "in_step": place},
-                block=block,
-                motion=motion,
-                source=source,
-                duration=end,
-                times=np.linspace(0.0, end, TIMES),
-                options={name: refined * step for name, step in options.items()},
-            )
+    for cart, pulse in product(CARTS, PULSES):
+        said = dict(zip(AGAIN, (*cart, *pulse), strict=True))
+        if quick and said != AGAIN:
+            continue
+        block = CartBlock(width=0.5, height=1.5, mass_ratio=cart[0], stiffness=cart[1])
+        motion = SinePulse.in_g(pulse[0], omega=pulse[1], half_cycles=2)
+        end = motion.duration + OBSERVED / block.p
+        phases = 2 if quick else 1 if pulse == PULSES[-1] else PHASES
+        for refined in (1.0, *(REFINED if said == AGAIN and not quick else ())):
+            for source in sources:
+                job = Job(
+                    labels={"scene": "cart", **said, "refined": refined},
+                    block=block,
+                    motion=motion,
+                    source=source,
+                    duration=end,
+                    times=np.linspace(0.0, end, TIMES),
+                )
+                yield from placed(job, phases, refined, "in_step")
 
 
 def cart_row(job: Job, response: Response) -> Row:
@@ -123,47 +114,4 @@ def cart_row(job: Job, response: Response) -> Row:
         # one that falls goes on to where nothing is asked
         "place_error_m": place_error(response, exact) if both else np.nan,
         "momentum_error": float(response.observables.get("momentum_error", np.nan)),
-    }
-
-
-def cart_summary(parts: Sequence[tuple[str, pd.DataFrame]]) -> pd.DataFrame:
-    """Return for each source how many of its carts are wrong, and how far off the others are.
-
-    Parameters
-    ----------
-    parts : sequence of (str, DataFrame)
-        The rows of each source, of what it can hold.
-    """
-    return pd.DataFrame(
-        [{"source": source, **_line(part[part["refined"] == 1.0])} for source, part in parts]
-    )
-
-
-def cart_steps(parts: Sequence[tuple[str, pd.DataFrame]]) -> pd.DataFrame:
-    """Return for each source and step, over its own, how far off the cart that is asked again is.
-
-    Parameters
-    ----------
-    parts : sequence of (str, DataFrame)
-        As of `cart_summary`.
-    """
-    lines = []
-    for source, part in parts:
-        case = part[LIKE].eq([*ASKED_AGAIN, *PULSES[0]]).all(axis=1)
-        for refined, rows in part[case].groupby("refined"):
-            lines.append({"source": source, "refined": refined, **_line(rows)})
-    return pd.DataFrame(lines)
-
-
-def _line(rows: pd.DataFrame) -> dict[str, Any]:
-    size = rows["error"].abs()
-    return {
-        "carts": len(rows),
-        "wrong": int((~rows["agrees"].astype(bool)).sum()),
-        "median_error": size.median(),
-        "largest_error": size.max(),
-        "median_eta_error": rows["eta_error"].abs().median(),
-        "place_error_m": rows["place_error_m"].max(),
-        "momentum_error": rows["momentum_error"].max(),
-        "us_a_step": 1e6 * rows["wall_s"].sum() / max(int(rows["steps"].sum()), 1),
     }

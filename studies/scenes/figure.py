@@ -17,11 +17,11 @@ from studies.drawing.block import BLOCK, INK, SOFT, draw_scene
 from studies.drawing.facets import key, preset_dots
 from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, around
-from studies.drawing.styles import name_of, title_of
+from studies.drawing.styles import title_of
 from studies.measures.presets import engine_of, in_order, preset_of
 from studies.measures.presets import told as as_told
 from studies.measures.wrongness import KINDS
-from studies.scenes.told import SCENES, Told, by_scene, found_in
+from studies.scenes.told import SCENES, by_scene, found_in, ranked
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
@@ -119,28 +119,18 @@ def _seen(points: FloatArray) -> FloatArray:
     return np.stack((x, y * math.sin(ABOVE) + z * math.cos(ABOVE)), axis=1)
 
 
-def draw_told(told: Told) -> Figure:
-    """Draw a scene at rest, dashed, and as it moves."""
-    if isinstance(told.system, RollingCylinder):
-        return draw_rolling(told.system)
-    return draw_scene(told.system, told.at)
-
-
 def pictures(folder: Path) -> Pictures:
     """Draw each scene, its engines' errors against their times, and what there is of floors."""
-    drawn = {f"{name}-scene": draw_told(told) for name, told in SCENES.items()}
+    drawn = {
+        f"{name}-scene": draw_scene(told.system, told.at)
+        for name, told in SCENES.items()
+        if not isinstance(told.system, RollingCylinder)
+    }
+    drawn["cylinder-scene"] = draw_rolling(SCENES["cylinder"].system)
     for name, lines in by_scene(folder).items():
         told = SCENES[name]
-        drawn[f"{name}-time"] = draw_times(lines, _finding(told, lines), told.along)
+        low, high = ranked(lines, told.words)
+        title = f"{told.title.capitalize()}: median errors from {low} to {high}"
+        drawn[f"{name}-time"] = draw_times(lines, title, told.along)
     floors = found_in(folder / "floor-summary.csv")
     return drawn | ({} if floors.empty else {"floor": draw_floors(floors)})
-
-
-def _finding(told: Told, lines: pd.DataFrame) -> str:
-    """Say between which median errors the engines of a scene lie, and whose these are."""
-    ranked = lines.dropna(subset="median_error").sort_values("median_error")
-    low, high = (
-        f"{told.words(ranked['median_error'].iloc[end])} ({name_of(ranked['source'].iloc[end])})"
-        for end in (0, -1)
-    )
-    return f"{told.title.capitalize()}: median errors from {low} to {high}"

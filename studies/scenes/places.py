@@ -3,70 +3,60 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
+from dataclasses import replace
 from functools import cache
-from typing import Any
+from typing import cast
 
-from analytic import CartBlock, RockingFrame, simulate
-from analytic.motion import SinePulse
+from analytic import simulate
+from analytic.motion import Motion
 from engines.declaration import Stepping
+from engines.layouts import System
+from studies.kit.jobs import Job
 from studies.sources.registry import resolve
 
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
 
 
-def steps(
-    source: str,
-    frame: RockingFrame | CartBlock,
-    motion: SinePulse,
-    phases: int,
-    duration: float | None = None,
-) -> Iterator[dict[str, Any]]:
-    """Yield the options by which the first impact falls into different parts of equal steps.
+def own_step(source: str, p: float) -> float:
+    """Return the ordinary step of an engine with equal steps, times p; nan of other sources."""
+    used = resolve(source).used if resolve(source).engine else None
+    if used is None or used.stepping is not Stepping.FIXED:
+        return math.nan
+    return used.step if math.isfinite(used.step) else used.step_s * p
+
+
+def placed(job: Job, phases: int, refined: float, label: str) -> Iterator[Job]:
+    """Yield a job in steps by which the first impact falls into different parts of equal ones.
 
     With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
-    step earlier, for k = 0, 1, ..., N - 1.
+    step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once.
 
     Parameters
     ----------
-    source : str
-    frame, motion
+    job : Job
+        Of a frame or a cart, without options; its exact response has an impact.
     phases : int
         N, at least 1.
-    duration : float, optional
-        As for `analytic.simulate`, whose first impact counts.
-
-    Yields
-    ------
-    dict
-        step, p dt of the frame or cart; one that is empty for a source without equal steps.
-
-    Raises
-    ------
-    IndexError
-        If the exact response has no impact.
+    refined : float
+        Steps over the source's own; at another than 1 only who takes equal steps is asked.
+    label : str
+        Name of the label that is k.
     """
-    asked = resolve(source)
-    if not asked.engine or asked.used.stepping is not Stepping.FIXED:
-        yield {}
+    step = own_step(job.source, job.block.p)
+    if math.isnan(step):
+        if refined == 1.0:
+            yield replace(job, labels={**job.labels, label: 0})
         return
-    used = asked.used
-    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
-    impact = first_impact(frame, motion, duration) * frame.p
+    impact = first_impact(job.block, cast(Hashable, job.motion), job.duration) * job.block.p
     for phase in range(phases):
-        yield {"step": step * (1.0 + phase / phases * step / impact)}
+        moved = step * (1.0 + phase / phases * step / impact)
+        labels = {**job.labels, label: phase}
+        yield replace(job, labels=labels, options={"step": refined * moved})
 
 
 @cache  # one for all sources
-def first_impact(
-    frame: RockingFrame | CartBlock, motion: SinePulse, duration: float | None
-) -> float:
-    """Return when the exact response has its first impact [s]; the arguments are those of `steps`.
-
-    Raises
-    ------
-    IndexError
-        If it has none.
-    """
-    return float(simulate(frame, motion, duration=duration).impacts[0].time)
+def first_impact(block: System, motion: Hashable, duration: float | None) -> float:
+    """Return when the exact response has its first impact [s], as of `analytic.simulate`."""
+    return float(simulate(block, cast(Motion, motion), duration=duration).impacts[0].time)

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from analytic import simulate
 from analytic.response import Outcome, Response
 from engines.run.drive import LAG
@@ -18,17 +16,17 @@ from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.plan import Plan, carry_out
 from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.rolling import reduced
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
-from studies.scenes.carts import cart_row, cart_steps, cart_summary
+from studies.scenes.carts import cart_row
 from studies.scenes.cases import jobs
-from studies.scenes.frames import SEEN, frame_extremes, frame_steps, frame_summary
+from studies.scenes.frames import SEEN
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.rolling import cylinder_summary, cylinder_table
+from studies.scenes.summaries import tabulate
 from studies.scenes.told import SCENES, again, by_scene, ends, floor_sentence, found_in, shown
 from studies.sources.registry import core_sources
 
@@ -136,89 +134,6 @@ def _slip_error(response: Response, exact: Response) -> float:
 def needed(rows: Sequence[Row]) -> Sequence[Row]:
     """Return the rows whose failure is the study's: not of what an engine is not built for."""
     return [row for row in rows if row["reason"] != "UNAVAILABLE"]
-
-
-def tabulate(rows: Sequence[Row]) -> Tables:
-    """Return the rows of each scene, and a line for each source."""
-    parts = {name: pd.DataFrame([row for row in rows if row["scene"] == name]) for name in KINDS}
-    parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
-    in_frames, on_carts = _available(parts["frame"]), _available(parts["cart"])
-    return {
-        **parts,
-        "frame-summary": frame_summary(in_frames),
-        "frame-extremes": frame_extremes(in_frames),
-        "frame-steps": frame_steps(in_frames),
-        "slide-summary": slide_summary(parts["slide"]),
-        "floor-summary": floor_summary(parts["floor"]),
-        "block-summary": block_summary(parts["block"]),
-        "cart-summary": cart_summary(on_carts),
-        "cart-steps": cart_steps(on_carts),
-        "cylinder": cylinder_table(parts["cylinder"]),
-        "cylinder-summary": cylinder_summary(parts["cylinder"]),
-    }
-
-
-def slide_summary(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return for each source the largest error of a slip, its creep and how high it lifted."""
-    lines = []
-    for source, part in _available(rows):
-        slid = part[part["exact_slips"] > 0]
-        held = (part["exact_slips"] == 0) & (part["outcome"] == Outcome.AT_REST.value)
-        lines.append(
-            {
-                "source": source,
-                "slides": len(part),
-                "wrong": int((part["slip_error_m"].isna() & ~held).sum()),
-                "largest_slip_error_m": slid["slip_error_m"].max(),
-                "creep_m": part.loc[part["exact_slips"] == 0, "slip_error_m"].max(),
-                "lift_m": part["lift_m"].max(),
-                "ms_a_slide": 1e3 * part["wall_s"].mean(),
-            }
-        )
-    return pd.DataFrame(lines)
-
-
-def floor_summary(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return for each way of moving a floor how far it carried a block, and how far it lagged."""
-    lines = []
-    if not rows.empty:
-        for (source, floor), part in rows.groupby(["source", "floor"], sort=False):
-            at_once, rested = (part[(part["rest_s"] > 0.0) == after] for after in (False, True))
-            lines.append(
-                {
-                    "engine": engine_of(str(source)),
-                    "floor": floor,
-                    "carried": at_once["carried"].max(),
-                    "carried_after_rest": rested["carried"].max(),
-                    LAG: part[LAG].max(),
-                }
-            )
-    return pd.DataFrame(lines, columns=["engine", "floor", "carried", "carried_after_rest", LAG])
-
-
-def block_summary(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return for each source how far off its peaks are, and how far on the floor that it made."""
-    lines = []
-    if not rows.empty:
-        for source, part in rows.groupby("source", sort=False):
-            lines.append(
-                {
-                    "source": source,
-                    "blocks": len(part),
-                    "median_error": part["error"].abs().median(),
-                    "median_own_error": part["own_error"].abs().median(),
-                    LAG: part[LAG].max(),
-                }
-            )
-    names = ["source", "blocks", "median_error", "median_own_error", LAG]
-    return pd.DataFrame(lines, columns=names)
-
-
-def _available(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    if rows.empty:
-        return []
-    asked = rows[rows["reason"].fillna("") != "UNAVAILABLE"]
-    return [(str(source), part) for source, part in asked.groupby("source", sort=False)]
 
 
 TABLES = tuple(f"{kind}-summary" for kind in KINDS)

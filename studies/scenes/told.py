@@ -12,6 +12,7 @@ import pandas as pd
 from analytic import CartBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome, RollingOutcome
 from engines import ENGINES
+from studies.drawing.styles import name_of
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
@@ -259,6 +260,16 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
         beside = f" ({out_of(wrong, mine['cases'].sum())} {told.lost})" if wrong else ""
         said.append(f"{told.words(mine['largest_error'].max())}{beside} {in_words(preset)}")
     return f"{told.subject} off by up to {listed(said)}." if said else ""
+
+
+def ranked(lines: pd.DataFrame, words: Callable[[float], str]) -> tuple[str, str]:
+    """Return the least and the largest median error in words, and in brackets whose each is."""
+    known = lines.dropna(subset="median_error").sort_values("median_error")
+    low, high = (
+        f"{words(known['median_error'].iloc[end])} ({name_of(known['source'].iloc[end])})"
+        for end in (0, -1)
+    )
+    return low, high
 
 
 def ends(name: str, lines: pd.DataFrame) -> str:

@@ -35,15 +35,9 @@ MEASURES = (*LEAST.values(), *MOST.values())
 
 
 class Requirement(NamedTuple):
-    """What a measure of a preset must reach if it is of LEAST, and else may reach.
+    """What one of MEASURES must reach of a preset if it is of LEAST, and else may reach.
 
-    Attributes
-    ----------
-    preset : str
-    measure : str
-        One of MEASURES.
-    bound : float
-        A number of cases, or a relative error of the peak.
+    The bound is a number of cases, or a relative error of the peak.
     """
 
     preset: str

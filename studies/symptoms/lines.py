@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -113,25 +112,15 @@ def _told_apart(lines: Sequence[str], i: int, j: int) -> int:
     return 0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Symptom:
-    """Something that a user sees.
+class Symptom(NamedTuple):
+    """What a user sees, in a user's words, and the threads of trackers in which it is asked.
 
-    Attributes
-    ----------
-    name : str
-        In a user's words.
-    column : str
-        What measures it, by its size; the smaller the better.
-    threads : tuple of str
-        Threads of trackers in which it is asked.
-    study : str
-        Which has measured it.
+    It was measured by a study, as the size of a column: the smaller the better.
     """
 
     name: str
-    column: str = "max_error"
     threads: tuple[str, ...]
+    column: str = "max_error"
     study: str = "contact"
 
 

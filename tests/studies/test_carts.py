@@ -18,7 +18,8 @@ from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.measures.carts import impact_ratio, place_error
 from studies.scenes.carts import CARTS, OBSERVED, PULSES, carts
-from studies.scenes.study import needed, reduce, tabulate
+from studies.scenes.study import needed, reduce
+from studies.scenes.summaries import tabulate
 
 CART = CartBlock(width=0.5, height=1.5, mass_ratio=0.5)
 PULSE = SinePulse.in_g(0.6, omega=20.0, half_cycles=2)

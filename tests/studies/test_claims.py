@@ -14,13 +14,7 @@ from studies.contact import study as contact
 from studies.contact.study import recommendation
 from studies.ensemble import study as ensemble
 from studies.histories.study import CLAIMS
-from studies.measures.claims import (
-    Claim,
-    Finding,
-    read_findings,
-    tally,
-    write_findings,
-)
+from studies.measures.claims import Finding, claim, read_findings, tally, write_findings
 from studies.overturning import report as overturning
 from studies.overturning.report import with_verdicts
 from studies.precision import report as precision
@@ -122,8 +116,8 @@ def test_what_any_test_rejects_is_told_from_the_exact():
     tests = found[["capacity_off", "mcnemar_rejected", "ks_rejected"]]
     assert tests.to_numpy().tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 2], [0, 0, 0]]
     assert found["predicted"].to_list() == pytest.approx([0.6, 0.6, 0.6, 0.99])
-    claim = "the statistics by far, uneven and skewed from the exact ones, and those by close they"
-    assert claim in ensemble.finding(pd.DataFrame(lines))
+    words = "the statistics by far, uneven and skewed from the exact ones, and those by close they"
+    assert words in ensemble.finding(pd.DataFrame(lines))
 
 
 def variant(preset, factor, level, moved, largest, *, wrong=0, turned=0.0, trap=""):
@@ -311,9 +305,9 @@ def test_the_reference_never_ends_only_where_no_pivot_lifts():
 
 def test_a_claim_needs_its_sources_and_is_told_whichever_way_it_falls(tmp_path):
     table = pd.DataFrame({"source": ["exact"], "value": [2.0]})
-    claim = Claim("two is less than one", lambda t: (bool((t["value"] < 1).all()), "2"), ("exact",))
-    lost = Claim("nobody asked", lambda t: (True, ""), ("rk4",))
-    found = [claim.finding(table), lost.finding(table), Finding("it is so", True, "1")]
+    less = claim("two is less than one", "exact")(lambda t: (bool((t["value"] < 1).all()), "2"))
+    lost = claim("nobody asked", "rk4")(lambda t: (True, ""))
+    found = [less(table), lost(table), Finding("it is so", True, "1")]
     assert [item.holds for item in found] == [False, None, True]
     assert tally(found, "them") == "Of them 1 of 2 hold; not: two is less than one."
     assert [item.verdict for item in found] == ["does not hold", "not tested", "holds"]
@@ -329,9 +323,9 @@ def test_the_papers_histories_are_judged_by_their_peaks():
             for source, peak in (("exact", 1.0), ("housner", far), ("modified", 1.0))
         ]
     )
-    assert CLAIMS[4].finding(rows).holds is True
+    assert CLAIMS[4](rows).holds is True
     worse = rows.assign(peak_ratio=np.where(rows["panel"] == "c", 1.0, rows["peak_ratio"]))
-    assert CLAIMS[4].finding(worse).holds is False
+    assert CLAIMS[4](worse).holds is False
     even = rows.assign(peak_ratio=rows["peak_ratio"].replace(1.5, 1.2))
-    assert CLAIMS[4].finding(even).holds is False
-    assert CLAIMS[5].finding(rows).holds is False
+    assert CLAIMS[4](even).holds is False
+    assert CLAIMS[5](rows).holds is False

@@ -1,7 +1,6 @@
 """Contact models: every variant answers, what is set is read back, the report is of the rows."""
 
 import functools
-import json
 import math
 from dataclasses import replace
 
@@ -37,7 +36,6 @@ from studies.contact.study import (
     unchanged,
     variant_table,
 )
-from studies.contact.told import prices, rules
 from studies.kit.jobs import ask
 from studies.sources.registry import resolve
 
@@ -326,40 +324,6 @@ def test_a_failure_is_no_error_of_zero(small_table):
     assert first["set"] == "damping 0.0"
     assert first["failed"] == line["cases"]
     assert first["max_error_alone"] == pytest.approx(alone["max_error"])
-
-
-def test_jobs_survive_json():
-    for variant in VARIANTS:
-        job = job_of(variant, *cases(True)[0], True)
-        assert len(job.key) == 24
-        assert json.loads(json.dumps(dict(job.labels)))["level"] == variant.level
-
-
-def made_up(preset, factor="", level="", error=1e-5, **broken):
-    counts = {"cases": 12, "failed": 0, "wrong": 0, **broken}
-    words = {"engine": "rapier", "preset": preset, "factor": factor, "level": level}
-    return {**words, **counts, "median_error": error / 2, "max_error": error}
-
-
-def test_what_helps_has_a_price_and_a_rule_its_worth():
-    lines = pd.DataFrame(
-        [
-            made_up("landing"),
-            made_up("landing", LEFT_OUT, "reflection", 2e-2, wrong=1),
-            made_up(BEST, error=3e-2),
-            made_up(BEST, "locks", "y locked", math.nan, failed=12),
-            made_up(DEFAULT, error=0.05),
-            made_up(BEST, "sleeping", "on", 0.4),
-        ]
-    )
-    assert prices(lines, "rapier") == {
-        "": "10⁻⁵",
-        "REFLECTION": "2 %, 1 of 12 wrong",
-        "STEPS": "3 %",
-    }
-    worth = {rule.factor: pair for rule, *pair in rules(lines, "rapier")}
-    # without the rule, and with it: what is seen from the best is what happens without
-    assert worth == {"locks": ["no result", "1.5 %, 3 %"], "sleeping": ["20 %, 40 %", "1.5 %, 3 %"]}
 
 
 def test_landing_is_tried_without_each_of_what_helps_it():

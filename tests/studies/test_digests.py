@@ -193,9 +193,6 @@ def test_no_advice_from_edited_tables(command, tables, published, capsys):
 
 def test_no_bound_from_an_edited_factor(published, monkeypatch, capsys):
     monkeypatch.setattr(halving, "FACTORS", published / "estimate" / "factors.csv")
-    monkeypatch.setattr(
-        halving.published_trust, "__defaults__", (published / "estimate" / "factors.csv",)
-    )
     edit(published / "estimate" / "factors.csv")
     few = ["--sources", "mujoco", "--jobs", "1", "--step", "0.02"]
     refused(capsys, ["compare", *CASE, *few, "--estimate"], "factors.csv")

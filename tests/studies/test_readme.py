@@ -1,6 +1,7 @@
 """README.md and the page of the published results: what the tables say, and nothing else."""
 
 import json
+import math
 import re
 import shlex
 import shutil
@@ -12,14 +13,15 @@ from commanding import ROOT, refused
 
 from analytic import MODELS
 from engines import ENGINES
+from engines.parts.factors import BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
 from studies.kit.tables import read_table
 from studies.page import facts, hero, readme, scene_facts
-from studies.page.engine_facts import objections
-from studies.page.facts import table
+from studies.page.engine_facts import objections, once, prices, rules
+from studies.page.readme import table
 from studies.sources.registry import expanded, grouped, original_of, resolve
 
 PUBLISHED = ROOT / readme.PUBLISHED
@@ -69,11 +71,9 @@ def test_the_readme_follows_its_tables(pages, tmp_path):
 def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
-    (drake,) = (line for line in scene_facts.scenes(copy).splitlines() if "Drake" in line)
-    assert "| 3.8 %<br>→ 9.4·10⁻⁵ |" in drake.replace("\N{NO-BREAK SPACE}", " ")
-    assert drake.count("|") == 8
-    (newton,) = (line for line in scene_facts.scenes(copy).splitlines() if "Newton" in line)
-    assert " | – | " in newton
+    cells = cells_of(copy, "Drake")
+    assert "3.8 %<br>→ 9.4·10⁻⁵" in cells and len(cells) == 7
+    assert "–" in cells_of(copy, "Newton")
     path = copy / "scenes" / "frame.csv"
     rows = read_table(path)
     mine = rows["source"] == "drake:naive"
@@ -81,10 +81,17 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     rows.loc[rows[mine].index[:3], "outcome"] = "overturned"
     rows.loc[rows[mine].index[:3], "error"] = float("nan")
     rows.to_csv(path, index=False, na_rep="nan")
-    (drake,) = (line for line in scene_facts.scenes(copy).splitlines() if "Drake" in line)
-    assert "| 25 % (3 wrong)<br>→ 9.4·10⁻⁵ |" in drake.replace("\N{NO-BREAK SPACE}", " ")
+    assert "25 % (3 wrong)<br>→ 9.4·10⁻⁵" in cells_of(copy, "Drake")
     shutil.rmtree(copy / "scenes")
-    assert "frame" not in scene_facts.scenes(copy)
+    heads, _ = scene_facts.scenes(copy)
+    assert len(heads) == 3 and "frame" not in " ".join(heads)
+
+
+def cells_of(published, engine):
+    """Return the cells of an engine among the scenes."""
+    _, rows = scene_facts.scenes(published)
+    (found,) = (cells for cells in rows if engine in cells[0])
+    return [cell.replace("\N{NO-BREAK SPACE}", " ") for cell in found]
 
 
 def test_what_is_said_of_heavy_beams_follows_their_table(tmp_path):
@@ -122,13 +129,12 @@ def test_a_preset_of_one_engine_alone_is_named_in_its_cell():
     ).assign(cases=10, median=0.01, p90=0.02, max=0.5, ms=2.0, rest_wrong=0, no_answer=0)
     lines["fall_wrong"] = lines["cases"] - lines["right"]
     lines = lines.rename(columns={"median": "median_error", "max": "largest_error"})
-    heads, _, *rows = facts.by_preset(lines).replace("\N{NO-BREAK SPACE}", " ").splitlines()
-    assert heads.count("|") == 4 and "`:error-controlled`" not in heads
-    assert rows[0].startswith(
-        "| **PyBullet** | **fall wrong in 1**<br>1 %, max 50 %<br>2 ms | none wrong<br>"
-    )
-    assert rows[1].endswith("| `:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms |")
-    assert rows[2].endswith("| – |") and rows[3].startswith("| **MuJoCo** | – | none wrong")
+    heads, rows = facts.by_preset(lines)
+    rows = [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
+    assert len(heads) == 3 and not any("error-controlled" in head for head in heads)
+    assert rows[0][:2] == ["**PyBullet**", "**fall wrong in 1**<br>1 %, max 50 %<br>2 ms"]
+    assert rows[1][-1] == "`:error-controlled`<br>none wrong<br>1 %, max 50 %<br>2 ms"
+    assert rows[2][-1] == "–" and rows[3][:2] == ["**MuJoCo**", "–"]
 
 
 def test_what_users_would_object_follows_the_tables(tmp_path):
@@ -144,25 +150,37 @@ def test_what_users_would_object_follows_the_tables(tmp_path):
     lines.loc[better, ["median_error", "max_error", "failed", "wrong"]] = [0.0123, 0.06, 0, 1]
     lines.loc[worse, ["median_error", "max_error", "failed", "wrong"]] = [0.001, 0.002, 0, 2]
     lines.to_csv(path, index=False, na_rep="nan")
-    said = objections(tmp_path, facts.presets(PUBLISHED)).splitlines()
-    row = next(line for line in said if "50 %, max 75 %, 1 wrong" in line)
-    assert "integrator" in row and "1.2 %, max 6 %, 1 wrong" in row
-    assert not any("cone" in line for line in said if "50 %, max 75 %" in line)
-    assert sum(line.startswith("| MuJoCo") for line in said) == 1
+    said = once(objections(tmp_path, facts.presets(PUBLISHED)))
+    tried = {cells[1].partition(":")[0]: cells[4] for cells in said if "max 75 %" in cells[3]}
+    assert tried["integrator"] == "1.2 %, max 6 %, 1 wrong" and "cone" not in tried
+    assert sum(cells[0] == "MuJoCo" for cells in said) == 1
 
 
-def test_folders_of_an_earlier_version_say_what_they_hold(tmp_path):
-    for name, version, source in (
-        ("sweep", "0.1.0", "mujoco:naive"),
-        ("free", "0.1.0", "mujoco"),
-        ("contact", facts.MOVING, "mujoco:naive"),
-    ):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "provenance.json").write_text(json.dumps({"version": version}))
-        (tmp_path / name / "rows.csv").write_text(f"source\n{source}\n")
-    assert facts.earlier(tmp_path) == "`sweep`"
-    shutil.rmtree(tmp_path / "sweep")
-    assert facts.earlier(tmp_path) == "none"
+def made_up(preset, factor="", level="", error=1e-5, **broken):
+    counts = {"cases": 12, "failed": 0, "wrong": 0, **broken}
+    words = {"engine": "rapier", "preset": preset, "factor": factor, "level": level}
+    return {**words, **counts, "median_error": error / 2, "max_error": error}
+
+
+def test_what_helps_has_a_price_and_a_rule_its_worth():
+    lines = pd.DataFrame(
+        [
+            made_up("landing"),
+            made_up("landing", LEFT_OUT, "reflection", 2e-2, wrong=1),
+            made_up(BEST, error=3e-2),
+            made_up(BEST, "locks", "y locked", math.nan, failed=12),
+            made_up(DEFAULT, error=0.05),
+            made_up(BEST, "sleeping", "on", 0.4),
+        ]
+    )
+    assert prices(lines, "rapier") == {
+        "": "10⁻⁵",
+        "REFLECTION": "2 %, 1 of 12 wrong",
+        "STEPS": "3 %",
+    }
+    # without the rule, and with it: what is seen from the best is what happens without
+    worth = {tuple(pair) for _, _, *pair in rules(lines)}
+    assert worth == {("no result", "1.5 %, 3 %"), ("20 %, 40 %", "1.5 %, 3 %")}
 
 
 def runs_of(*runs, commit="a", **record):

@@ -4,7 +4,6 @@ import json
 import math
 
 import numpy as np
-import pandas as pd
 import pytest
 from commanding import refused
 
@@ -16,7 +15,8 @@ from studies.__main__ import run
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, short
 from studies.measures.rolling import reduced
-from studies.scenes.rolling import cylinder_summary, cylinder_table, cylinders
+from studies.scenes.rolling import cylinders
+from studies.scenes.summaries import tabulate
 from studies.sources.rolling import _outcome, seen, space_scene, steady_states
 
 FLAT = RollingCylinder(radius=0.5, height=0.5, tilt=0.2)
@@ -129,9 +129,9 @@ def test_rows_are_summarized():
         for job in jobs
         for answer in [ask(job, job.asked)]
     ]
-    table = pd.DataFrame(rows)
-    assert "became" in cylinder_table(table) and "scene" not in cylinder_table(table)
-    lines = cylinder_summary(table).set_index("source")
+    tables = tabulate(rows)
+    assert "became" in tables["cylinder"] and "scene" not in tables["cylinder"]
+    lines = tables["cylinder-summary"].set_index("source")
     assert list(lines.index) == ["exact", "mujoco:naive"]
     naive = [abs(row["tilt_error_rad"]) for row in rows if row["source"] == "mujoco:naive"]
     found = lines.loc["mujoco:naive"]
@@ -142,4 +142,4 @@ def test_rows_are_summarized():
     assert naive[1] > 0.9 * naive[0] > 0.1
     assert lines.loc["exact", "tilt_error_rad"] < 1e-14
     assert math.isnan(lines.loc["exact", "half_step_tilt_error_rad"])
-    assert cylinder_summary(pd.DataFrame()).empty
+    assert tabulate([])["cylinder-summary"].empty

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -16,16 +17,17 @@ from engines.layouts import layout_of
 from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.drawing.block import draw_scene
-from studies.kit.jobs import ask
+from studies.kit.jobs import Job, ask
 from studies.kit.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, slides
 from studies.scenes.figure import draw_times, pictures
-from studies.scenes.frames import frame_extremes, frame_steps, frame_summary, frames, usual
+from studies.scenes.frames import frames, usual
 from studies.scenes.own_floor import exact_on_its_floor
-from studies.scenes.places import steps
-from studies.scenes.study import block_summary, floor_summary, reduce, slide_summary, tabulate
+from studies.scenes.places import placed
+from studies.scenes.study import reduce
+from studies.scenes.summaries import tabulate
 from studies.scenes.told import (
     SCENES,
     again,
@@ -157,33 +159,34 @@ def test_kinds_of_a_frame_and_of_a_slide_are_counted():
 
 
 def test_the_published_scenes_are_told_as_their_summaries_are():
-    """By a second way: the kinds together are the wrong of the summary, medians and times too."""
-    for name, count, median in (("frame", "frames", "median_error"), ("slide", "slides", "")):
+    """By a second way: the kinds together are the wrong of the summary, errors and times too."""
+    for name, wrong, told in (
+        ("frame", "wrong", {"median_error": "median_error", "ms": "ms_a_frame"}),
+        ("slide", "wrong", {"ms": "ms_a_slide"}),
+        ("cylinder", "lost", {"largest_error": "tilt_error_rad"}),
+    ):
         lines = lines_of(PUBLISHED / "scenes" / f"{name}.csv", name).set_index("source")
         summary = read_table(PUBLISHED / "scenes" / f"{name}-summary.csv").set_index("source")
+        if "turns" in summary:
+            summary = summary[summary["turns"] == 5.0]
         assert list(lines.index) == list(summary.index)
-        assert (lines[[*KINDS]].sum(axis=1) == summary["wrong"]).all()
-        assert (lines["cases"] == summary[count]).all()
-        assert lines["ms"].to_numpy() == pytest.approx(summary[f"ms_a_{name}"].to_numpy())
-        if median:
-            assert lines[median].to_numpy() == pytest.approx(summary[median].to_numpy())
+        assert (lines[[*KINDS]].sum(axis=1) == summary[wrong]).all()
+        assert (lines["cases"] == summary[f"{name}s"]).all()
+        for ours, its in told.items():
+            assert lines[ours].to_numpy() == pytest.approx(summary[its].to_numpy())
 
 
 def test_a_block_that_is_held_is_no_wrong_slide():
     held = {"source": "exact", "exact_slips": 0, "slip_error_m": math.nan, "lift_m": 0.0}
-    kept = {**held, "outcome": "at rest", "reason": "", "wall_s": 0.1}
+    kept = {**held, "scene": "slide", "outcome": "at rest", "reason": "", "wall_s": 0.1}
     failed = {**kept, "source": "pymunk", "outcome": "failed"}
-    wrong = slide_summary(pd.DataFrame([kept, failed])).set_index("source")["wrong"]
-    assert wrong.to_dict() == {"exact": 0, "pymunk": 1}
+    lines = tabulate([kept, failed])["slide-summary"]
+    assert dict(zip(lines["source"], lines["wrong"], strict=True)) == {"exact": 0, "pymunk": 1}
 
 
-def test_rolling_cylinders_have_their_pictures():
-    lines = lines_of(PUBLISHED / "scenes" / "cylinder.csv", "cylinder").set_index("source")
-    summary = read_table(PUBLISHED / "scenes" / "cylinder-summary.csv").set_index("source")
-    five = summary[summary["turns"] == 5.0].loc[lines.index]
-    assert (lines[[*KINDS]].sum(axis=1) == five["lost"]).all()
-    assert lines["largest_error"].to_numpy() == pytest.approx(five["tilt_error_rad"].to_numpy())
-    assert {"cylinder-scene", "cylinder-time"} <= set(pictures(PUBLISHED / "scenes"))
+def test_each_scene_has_its_pictures():
+    drawn = pictures(PUBLISHED / "scenes").keys()
+    assert drawn == {"floor", *(f"{name}-{what}" for name in SCENES for what in ("scene", "time"))}
 
 
 def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
@@ -231,12 +234,16 @@ def test_errors_are_drawn_at_their_times_where_there_are_some():
 def test_equal_steps_are_shifted_by_parts_of_a_step():
     """The first impact falls a quarter of a step later in each: step (1 + k step / 4 t), t its
     time."""
-    taken = [options["step"] for options in steps("pymunk:fixed", FRAME, PULSE, 4)]
+    asked = Job(labels={}, block=FRAME, motion=PULSE, source="pymunk:fixed")
+    jobs = list(placed(asked, 4, 1.0, "phase"))
     impact = simulate(FRAME, PULSE).impacts[0].time * FRAME.p
-    places = [impact / step % 1.0 for step in taken]
+    places = [impact / job.options["step"] % 1.0 for job in jobs]
     shifts = [(places[0] - place) % 1.0 for place in places]
     assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
-    assert list(steps("mujoco:landing", FRAME, PULSE, 4)) == list(steps("exact", FRAME, PULSE, 4))
+    assert [job.labels["phase"] for job in jobs] == [0, 1, 2, 3]
+    for source in ("mujoco:landing", "exact"):
+        (once,) = placed(replace(asked, source=source), 4, 1.0, "phase")
+        assert once.options == {} and not list(placed(replace(asked, source=source), 4, 2.0, ""))
 
 
 def test_extreme_frames_and_one_in_other_steps_are_asked_beside_the_usual_ones():
@@ -255,19 +262,20 @@ def test_extreme_frames_and_one_in_other_steps_are_asked_beside_the_usual_ones()
 
 
 def test_frames_are_told_apart_by_load_and_by_step():
-    usual_one = {"outcome": "rocked", "exact": 0.2, "right": True, "error": 1e-3, "wall_s": 1e-3}
+    usual_one = {"scene": "frame", "source": "pymunk:fixed", "reason": "", "outcome": "rocked"}
+    usual_one |= {"exact": 0.2, "right": True, "error": 1e-3, "wall_s": 1e-3}
     usual_one |= {"columns": 2, "load": 2.0, "amplitude_g": 0.4, "refined": 1.0, "extreme": False}
     usual_one |= {"parting": 0.0, "tilt": 0.0, "drift_m": 0.0, "steps": 10}
     heavy = {**usual_one, "load": 1e3, "extreme": True, "error": -0.3}
     lost = {**heavy, "outcome": "failed", "error": math.nan, "right": False}
     finer = {**usual_one, "refined": 0.5, "error": 5e-4, "steps": 20}
-    parts = [("pymunk:fixed", pd.DataFrame([usual_one, heavy, lost, finer]))]
-    (summed,) = frame_summary(parts).to_dict("records")
+    tables = tabulate([usual_one, heavy, lost, finer])
+    (summed,) = tables["frame-summary"].to_dict("records")
     assert (summed["frames"], summed["wrong"], summed["largest_error"]) == (1, 0, 1e-3)
-    (told,) = frame_extremes(parts).to_dict("records")
+    (told,) = tables["frame-extremes"].to_dict("records")
     assert (told["frames"], told["no_answer"], told["fall_wrong"]) == (2, 1, 0)
     assert (told["load"], told["largest_error"]) == (1e3, 0.3)
-    half, whole = frame_steps(parts).to_dict("records")
+    half, whole = tables["frame-steps"].to_dict("records")
     assert (half["refined"], half["median_error"], half["us_a_step"]) == (0.5, 5e-4, 50.0)
     assert (whole["refined"], whole["frames"], whole["us_a_step"]) == (1.0, 1, 100.0)
 
@@ -307,7 +315,7 @@ def test_a_floor_carries_by_its_velocity_and_not_by_its_position():
     rows = [
         {**job.labels, "source": job.source, **reduce(job, ask(job, job.asked))} for job in jobs
     ]
-    lines = floor_summary(pd.DataFrame(rows)).set_index(["engine", "floor"])
+    lines = tabulate(rows)["floor-summary"].set_index(["engine", "floor"])
     travel = float(RIDE.displacement(RIDE.duration))
     assert travel == pytest.approx(1.0 / (2.0 * math.pi) ** 2 * 4.0 * math.pi, rel=1e-12)
     for engine in ("pymunk", "dart"):
@@ -350,10 +358,11 @@ def test_an_engine_is_held_against_the_floor_that_it_made():
     assert found.peak_ratio == pytest.approx(own, rel=1e-2)
     # one that is where it should be changes nothing, but for its steps
     assert exact_on_its_floor("rapier", "naive", block, pulse).peak_ratio == exact
-    lines = block_summary(pd.DataFrame([
-        {"source": name, "error": error, "own_error": 0.01, "floor_lag_m": lag}
+    row = {"scene": "block", "reason": "", "own_error": 0.01}
+    lines = tabulate([
+        {**row, "source": name, "error": error, "floor_lag_m": lag}
         for name, error, lag in (("mujoco:naive", 0.2, 0.04), ("rapier:naive", 0.3, 1e-8))
-    ]))  # fmt: skip
+    ])["block-summary"]  # fmt: skip
     assert lines.to_numpy().tolist() == [
         ["mujoco:naive", 1, 0.2, 0.01, 0.04],
         ["rapier:naive", 1, 0.3, 0.01, 1e-8],

@@ -17,7 +17,6 @@ from studies.kit.arguments import BadInputError
 from studies.kit.provenance import record_of
 from studies.measures.differences import with_reference
 from studies.measures.published import PUBLISHED
-from studies.page.facts import MOVING
 from studies.versions import releases
 from studies.versions.releases import Asked, Release, check_releases, chosen, listed
 from studies.versions.study import EVERY, FIGURE, RANDOM, STUDY, finding, posed
@@ -272,15 +271,13 @@ def test_the_published_lines_of_the_pinned_releases_are_those_of_other_studies(n
     lines, found = STUDY.read(PUBLISHED / "versions", "releases"), 0
     made = record_of(PUBLISHED / "versions")
     every = EVERY if made["settings"]["quick"] else 1
-    # as documented an engine stands on a floor that moves, since then
-    elsewhere = ("fixed", "naive") if made["version"] < MOVING else ("fixed",)
     for line in lines[lines["set"] == name].to_dict("records"):
         if releases.installed(line["engine"]).version != line["release"]:
             continue
         engine, _, preset = line["source"].partition(":")
         source = engine if preset == "landing" else line["source"]
         mine = known_elsewhere(name, source).iloc[::every]
-        if preset in elsewhere or mine.empty:  # that is asked at another step
+        if preset == "fixed" or mine.empty:  # that is asked at another step
             continue
         found += 1
         assert (line["cases"], line["right"]) == (len(mine), mine["agrees"].sum())

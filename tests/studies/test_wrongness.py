@@ -118,3 +118,37 @@ def test_cases_that_are_alike_by_similarity_are_one_problem():
     found = posed(drake_like())
     assert (found.cases, found.problems, found.sizes) == (6, 4, 2)
     assert found.least == found.largest == pytest.approx(1.1)
+
+
+def summary(source, agree, median, largest):
+    return {
+        "source": source,
+        "cases": 10,
+        "agree": agree,
+        "fall_wrong": 10 - agree,
+        "rest_wrong": 0,
+        "no_answer": 0,
+        "median_error": median,
+        "max_error": largest,
+        "p90_error": largest,
+        "wall_s": 1.0,
+    }
+
+
+def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
+    lines = pd.DataFrame(
+        [
+            summary("exact", 10, 0.0, 0.0),
+            summary("housner", 8, 0.5, 2.0),
+            summary("pybullet:naive", 9, 0.01, 0.4),
+            summary("mujoco:naive", 10, 0.08, 0.9),
+            summary("pybullet", 10, 2e-6, 3e-5),
+        ]
+    )
+    text = sweep.finding_of(lines)
+    assert "2 engines get the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
+    assert "with steps that land on impacts, one engine gets none wrong of 10 cases" in text
+    assert "by linearization: housner the fall wrong in 2." in text
+    table = sweep.preset_table(lines)
+    assert list(table["source"]) == ["pybullet:naive", "mujoco:naive", "pybullet"]
+    assert table["ms"].iloc[0] == pytest.approx(100.0)
