@@ -167,7 +167,7 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
 def report(folder: Path) -> str:
     """Draw the folder's tables, and write and return the text."""
     table, errors = STUDY.read(folder, "linearizations"), all_errors()
-    write_findings(folder, [each.finding(errors) for each in CONCLUSIONS])
+    write_findings(folder, [each(errors) for each in CONCLUSIONS])
     tables = {
         "What the paper concludes": read_table(folder / TABLE),
         **{f"On the {name} grid": table.loc[table["grid"] == name, SHOWN] for name in GRIDS},

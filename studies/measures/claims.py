@@ -97,10 +97,11 @@ def write_findings(folder: Path, items: Sequence[Finding]) -> None:
     folder : Path
         One that is there; a table of that name is replaced.
     items : sequence of Finding
-        One at least: each is a row with the columns statement, holds, numbers and source.
+        One at least: each is a row with the columns statement, holds and numbers, and source
+        where some are about one.
     """
     table = pd.DataFrame([asdict(item) for item in items])
-    write_table(folder / TABLE, table)
+    write_table(folder / TABLE, table if any(table["source"]) else table.drop(columns="source"))
 
 
 def read_findings(folder: Path) -> list[Finding]:
