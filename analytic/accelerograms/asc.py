@@ -37,7 +37,7 @@ def read(lines: Sequence[str], units: str | None) -> Sampled | None:
         if key not in said:
             raise ValueError(f"it does not say {key}, and must")
     at, kind = said[TYPE]
-    if not kind.upper().endswith("ACCELERATION"):
+    if not kind.upper().endswith("ACCELERATION") or "SPECTRUM" in kind.upper():
         raise ValueError(f"line {at}: {TYPE} is {shown(kind)}; it must be ACCELERATION")
     at, unit = said.get(UNIT, (0, ""))
     count = whole(COUNT, *said[COUNT])
