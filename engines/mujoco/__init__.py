@@ -22,6 +22,7 @@ from engines.mujoco.settings import (
     MujocoSettings,
     spring,
 )
+from engines.mujoco.stacks import stacks_of
 from engines.scene import GEOMETRIES
 
 NAIVE = Preset(
@@ -58,7 +59,13 @@ ENGINE = Engine(
             solver="Newton",
             tolerance=1e-10,
         ),
-        Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=2.5e-4,
+            stacked=STACKED,
+            builders={Ability.STACKED: stacks_of},
+        ),
         Preset(
             name="landing",
             settings=LANDING,

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
+from engines.layouts import Ability
 from engines.mujoco.model import coordinates, stepped_xml, welded
 from engines.mujoco.settings import MujocoSettings, kept
+from engines.mujoco.stacks import softened
 from engines.parts.script import Script
 from engines.scene import Scene
 from engines.world import Moment
@@ -50,7 +52,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
     s : MujocoSettings, of which impratio is kept to what the friction allows
     dt_s : float, the step [s], which stands in the model
     """
-    s = kept(scene, s)
+    s = kept(scene, softened(scene, s) if Ability.STACKED in scene.layout.asks else s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())
     # the joint of a welded base is the last, a free one

@@ -63,7 +63,8 @@ class MujocoSettings:
         The five numbers of solimp; needed wherever damping is set.
     soft_surface : float or None
         Depth over g dt^2 within which a contact grows from the first of the impedances to the
-        second, in place of their width; it keeps contacts that close together from parting.
+        second, in place of their width; it keeps contacts that close together from parting. Of
+        bodies that rest on others it is over g dt^2 sin(alpha)^2, and softens the first one, too.
     solref : tuple of float or None
         The contact in the library's other form, in place of damping and stiffness: its time
         constant over dt and its damping ratio. Both should be positive: the library takes a pair
@@ -154,10 +155,10 @@ STACKED: dict[str, Any] = {
     "friction": 2.0,
     "impratio": 100.0,
     "tolerance": 0.0,
-    "impedance": (0.9, 0.9999, 0.001, 0.5, 2.0),
-    "soft_surface": 0.1,
+    "soft_surface": 4.0,
 }
-"""Where bodies rest on others: with the block's own contact they part at an impact."""
+"""Where bodies rest on others: with the block's own contact they part; the softness of the surface
+is over sin(alpha)^2 (`engines.mujoco.stacks`)."""
 
 STEEP = "a pyramid this steep leaves too little normal force"
 ZERO = "one zero makes it the default, 0.02 s 1"

@@ -14,9 +14,13 @@ from engines import ENGINES
 from engines.cart import CartWorld
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
+from engines.mujoco.settings import STACKED, TUNED
+from engines.mujoco.stacks import softened
 from engines.registry import OWN
 from engines.run.drive import simulate_world
+from engines.scene import Scene
 from engines.world import Moment, Pose
+from studies.cases.drawn import RandomFrame
 from studies.kit.identity import Makers
 from studies.kit.jobs import Job, ask, summary
 from studies.sources.registry import Source
@@ -186,7 +190,10 @@ def test_those_that_hold_stacks_by_code_of_their_own():
         found = {name: it.builder(asks, it.preset(preset)) for name, it in engines.items()}
         return {name for name, build in found.items() if build is not engines[name].build}
 
-    assert (apart(None), apart("fixed")) == ({"box2d", "dart", "newton"}, {"newton"})
+    assert (apart(None), apart("fixed")) == (
+        {"box2d", "dart", "newton"},
+        {"mujoco", "newton"},
+    )
 
 
 def made(jobs, change=lambda engine: engine):
@@ -216,6 +223,49 @@ def test_a_row_depends_on_what_holds_its_own_scene(name):
     ):
         now = made(jobs, change)
         assert [number for number in range(4) if now[number] != before[number]] == [felt]
+
+
+HARD = {
+    "a light beam, which lets go": (3.373, 9.294, 3, 0.6203, 3.198, 5, 0.578),
+    "one that lets go between impacts": (3.153, 0.07137, 4, 0.9501, 4.923, 5, 0.3667),
+    "a heavy one, whose load wanders": (1.988, 2.015, 4, 1.2365, 4.134, 3, 9.546),
+}
+"""Values of `RandomFrame`, from aspect on: what makes them hard for a contact in equal steps."""
+
+
+@pytest.mark.parametrize("hard", HARD.values(), ids=HARD)
+def test_columns_keep_to_their_beam_in_mujoco(hard):
+    """A top that lets go makes columns part by a tenth and more of alpha, where three can."""
+    names = ("aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p", "columns", "load")
+    case = RandomFrame(case=0, **dict(zip(names, hard, strict=True)))
+    exact, found = agreed("mujoco", case.motion, system=case.block, preset="fixed")
+    assert found.observables["parting"] < 1e-6
+    assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=5e-3)
+
+
+@pytest.mark.parametrize("aspect", [1.2, 3.0, 12.0])
+def test_a_soft_surface_is_in_proportion_to_what_lifts_a_pivot(aspect):
+    system = RockingFrame(width=0.5, height=0.5 * aspect, columns=3, load=2.0)
+    posed, s = Scene(system=system, motion=QUICK), replace(TUNED, **STACKED)
+    surface, whole, *_ = softened(posed, s).impedance
+    depth = STACKED["soft_surface"] / (1.0 + aspect**2)
+    assert softened(posed, s).soft_surface == pytest.approx(depth, rel=1e-12)
+    assert (1.0 - surface) / surface == pytest.approx(depth, rel=1e-12)
+    assert whole == TUNED.impedance[1]
+    firm = replace(s, impedance=(0.1, *TUNED.impedance[1:]))
+    assert softened(posed, firm).impedance[0] == 0.1
+    assert softened(posed, TUNED) is TUNED
+
+
+def test_blocks_and_frames_that_land_in_mujoco_know_nothing_of_it():
+    posed = (
+        (frame(2.0), "fixed"),
+        (frame(2.0), "landing"),
+        (frame(2.0), "naive"),
+        (BLOCK, "fixed"),
+    )
+    jobs = [Job(labels={}, block=it, motion=QUICK, source=f"mujoco:{use}") for it, use in posed]
+    assert ["engines/mujoco/stacks.py" in it for it in made(jobs)] == [True, False, False, False]
 
 
 def test_a_frame_is_columns_that_share_their_beam():
