@@ -258,12 +258,8 @@ def test_a_soft_surface_is_in_proportion_to_what_lifts_a_pivot(aspect):
 
 
 def test_blocks_and_frames_that_land_in_mujoco_know_nothing_of_it():
-    posed = (
-        (frame(2.0), "fixed"),
-        (frame(2.0), "landing"),
-        (frame(2.0), "naive"),
-        (BLOCK, "fixed"),
-    )
+    frames = [(frame(2.0), use) for use in ("fixed", "landing", "naive")]
+    posed = (*frames, (BLOCK, "fixed"))
     jobs = [Job(labels={}, block=it, motion=QUICK, source=f"mujoco:{use}") for it, use in posed]
     assert ["engines/mujoco/stacks.py" in it for it in made(jobs)] == [True, False, False, False]
 
