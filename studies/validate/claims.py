@@ -27,7 +27,7 @@ from studies.cases.drawn import (
 )
 from studies.kit.jobs import Job
 from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
-from studies.measures.halving import estimates_of, halved, published_trust
+from studies.measures.halving import estimates_of, published_trust
 from studies.measures.words import NAMED, gathered, listed, part, right_of
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import Effort, resolve
@@ -205,14 +205,6 @@ HALVES = "halves"
 """Table of the rows at half the step."""
 
 
-def half_jobs(jobs: Iterable[Job]) -> list[Job]:
-    """Return the jobs at half their steps, of those sources that have a step to halve."""
-    finer = (halved(job) for job in jobs)
-    return [
-        replace(job, labels={**job.labels, "table": HALVES}) for job in finer if job is not None
-    ]
-
-
 def with_bounds(compared: pd.DataFrame, finer: pd.DataFrame) -> pd.DataFrame:
     """Add estimate, and bound: the estimate times the published factor, nan where none was.
 
@@ -271,7 +263,8 @@ FALSE: Mapping[str, Hints] = {
 def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
     """Return a job for each case, false hint, and engine whose steps land on impacts.
 
-    Each case is asked with the calm pulse of `calm`, too, and that with true hints beside.
+    Each case is asked with a pulse too weak to lift its block, too, by CALM, and that with true
+    hints beside.
 
     Parameters
     ----------
@@ -286,12 +279,11 @@ def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effor
         Its labels are table ("hints"), hint (of FALSE, or KNOWN) and the fields of the case.
     """
     landing = [source for source in sources if resolve(source).lands]
-    asked = [
-        (posed, name, hints)
-        for case in cases
-        for posed, told in ((case, FALSE), (calm(case), {KNOWN: TRUE, **FALSE}))
-        for name, hints in told.items()
-    ]
+    asked = []
+    for case in cases:
+        calm = replace(case, amplitude_g=CALM / case.aspect)
+        asked += [(case, name, hints) for name, hints in FALSE.items()]
+        asked += [(calm, name, hints) for name, hints in {KNOWN: TRUE, **FALSE}.items()]
     return [
         Job(
             labels={"table": "hints", "hint": name, **asdict(case)},
@@ -303,11 +295,6 @@ def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effor
         for case, name, hints in asked
         for source in landing
     ]
-
-
-def calm(case: RandomCase) -> RandomCase:
-    """Return a case with a pulse too weak to lift its block."""
-    return replace(case, amplitude_g=CALM / case.aspect)
 
 
 def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> pd.DataFrame:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
 from typing import Annotated
@@ -26,7 +26,7 @@ from studies.measures.differences import (
     with_reference,
     with_reference_of_frames,
 )
-from studies.measures.halving import ELSEWHERE
+from studies.measures.halving import ELSEWHERE, halved
 from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.claims import (
@@ -37,7 +37,6 @@ from studies.validate.claims import (
     bounded,
     census,
     finding,
-    half_jobs,
     hint_jobs,
     leanings,
     quantiles,
@@ -110,9 +109,13 @@ def plan(
         for case in drawn
         for source in sources
     ]
-    finer = half_jobs(jobs) if estimate else []
+    halves = [
+        replace(finer, labels={**finer.labels, "table": HALVES})
+        for finer in (map(halved, jobs) if estimate else ())
+        if finer is not None
+    ]
     return Plan(
-        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort), *finer],
+        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort), *halves],
         settings={"seed": seed, **asdict(effort), **({} if scene == "block" else {"scene": scene})},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
