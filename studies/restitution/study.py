@@ -90,9 +90,9 @@ def finding(corners: pd.DataFrame) -> str:
     lost = list(first.loc[first["off"] > 10.0 * GOOD, "engine"])
     beside = f"; asked in the first way that comes to mind, {listed(lost)} miss it" if lost else ""
     return (
-        "Of a coefficient of restitution from 0 to 1 a block that strikes with a corner keeps, "
-        f"with each engine's best setting, all but {_ends(best, 'off_over_all')} over {RANGES}, "
-        f"and all but {_ends(best, 'off')} at {USUAL}{beside}."
+        "With each engine's best setting a coefficient of restitution comes out within "
+        f"{_ends(best, 'off')} as usually struck, and within {_ends(best, 'off_over_all')} in all "
+        f"strikes that were tried{beside}."
     )
 
 

@@ -127,15 +127,13 @@ def finding(lines: pd.DataFrame) -> str:
     words = [_helps(row) for row in rows if row["setting"]]
     others = [str(row["engine"]) for row in rows if not row["setting"]]
     if others:
-        words.append(f"in {listed(others)} no single setting halves it")
-    return f"Where a block tips too early or too late, {'; '.join(words)}."
+        words.append(f"nothing halves it in {listed(others)}")
+    what = "Largest error of a peak by default, and with the one setting that helps most"
+    return f"{what}: {'; '.join(words)}."
 
 
 def _helps(row: Mapping[Any, Any]) -> str:
     before, after = float(str(row["before"])), float(str(row["after"]))
     values = named(str(row["formula"]))
     setting = values if 0 < len(values) <= SHORT else row["setting"]
-    return (
-        f"in {row['engine']} {setting} alone takes the largest error from {part(before)} to "
-        f"{part(after)}"
-    )
+    return f"{row['engine']} {part(before)}, {part(after)} ({setting})"

@@ -258,7 +258,7 @@ def test_the_page_is_written_drawn_and_told(tmp_path, capsys):
     assert text == (tmp_path / "findings.txt").read_text()
     assert "asked in bullet3 #1204" in text
     assert "rocking symptoms --engines pybullet" in text and "@@ block.py" not in text
-    assert "alone takes the largest error from" in study.STUDY.finding(tmp_path)
+    assert "with the one setting that helps most: " in study.STUDY.finding(tmp_path)
     creep = text.partition("it creeps (")[2].partition("\n\n")[0]
     line = next(line for line in creep.splitlines() if line.startswith("mujoco"))
     assert line.split()[-7:-3] == ["best", "0.0116", "1.0e-04", "1.4e-05"]
