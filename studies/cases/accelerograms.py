@@ -61,7 +61,13 @@ def recorded(
     baseline: Baseline | None = None,
     argument: str = "--records",
 ) -> list[Record]:
-    """Read records that move, in the order of their paths; the rest is as for `read_record`.
+    """Read records that move, in the order of their paths.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    units, baseline, argument
+        As for `read_record`.
 
     Raises
     ------

@@ -199,6 +199,13 @@ def _scaled(motion: Motion, factor: float) -> Motion:
 def window_of(block: System, motion: Motion, duration: float | None) -> float:
     """Return for how long a block is watched [s], by default the motion and 8/p of free rocking.
 
+    Parameters
+    ----------
+    block : System
+    motion : Motion
+    duration : float or None
+        What was asked for [s].
+
     Raises
     ------
     BadInputError
@@ -227,6 +234,23 @@ def compare(
     estimate: bool = False,
 ) -> list[Row]:
     """Ask every source; return a row for each, with its response and its distance from exact.
+
+    Parameters
+    ----------
+    block : System
+    posed : Posed
+        The motion and how the block begins.
+    sources : sequence of str
+        The exact solution is asked besides.
+    window : float
+        For how long it is watched [s].
+    executor : Executor
+    times : ndarray, shape (m,), optional
+        At which histories are kept [s].
+    effort, yours : Effort, Yours, optional
+        The step and the accuracy; the user's own settings.
+    estimate : bool, optional
+        Ask at half the step, too.
 
     Returns
     -------

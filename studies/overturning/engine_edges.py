@@ -50,7 +50,16 @@ class Bisected(Response):
 
 
 def grid_jobs(window: Window, engines: Sequence[str], count: int) -> list[Job]:
-    """Return a job for each engine at each cell of a grid of so many columns and amplitudes."""
+    """Return a job for each engine at each cell of a grid.
+
+    Parameters
+    ----------
+    window : Window
+    engines : sequence of str
+        Names that `studies.sources.registry.resolve` knows.
+    count : int
+        Columns of the grid, and amplitudes in each.
+    """
     cells = product(window.centres(count).tolist(), window.amplitudes(count).tolist(), engines)
     return [_job(window, source, x, onsets, table="engines") for x, onsets, source in cells]
 

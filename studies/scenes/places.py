@@ -20,7 +20,14 @@ PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 
 
 def own_step(source: str, p: float) -> float:
-    """Return the ordinary step of an engine with equal steps, times p; nan of other sources."""
+    """Return the ordinary step of an engine with equal steps, times p; nan of other sources.
+
+    Parameters
+    ----------
+    source : str
+    p : float
+        Frequency of the block [rad/s], for a step that is declared in seconds.
+    """
     used = resolve(source).used if resolve(source).engine else None
     if used is None or used.stepping is not Stepping.FIXED:
         return math.nan

@@ -263,7 +263,15 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
 
 
 def ranked(lines: pd.DataFrame, words: Callable[[float], str]) -> tuple[str, str]:
-    """Return the least and the largest median error in words, and in brackets whose each is."""
+    """Return the least and the largest median error in words, and in brackets whose each is.
+
+    Parameters
+    ----------
+    lines : DataFrame
+        As of `lines_of`; lines without a median are passed over.
+    words : callable
+        Says an error in the scene's unit.
+    """
     known = lines.dropna(subset="median_error").sort_values("median_error")
     low, high = (
         f"{words(known['median_error'].iloc[end])} ({name_of(known['source'].iloc[end])})"
