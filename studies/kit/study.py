@@ -142,14 +142,19 @@ class Study:
         return str(self.load().finding(*(self.read(folder, name) for name in self.claims)))
 
     def pictures(self, folder: Path) -> dict[str, Figure]:
-        """Draw a folder's figures from its tables alone, by name."""
+        """Draw a folder's figures from its tables alone, by name; none without its first table."""
         figures = f"{self.module.rpartition('.')[0]}.figure"
         if self.captions and not self.drawings:
             known = getattr(self.load(), "pictures", None)
             return dict((known or import_module(figures).pictures)(folder))
-        return {
-            picture: getattr(import_module(figures), draw)(*(self.read(folder, n) for n in tables))
+        read = {
+            picture: (draw, [self.read(folder, name) for name in tables])
             for picture, (draw, *tables) in self.drawings.items()
+        }
+        return {
+            picture: getattr(import_module(figures), draw)(*tables)
+            for picture, (draw, tables) in read.items()
+            if len(tables[0].columns)
         }
 
     def command_line(self, chapter: Chapter, folder: Path, full: bool) -> list[str]:

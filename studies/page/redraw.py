@@ -55,7 +55,10 @@ def draw(study: Study, folder: Path, suffix: str) -> list[Path]:
         for table in folder.glob(study.table):
             if table.read_bytes().count(b"\n") < 2:
                 raise ValueError(f"{table.name} has no rows")
-        return save_all(study.pictures(folder), folder, suffix)
+        pictures = study.pictures(folder)
+        if not pictures:
+            raise ValueError("none of its tables has a picture")
+        return save_all(pictures, folder, suffix)
     except OSError:
         raise
     except Exception as error:

@@ -49,6 +49,12 @@ def test_an_edited_table_is_one_line(study, table, edit, named, tmp_path, capsys
     assert not list(folder.glob(".*"))
 
 
+def test_a_folder_whose_tables_have_no_picture_is_one_line(tmp_path, capsys):
+    """The published waits are a table alone."""
+    folder = shutil.copytree(PUBLISHED / "cost", tmp_path / "cost")
+    refused(capsys, ["redraw", folder], "none of its tables has a picture")
+
+
 @pytest.mark.parametrize("content", [b"", b"\n\n\n", bytes(range(256)), b"a,b\n1,2,3\n4,5\n"])
 def test_what_is_no_table_is_one_line(content, tmp_path, capsys):
     (tmp_path / "free.csv").write_bytes(content)
