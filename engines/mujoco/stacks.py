@@ -10,6 +10,7 @@ load on. Both ask for a surface in proportion to the lift, which is that of thet
 
 import math
 from dataclasses import replace
+from functools import wraps
 
 from engines.mujoco.build import MujocoWorld, world_of
 from engines.mujoco.settings import MujocoSettings
@@ -38,6 +39,7 @@ def softened(scene: Scene, s: MujocoSettings) -> MujocoSettings:
     return replace(s, impedance=(softest, *below), soft_surface=yields)
 
 
+@wraps(world_of, assigned=(), updated=())  # a script calls what both do
 def stacks_of(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
     """Build a scene of bodies that rest on others; see `engines.mujoco.build.world_of`."""
     return world_of(scene, softened(scene, settings), dt_s)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
@@ -87,7 +88,9 @@ def written_out(source: str) -> bool:
 
 
 def built_by_script(engine: Engine, preset: Preset, asks: Sequence[Ability]) -> bool:
-    """Say whether a scene is built by the engine's `build`, which its exported script quotes.
+    """Say whether a scene is built by the engine's `build`, or by what wraps it.
+
+    The exported script quotes it.
 
     Parameters
     ----------
@@ -100,7 +103,7 @@ def built_by_script(engine: Engine, preset: Preset, asks: Sequence[Ability]) -> 
     bool
         False where the engine or the preset has a builder of its own for one of these.
     """
-    return engine.builder(asks, preset) is engine.build
+    return inspect.unwrap(engine.builder(asks, preset)) is engine.build
 
 
 def asked_again(
