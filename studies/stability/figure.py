@@ -66,6 +66,8 @@ WORDS = {
     "contact of 1e-5/p": "stiff contact, time 1e-5/p",
 }
 """Name of a case -> what stands beside its row, where the name needs words."""
+NAMES_PT = 72.0
+"""Height that the names of methods take above their cases [points]."""
 ACROSS = 22
 """Methods side by side at most; more stand in a panel below."""
 
@@ -79,8 +81,8 @@ def draw_matrix(rows: pd.DataFrame) -> Figure:
     groups = _groups(rows["source"].unique())
     cases = rows.drop_duplicates("case")
     most = max(sum(map(len, panel.values())) for panel in groups)
-    width, height = 4.2 + (0.3 if many else 0.5) * most, 0.235 * len(cases) + 1.2
-    size = max(width, 7.5), height * len(groups) + 2.0
+    width, height = 4.2 + (0.3 if many else 0.5) * most, 0.235 * len(cases) + 1.7
+    size = max(width, 7.5), height * len(groups) + 1.5
     drawing = Figure(figsize=size, layout="constrained")
     for axes, panel in zip(drawing.subplots(len(groups), squeeze=False).flat, groups, strict=True):
         _panel(axes, rows, cases, panel, sized=not many)
@@ -130,10 +132,11 @@ def _panel(
     for preset, end in zip(groups, ends, strict=True):
         heading = told(preset).short if preset else "models and SciPy"
         middle = end - 0.5 * len(groups[preset])
-        axes.text(middle, -4.3, heading, ha="center", va="bottom", fontsize=9.5, weight="bold",
-                  color=told(preset).colour if preset else "#000000")  # fmt: skip
+        axes.annotate(heading, (middle, 0.0), (0.0, NAMES_PT), textcoords="offset points",
+                      ha="center", va="bottom", fontsize=9.5, weight="bold",
+                      color=told(preset).colour if preset else "#000000")  # fmt: skip
     for end in ends[:-1]:
-        axes.plot([end, end], [-4.2, len(names) + 1], color="#666666", lw=0.8, clip_on=False)
+        axes.plot([end, end], [-1.0, len(names) + 1], color="#666666", lw=0.8, clip_on=False)
     for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
         if before != after:
             axes.plot([-0.2, len(sources) + 0.2], [j, j], color="#666666", lw=0.8, clip_on=False)

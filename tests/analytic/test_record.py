@@ -13,7 +13,7 @@ from independent import history_under_samples
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
-from engines.disclosure import Miss
+from engines.disclosure import Deviation
 from studies import respond
 from studies.kit.jobs import Job
 from studies.sources.registry import SOURCES
@@ -170,7 +170,7 @@ DRAGGED = "pybullet:naive"
 def missing(name):
     """Return the marks of a source that is declared to miss a record."""
     engine, _, preset = name.partition(":")
-    return held_to(Miss.RECORD, engine, preset) if preset else []
+    return held_to(Deviation.RECORD, engine, preset) if preset else []
 
 
 def band(name):

@@ -67,5 +67,5 @@ def test_what_the_named_linearizations_miss_at_each_slenderness():
     assert found["modified error"].iloc[3] == mine["error"].abs().median()
     assert found["modified wrong"].iloc[3] == mine["wrong"].mean()
     worse = errors.assign(wrong=errors["wrong"] | (errors["changed"] == "111"))
-    assert linearizations.modified_is_better.finding(errors).holds
-    assert not linearizations.modified_is_better.finding(worse).holds
+    assert linearizations.modified_is_better(errors).holds
+    assert not linearizations.modified_is_better(worse).holds

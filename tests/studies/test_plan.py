@@ -10,6 +10,7 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 
 import pandas as pd
@@ -19,6 +20,7 @@ from given import BLOCK
 from analytic import SinePulse, simulate
 from analytic.response import Response
 from studies import respond
+from studies.cases.paper import HISTORIES as PANELS
 from studies.cases.refusal import BadInputError
 from studies.histories import STUDY as HISTORIES
 from studies.histories import study as histories
@@ -102,7 +104,12 @@ def test_a_study_with_more_patience_keeps_it_beside_other_options():
 
 def test_histories_go_on_where_they_stopped_to_the_bit(tmp_path):
     """Samples come back from the journal as they went in."""
-    plan = histories.plan([5], ["exact", "housner"])
+    shown = product(PANELS[5], ("exact", "housner"))
+    plan = Plan(
+        jobs=[histories.history_job(*each) for each in shown],
+        reduce=histories.reduce,
+        tabulate=histories.tabulate,
+    )
     whole = fill(HISTORIES, plan, tmp_path / "whole")
     kept = (tmp_path / "whole" / "figure-5.csv").read_bytes()
     assert fill(HISTORIES, replace(plan, ask=partial(plan.ask, None)), tmp_path / "whole") == whole
