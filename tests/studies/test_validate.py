@@ -9,8 +9,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import frame_faults, simulate
+from analytic import conditioning, frame_faults, simulate
+from analytic.response import Outcome
 from engines.layouts import BEAM_DEPTH, SPACING
+from studies import respond
 from studies.__main__ import run
 from studies.cases.drawn import FRICTION, LEAST_NORMAL, SLIDES, TIPS, draw, everything, fate_of
 from studies.kit.journal import FolderError
@@ -64,6 +66,22 @@ def test_random_frames_keep_their_ranges_and_their_reference_valid():
     assert all(not faults for faults in fates["kept"])
     assert all("would slide" in faults[0] for faults in fates[SLIDES])
     assert all("the beam would tip" in faults[0] for faults in fates[TIPS])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("preset", "most"), [("landing", 1e-4), ("fixed", 1e-2)])
+def test_forty_random_frames_in_mujoco(preset, most):
+    """The first that survive by the exact solution, and whose peak moves by less than 10 times."""
+    errors: list[float] = []
+    for case in draw(1, "frame"):
+        block, motion = case.block, case.motion
+        exact, (kappa, _) = simulate(block, motion), conditioning(block, motion)
+        if exact.outcome is Outcome.ROCKED and abs(kappa) < 10.0:
+            found = respond(f"mujoco:{preset}", block, motion)
+            errors.append(abs(found.peak_ratio / exact.peak_ratio - 1.0))
+        if len(errors) == 40:
+            break
+    assert max(errors) < most
 
 
 def test_frames_are_held_against_their_own_reference():
