@@ -7,6 +7,7 @@ import re
 import shlex
 
 import numpy as np
+import pandas as pd
 import pytest
 from commanding import compared, refused
 from records import write_record
@@ -14,7 +15,7 @@ from records import write_record
 from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
 from analytic.criteria import overturning_velocity
 from studies.__main__ import run
-from studies.blocks.report import read
+from studies.blocks.report import doubts, read
 from studies.blocks.strength import BEYOND, WIDTH, grid, strength
 from studies.blocks.study import joined
 
@@ -212,3 +213,12 @@ def test_the_least_margin_comes_first_in_words_page_and_table(place, capsys):
     assert lines[heads + 1].split()[0] == first["name"]
     page = (place / "out" / "blocks.html").read_text()
     assert words in page and "href=" not in page
+
+
+def test_a_friction_that_was_not_given_is_none_that_suffices():
+    case = {"name": "A", "record": "r", "scale": 1.0, "margin": 2.0, "min_normal": 0.5}
+    rows = pd.DataFrame([{**case, "friction": math.nan, "friction_needed": 0.4}])
+    (said,) = doubts(rows)
+    assert said.startswith("1 of 1 have no friction given") and said.endswith("up to 0.4")
+    assert doubts(rows.assign(friction=0.5))[0].startswith("none slides")
+    assert doubts(rows.assign(friction=0.3))[0].startswith("1 of 1 slide,")
