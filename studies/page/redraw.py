@@ -30,7 +30,8 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
     for study in found:
         check(folder, study.tables, "FOLDER")
     for study in found:
-        print(*draw(study, folder, f".{suffix}"), sep="\n")
+        drawn = draw(study, folder, f".{suffix}")
+        print(*(drawn or [f"{folder}: none of its tables has a picture"]), sep="\n")
     return 0
 
 
@@ -55,10 +56,7 @@ def draw(study: Study, folder: Path, suffix: str) -> list[Path]:
         for table in folder.glob(study.table):
             if table.read_bytes().count(b"\n") < 2:
                 raise ValueError(f"{table.name} has no rows")
-        pictures = study.pictures(folder)
-        if not pictures:
-            raise ValueError("none of its tables has a picture")
-        return save_all(pictures, folder, suffix)
+        return save_all(study.pictures(folder), folder, suffix)
     except OSError:
         raise
     except Exception as error:
