@@ -30,7 +30,7 @@ def command(folder: Place, /, *, suffix: Literal["png", "svg", "pdf"] = "png") -
     for study in found:
         check(folder, study.tables, "FOLDER")
     for study in found:
-        drawn = draw(study, folder, f".{suffix}")
+        drawn = [str(path) for path in draw(study, folder, f".{suffix}")]
         print(*(drawn or [f"{folder}: none of its tables has a picture"]), sep="\n")
     return 0
 
