@@ -11,6 +11,10 @@ from pathlib import Path
 from studies.__main__ import run
 
 ROOT = Path(__file__).parents[1]
+PUBLISHED_PAGES = ("README.md", "engines.md", "scenes.md")
+PAGES = ("README.md", *(f"studies/published/{name}" for name in PUBLISHED_PAGES))
+PROSE = (*PAGES, "studies/GUIDE.md", ".github/CONTRIBUTING.md")
+"""Pages of the published results; those that are made from tables; all that people read."""
 BLOCK = ["--width", "0.5", "--height", "1.5"]
 PULSE = ["--amplitude", "0.4", "--omega", "6.2832"]
 CASE = [*BLOCK, *PULSE]

@@ -38,7 +38,9 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center",
                   color="#555555", transform=axes.get_yaxis_transform())  # fmt: skip
     for axes in grid[-2:]:
-        axes.set_xlabel("error of the peak, median to largest", fontsize=10)
+        axes.set_xlabel(
+            "error of the peak, median to largest\n(equal steps all at one p dt)", fontsize=10
+        )
     changes = int((lines["factor"] != "").sum())
     harmful = int(lines.loc[lines["factor"] != "", "worse"].sum())
     drawing.suptitle(

@@ -21,8 +21,6 @@ class Told:
         What it is, as part of a sentence about engines that have it.
     short : str
         After the name of an engine.
-    varied : str
-        What a study of contacts changes of it.
     colour : str
         Where presets are compared, and the engines are named.
     line, fill : str
@@ -31,7 +29,6 @@ class Told:
 
     words: str
     short: str
-    varied: str
     colour: str = "#777777"
     line: str = "-"
     fill: Fill = "none"
@@ -41,7 +38,6 @@ PRESETS = {
     "naive": Told(
         words="as their documentation shows them",
         short="as documented",
-        varied="one change from the documented settings",
         colour="#D55E00",
         line=":",
         fill="full",
@@ -49,14 +45,12 @@ PRESETS = {
     AT_REST: Told(
         words="as documented but on a base at rest",
         short="base at rest",
-        varied="one change from the documented settings on a base at rest",
         colour="#E69F00",
         line=":",
     ),
     RECOMMENDED: Told(
         words="as their documentation recommends",
         short="as recommended",
-        varied="one change from the recommended settings",
         colour="#56B4E9",
         line="-.",
         fill="bottom",
@@ -64,7 +58,6 @@ PRESETS = {
     "fixed": Told(
         words="with a tuned contact and a fixed step",
         short="fixed step",
-        varied="one change from the best fixed-step setting",
         colour="#0072B2",
         line="--",
         fill="left",
@@ -72,7 +65,6 @@ PRESETS = {
     "error-controlled": Told(
         words="with the engine's own error-controlled steps",
         short="its own steps",
-        varied="one help of the engine's own steps",
         colour="#CC79A7",
         line="-.",
         fill="bottom",
@@ -80,7 +72,6 @@ PRESETS = {
     "landing": Told(
         words="with steps that land on impacts",
         short="landing steps",
-        varied="one help of landing left out",
         colour="#009E73",
     ),
 }
@@ -91,7 +82,7 @@ def told(preset: str) -> Told:
     """Return how a preset is told of; one of another package by its name, in grey."""
     if preset in PRESETS:
         return PRESETS[preset]
-    return Told(words=f"with the preset {preset}", short=preset, varied=f"one change from {preset}")
+    return Told(words=f"with the preset {preset}", short=preset)
 
 
 def is_engine(source: str) -> bool:

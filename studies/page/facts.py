@@ -160,7 +160,7 @@ def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
     return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
 
 
-def records(published: Path, folder: str, name: str) -> list[dict[Any, Any]]:
+def lines_in(published: Path, folder: str, name: str) -> list[dict[Any, Any]]:
     """Return the rows of a published table; none where there is none."""
     return table_in(published / folder, name).to_dict("records")
 

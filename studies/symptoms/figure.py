@@ -67,7 +67,7 @@ def _title(lines: pd.DataFrame) -> str:
     factor = (mended["before"] / mended["after"]).abs().median()
     return (
         f"One setting helps in {len(mended)} of {len(lines)} pairs of engine and symptom, "
-        f"most often by more than a factor of {max(factor, 1.0):.0f}"
+        f"in half of them by a factor of {max(factor, 1.0):.0f} or more"
     )
 
 
