@@ -91,6 +91,7 @@ def test_crashes_and_time_limits_are_rows_and_cost_no_worker(station, monkeypatc
     assert "time limit of 6 s" in rows[1]["message"]
 
 
+@pytest.mark.slow
 def test_what_compiles_itself_does_so_outside_the_time_limit(station, monkeypatch, tmp_path):
     source = Source("engine", slow_at_first, resolve("mujoco").engine)
     assert source.declared.compiles
@@ -149,6 +150,7 @@ def test_workers_are_needed_and_a_nanny_is_refused(tmp_path, monkeypatch):
             Cluster(address, 1.0).check()
 
 
+@pytest.mark.slow
 def test_a_killed_worker_loses_nothing(station, monkeypatch):
     monkeypatch.setitem(SOURCES, "slow", Source("model", slow))
     with working(station[0]) as third:

@@ -142,6 +142,7 @@ def test_too_few_open_files_are_one_line(count, tmp_path):
     assert "rows are kept" in done.stderr
 
 
+@pytest.mark.slow
 def test_the_longest_pulse_fits_into_memory(tmp_path):
     pulse = ["--amplitude", "0.4", "--omega", "60", "--half-cycles", "1000000"]
     few = ["--sources", "mujoco:naive", "--time-limit", "1", "--jobs", "1"]

@@ -147,6 +147,7 @@ def killed_run(folder, gate):
     return (folder / "journal.jsonl").read_bytes().splitlines()
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_in_a_batch_loses_that_batch_alone(tmp_path, note):
     folder, whole = tmp_path / "out", tmp_path / "whole"
     kept = killed_run(folder, tmp_path / "gate")
