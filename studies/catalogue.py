@@ -24,7 +24,6 @@ from studies import (
     stability,
     sweep,
     symptoms,
-    throughput,
     validate,
     validity,
     versions,
@@ -37,7 +36,7 @@ STUDIES: tuple[Study, ...] = (
     *(harmonic.STUDY, literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
     *(precision.STUDY, precision.COST, contact.STUDY, symptoms.STUDY, restitution.STUDY),
     *(versions.STUDY, stability.STUDY, overturning.STUDY, validity.STUDY, ensemble.STUDY),
-    *(throughput.STUDY, score.STUDY, doctor.STUDY),
+    *(score.STUDY, doctor.STUDY),
 )
 """In the order in which the help lists them and a report shows them."""
 

@@ -10,7 +10,6 @@ from analytic.block import GRAVITY, RigidBlock
 from analytic.conditioning import Conditioning, condition_numbers
 from analytic.maps import Modes, overturning_modes
 from analytic.motion import FloatArray, SinePulse
-from analytic.simulate import peak_ratios
 from studies.cases.paper import PULSES
 
 Axis = Literal["frequency", "slenderness", "size"]
@@ -137,9 +136,7 @@ class Window:
             return self.pulse_hz / x
         return np.full_like(x, self.omega_over_p)
 
-    def modes(
-        self, x: FloatArray, onsets: FloatArray, model: str = "exact", threads: int | None = None
-    ) -> Modes:
+    def modes(self, x: FloatArray, onsets: FloatArray, model: str = "exact") -> Modes:
         """Return what happens at points of the plane, broadcast.
 
         Parameters
@@ -147,25 +144,10 @@ class Window:
         x, onsets : ndarray
             Abscissae, as `over` says, and amplitudes over g tan(alpha); their shapes broadcast.
         model : {"exact", "housner", "modified", "onset-matched"}
-        threads : int, optional
-            By default the number of cores.
         """
         alpha = self.alpha(x)
         amplitude = onsets * np.tan(alpha)
-        ratio, cycles = self.ratio(x), self.half_cycles
-        return overturning_modes(alpha, amplitude, ratio, cycles, model, threads=threads)
-
-    def peaks(self, x: FloatArray, onsets: FloatArray, threads: int | None = None) -> FloatArray:
-        """Return the exact peak ratios at points of the plane, broadcast; inf when overturned.
-
-        Parameters
-        ----------
-        x, onsets, threads
-            As for `modes`.
-        """
-        alpha = self.alpha(x)
-        amplitude, ratio = onsets * np.tan(alpha), self.ratio(x)
-        return peak_ratios(alpha, amplitude, ratio, self.half_cycles, threads=threads)[0]
+        return overturning_modes(alpha, amplitude, self.ratio(x), self.half_cycles, model)
 
     def condition_numbers(self, x: FloatArray, onsets: FloatArray) -> Conditioning:
         """Return the condition numbers of the exact peaks at points of the plane, broadcast."""

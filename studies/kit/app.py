@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from studies.kit.study import Study
 
 
+RETIRED = ("throughput",)
+"""Commands that answer for one release that they are gone."""
+
+
 def make_app(studies: Sequence[Study]) -> App:
     """Return the command line with these commands, each loaded when it is asked for."""
     from cyclopts import App, Parameter
@@ -81,6 +85,8 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
         return refusing.refuse(
             f"--version is one of {len(arguments)} arguments; it must stand alone"
         )
+    if arguments and arguments[0] in RETIRED:
+        return refusing.refuse(f"{arguments[0]} was retired in 0.3, see the changelog")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
         if not argument or (name.startswith("--") and equals and not value):

@@ -172,7 +172,6 @@ export BLOCK --engine mujoco --out DIR --amplitude 0.4 --omega 1e-9 | --width is
 animate BLOCK --amplitude 1 --omega 1e-9 --out a.gif | --width | 1/p
 animate CASE --slower 1e9 --out film.gif | --slower 1e+09 | 1500
 animate CASE --slower 1e308 --out film.gif | --slower 1e+308 | 1500
-throughput --out DIR --threads 1000000000 | --threads is 1000000000 | at most 1024
 validate --out DIR --step 9e-8 | --step is '9e-8' | at least 1e-07
 estimate --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 """

@@ -40,7 +40,7 @@ def test_a_study_has_a_command_and_one_with_a_table_can_be_drawn_and_told(study)
 
 def test_every_study_is_a_chapter_but_those_shown_elsewhere():
     shown = {study.name for study, _ in CHAPTERS}
-    alone = {"compare", "blocks", "animate", "export", "cost", "throughput", "score", "doctor"}
+    alone = {"compare", "blocks", "animate", "export", "cost", "score", "doctor"}
     assert {study.name for study in STUDIES} - shown == alone
 
 

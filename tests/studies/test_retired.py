@@ -1,0 +1,9 @@
+"""A command that was retired says so, for one release."""
+
+import pytest
+from commanding import refused
+
+
+@pytest.mark.parametrize("name", ["throughput"])
+def test_a_retired_command_is_refused_in_one_line(name, capsys):
+    refused(capsys, [name, "--out", "results"], name, "retired in 0.3", "changelog")
