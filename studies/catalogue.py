@@ -26,7 +26,6 @@ from studies import (
     symptoms,
     validate,
     validity,
-    versions,
 )
 from studies.kit.study import Chapter, Study
 
@@ -35,7 +34,7 @@ STUDIES: tuple[Study, ...] = (
     *(defaults.STUDY, histories.STUDY, linearizations.STUDY, free.STUDY, scenes.STUDY),
     *(harmonic.STUDY, literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
     *(precision.STUDY, precision.COST, contact.STUDY, symptoms.STUDY, restitution.STUDY),
-    *(versions.STUDY, stability.STUDY, overturning.STUDY, validity.STUDY, ensemble.STUDY),
+    *(stability.STUDY, overturning.STUDY, validity.STUDY, ensemble.STUDY),
     *(score.STUDY, doctor.STUDY),
 )
 """In the order in which the help lists them and a report shows them."""

@@ -93,11 +93,6 @@ def engine_style(engine: str, preset: str) -> Style:
     return Style(colour, marker=marker, fill=told(preset).fill)
 
 
-def preset_style(preset: str) -> Style:
-    """Return how the engines with a preset are drawn where they are named beside their points."""
-    return Style(told(preset).colour, marker="o", fill=told(preset).fill)
-
-
 def title_of(engine: str) -> str:
     """Return an engine's name as its makers spell it; that of any other source as it is."""
     return ENGINES[engine].title if engine in ENGINES else engine

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from studies.kit.study import Study
 
 
-RETIRED = ("throughput",)
+RETIRED = ("throughput", "versions")
 """Commands that answer for one release that they are gone."""
 
 

@@ -28,7 +28,6 @@ ARGUMENTS = {
     "stability": ("--quick", "--sources", "exact", "moreau", "moreau:fixed", "moreau:naive"),
     "overturning": ("--quick", "--sources", "exact", "moreau"),
     "validity": ("--quick", "--sources", "moreau:fixed"),
-    "versions": ("--quick", "--engines", "moreau", "--releases", "installed"),
     "ensemble": ("--quick", "--sources", "moreau"),
     "score": ("moreau", "--quick"),
 }

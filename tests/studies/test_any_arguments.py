@@ -6,7 +6,6 @@ import os
 import signal
 import warnings
 from pathlib import Path
-from subprocess import CompletedProcess
 
 import pytest
 from commanding import BLOCK, CASE
@@ -20,7 +19,6 @@ from studies.kit.app import make_app
 from studies.kit.executors import Local
 from studies.kit.journal import FolderError
 from studies.page import report
-from studies.versions import releases
 
 pytestmark = pytest.mark.processes
 
@@ -95,8 +93,6 @@ def place(tmp_path_factory):
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
         patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
-        # as where there is no network, and without a process for each engine
-        patch.setattr(releases, "pip", lambda *words: CompletedProcess(words, 1, "", "ERROR: no"))
         yield folder
     assert Path.cwd() == kept
 

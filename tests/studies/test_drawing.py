@@ -20,7 +20,6 @@ from studies.drawing.styles import (
     ENGINE_MARKERS,
     STYLES,
     look_at,
-    preset_style,
     title_of,
 )
 from studies.linearizations.figure import ONSETS
@@ -148,9 +147,7 @@ def test_names_keep_clear_of_each_other_of_lines_and_of_words():
 def test_every_preset_has_a_look_of_its_own(preset):
     declared = {each.name for engine in ENGINES.values() for each in engine.presets}
     assert set(PRESETS) == declared
-    others = [preset_style(name) for name in declared - {preset}]
-    assert preset_style(preset) not in others
-    assert preset_style(preset).colour not in [style.colour for style in others]
+    assert told(preset).colour not in [told(name).colour for name in declared - {preset}]
 
 
 def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
